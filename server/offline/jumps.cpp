@@ -2,6 +2,7 @@
 #include "server/offline/jumps.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -43,38 +44,62 @@ Step step_between(const pose::TrajectoryPoint& from, const pose::TrajectoryPoint
 
 /// Whether a vehicle that made one step can go on with the next.
 bool continues(const Step& before, const Step& step) {
-  if (before.seconds < shortest_compared_step_s || step.seconds < shortest_compared_step_s) {
-    return true;
-  }
   const double between_s = (before.seconds + step.seconds) / 2.0;
   return glm::length(step.velocity_mps - before.velocity_mps) <= most_acceleration_mps2 * between_s &&
          glm::length(step.turn_radps - before.turn_radps) <= most_turn_acceleration_radps2 * between_s;
 }
 
+void name_first(Jumps& jumps, const pose::TrajectoryPoint& from, const pose::TrajectoryPoint& to,
+                const Step& step) {
+  constexpr double degrees = 57.29577951308232;
+  if (jumps.first.empty()) {
+    jumps.first =
+        fmt::format("from t={:g} to t={:g}: {:.3g} m/s, {:.3g} deg/s",
+                    1e-9 * static_cast<double>(from.time_ns), 1e-9 * static_cast<double>(to.time_ns),
+                    glm::length(step.velocity_mps), glm::length(step.turn_radps) * degrees);
+  }
+}
+
+bool are_many(std::size_t broken, std::size_t steps) {
+  return broken > 0 && static_cast<double>(broken) >= independent_share * static_cast<double>(steps);
+}
+
+/// Whether many steps, each of shortest_compared_step_s or more, are jumps or do not continue the one before.
+bool many_steps_break(const std::vector<pose::TrajectoryPoint>& points, Jumps& jumps) {
+  std::size_t steps = 0;
+  std::size_t broken = 0;
+  std::optional<Step> before;
+  std::size_t from = 0;
+  for (std::size_t to = 1; to < points.size(); ++to) {
+    const Step step = step_between(points[from], points[to]);
+    if (step.seconds < shortest_compared_step_s) {
+      continue;
+    }
+    ++steps;
+    if (step.jump() || (before && !continues(*before, step))) {
+      ++broken;
+      name_first(jumps, points[from], points[to], step);
+    }
+    before = step;
+    from = to;
+  }
+  return are_many(broken, steps);
+}
+
 }  // namespace
 
 Jumps find_jumps(const std::vector<pose::TrajectoryPoint>& points) {
-  constexpr double degrees = 57.29577951308232;
   Jumps jumps;
-  std::size_t broken = 0;
-  Step before;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     const Step step = step_between(points[k], points[k + 1]);
-    const bool jump = step.jump();
-    const bool breaks = jump || (k > 0 && !continues(before, step));
-    jumps.steps.push_back(jump);
-    jumps.count += jump ? 1 : 0;
-    broken += breaks ? 1 : 0;
-    if (breaks && jumps.first.empty()) {
-      jumps.first = fmt::format("from t={:g} to t={:g}: {:.3g} m/s, {:.3g} deg/s",
-                                1e-9 * static_cast<double>(points[k].time_ns),
-                                1e-9 * static_cast<double>(points[k + 1].time_ns),
-                                glm::length(step.velocity_mps), glm::length(step.turn_radps) * degrees);
+    jumps.steps.push_back(step.jump());
+    if (step.jump()) {
+      ++jumps.count;
+      name_first(jumps, points[k], points[k + 1], step);
     }
-    before = step;
   }
-  jumps.independent = broken > 0 && static_cast<double>(broken) >=
-                                        independent_share * static_cast<double>(jumps.steps.size());
+  const bool many_break = many_steps_break(points, jumps);  // it may name the first
+  jumps.independent = many_break || are_many(jumps.count, jumps.steps.size());
   return jumps;
 }
 

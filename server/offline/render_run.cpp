@@ -122,14 +122,12 @@ VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions&
     trajectory.rest_in_all_pings();
     spdlog::warn(
         "{}: no vehicle moves like this ({}), so each ping is rendered with the sonar at rest. Add --still "
-        "to render "
-        "one frame for each pose, or --no-still to render the motion",
+        "to render one frame for each pose, or --no-still to render the motion",
         file, jumps.first);
   } else if (jumps.count > 0) {
     spdlog::warn(
         "{}: {} of {} steps are jumps that no vehicle makes ({}); pings in them are rendered with the sonar "
-        "at "
-        "rest. Add --no-still to render the motion",
+        "at rest. Add --no-still to render the motion",
         file, jumps.count, jumps.steps.size(), jumps.first);
     trajectory.rest_in(std::move(jumps.steps));
   }
