@@ -19,7 +19,30 @@ struct Unit {
   std::string_view name;
   double time_rate;  ///< of stamps in this unit that are taken for nanoseconds
 };
+constexpr double shortest_run_s = 1e-3;  ///< of stamps over that many poses; what is shorter is no time
 constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6}, Unit{"seconds", 1e-9}};
+
+/// Of how fast stamps go on, by the clock.
+std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
+  if (summary.poses < enough_poses || !summary.time_rate || *summary.time_rate <= 0.0) {
+    return std::nullopt;
+  }
+  const double time_rate = *summary.time_rate;
+  for (const Unit& unit : units) {
+    if (time_rate > 0.2 * unit.time_rate && time_rate < 5 * unit.time_rate) {
+      return Finding{"stamps_unit",
+                     fmt::format("Stamps of poses look like {}: they are to be in nanoseconds.", unit.name)};
+    }
+  }
+  const double run_s = time_rate * static_cast<double>(summary.poses) / summary.rate_hz;
+  if (run_s < shortest_run_s) {
+    return Finding{"stamps_count",
+                   fmt::format("Stamps went on by {:.2g} s over {} poses: do they count poses? Send the time "
+                               "of each pose, in nanoseconds.",
+                               run_s, summary.poses)};
+  }
+  return std::nullopt;
+}
 
 /// Of stamps that do not go on with the poses.
 std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::string& name, PingClock clock) {
@@ -71,14 +94,8 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
   if (std::string remark = inputs.source(index).remark(); !remark.empty()) {
     findings.push_back({"depth_alone", std::move(remark)});
   }
-  if (summary.poses >= enough_poses && summary.time_rate) {
-    for (const Unit& unit : units) {
-      if (*summary.time_rate > 0.2 * unit.time_rate && *summary.time_rate < 5 * unit.time_rate) {
-        findings.push_back(
-            {"stamps_unit",
-             fmt::format("Stamps of poses look like {}: they are to be in nanoseconds.", unit.name)});
-      }
-    }
+  if (auto found = look_at_rate(summary)) {
+    findings.push_back(std::move(*found));
   }
   return findings;
 }

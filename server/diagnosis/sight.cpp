@@ -284,7 +284,7 @@ class LookAround {
     return neighbour.is_terrain || (sides[1] > 10.0 && sides[0] < 0.5 * sides[1]);
   }
 
-  /// Below the lowest thing there is, where that is wide. Who sees it may be below ice or a ship, but not if
+  /// Below the lowest thing there is, where that is wide. Who hears it may be below ice or a ship, but not if
   /// it turns its back.
   void note_under_ground() {
     const Neighbour* ground = nullptr;
@@ -300,7 +300,9 @@ class LookAround {
       }
     }
     const bool turns_its_back = overhead.from_behind || (ground != nullptr && ground->is_terrain);
-    if (ground == nullptr || !findings_.empty() || (sight_.sees_surface.value_or(true) && !turns_its_back) ||
+    const bool hears_it =
+        sight_.sees_surface.value_or(true) && sight_.echo_over_floor >= least_visible_echo && !turns_its_back;
+    if (ground == nullptr || !findings_.empty() || hears_it ||
         std::ranges::any_of(neighbours_,
                             [&](const Neighbour& other) { return straight(other, -1.0).count > 0; })) {
       return;

@@ -10,6 +10,7 @@ pier_and_hull.sdf beside it.
 
 import argparse
 import contextlib
+import itertools
 import json
 import os
 import re
@@ -243,6 +244,14 @@ class Diagnosis(OwnMachine):
                 self.wait_for_finding(self.inputs_findings, says)
                 daemon.kill()
                 publisher.close()
+
+    def test_stamps_that_count_poses_are_named(self):
+        numbers = itertools.count(1)
+        self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: next(numbers))
+        says = r"Stamps went on by \S+ s over \d+ poses: do they count poses\? Send the time of each pose, in nanoseconds"
+        self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
+        self.start()
+        self.wait_for_finding(self.inputs_findings, says)
 
     STANDING = {  # what is made of the seconds since the first pose
         "left out": (lambda since_s: 0, "The stamps stand still while the vehicle moves: is time_ns left out\\?"),

@@ -199,6 +199,10 @@ TEST(LookAround, SaysThatTheSonarIsUnderTheBed) {
   EXPECT_EQ(look(one("bed", sheet()), {}, seeing({7, 3, -23.5})), expected) << "it sees the back of it";
   // A slab of 1 m, whose lower side is at z = -20.5.
   EXPECT_EQ(look(one("bed", box({100, 100, 1})), {}, at({7, 3, -24})), expected);
+  Sight faint = seeing({7, 3, -24});
+  faint.echo_over_floor = 0.01;
+  EXPECT_EQ(look(one("bed", box({100, 100, 1})), {}, faint), expected)
+      << "it sees the underside and hears none";
 }
 
 TEST(LookAround, BelowAShipOrIceOrABridgeAllIsWell) {
