@@ -40,6 +40,8 @@ class HeadKind {
 
   virtual std::string_view type() const = 0;   ///< as in the configuration: "example_100"
   virtual std::string_view title() const = 0;  ///< for people: "Example 100"
+  /// Words of the key `model`, which people give for the type.
+  virtual std::vector<std::string_view> models() const { return {}; }
 
   /// A head with the defaults of this kind.
   virtual HeadConfig make_default() const = 0;

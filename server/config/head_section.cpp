@@ -281,6 +281,18 @@ void read_mount(YamlSection& section, HeadConfig& head) {
   }
 }
 
+/// Reports a model that is given for the type.
+void report_model(YamlSection& section, std::span<const HeadKind* const> kinds) {
+  for (const HeadKind* kind : kinds) {
+    for (const std::string_view model : kind->models()) {
+      if (section.word("type") == model) {
+        section.report("type",
+                       fmt::format("'{0}' is a model (expected type: {1}, model: {0})", model, kind->type()));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 HeadConfig read_head(YamlSection& section, const HeadContext& context,
@@ -292,6 +304,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context,
     names.push_back(kind->type());
   }
   const HeadKind* kind = kinds.front();
+  report_model(section, kinds);
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
   const bool known = section.choice("type", kind, types, "device") && section.has("type");
   if (!known && !section.describing()) {

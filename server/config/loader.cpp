@@ -473,11 +473,16 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.section("log", "the log",
                [&](YamlSection& section) { read_log(section, config.log_level, config.log_format); });
   root.require("world", "a mapping with the world's file, or `empty` for open water");
-  const bool is_open_water = root.is_word("world", "empty");
+  const std::string_view word = root.word("world");
+  const bool is_open_water = word == "empty";
   if (is_open_water || root.describing()) {
     root.choice("world", config.open_water, {{"empty", true}}, "what the sonars see; `empty` is open water");
   }
-  if (!is_open_water) {
+  if (!is_open_water && !word.empty()) {
+    root.report("world", fmt::format("is {} (expected a mapping such as {{file: world.sdf}}, or empty for "
+                                     "open water)",
+                                     in_quotes(word)));
+  } else if (!is_open_water) {
     root.section("world", "what the sonars see; `empty` is open water",
                  [&](YamlSection& section) { read_world(section, context.folder, config); });
   }

@@ -237,9 +237,10 @@ bool YamlSection::is_list(std::string_view key) const {
   return entry != nullptr && entry->value.IsSequence();
 }
 
-bool YamlSection::is_word(std::string_view key, std::string_view word) const {
+std::string_view YamlSection::word(std::string_view key) const {
   const Entry* entry = peek(key);
-  return entry != nullptr && entry->value.IsScalar() && entry->value.Scalar() == word;
+  return entry != nullptr && entry->value.IsScalar() ? std::string_view(entry->value.Scalar())
+                                                     : std::string_view();
 }
 
 void YamlSection::require(std::string_view key, std::string_view expected) {

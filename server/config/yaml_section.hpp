@@ -71,8 +71,8 @@ class YamlSection {
 
   bool has(std::string_view key) const;
   bool is_list(std::string_view key) const;
-  /// Whether the value of the key is this word, for a key that may have a mapping as well.
-  bool is_word(std::string_view key, std::string_view word) const;
+  /// The value of a key that may have a mapping as well. Empty: it has one, or is missing.
+  std::string_view word(std::string_view key) const;
   /// Reports the key when it is missing.
   void require(std::string_view key, std::string_view expected);
   /// Leaves the keys that no reader asked for without a complaint: what they mean is not known.

@@ -27,6 +27,7 @@ class OculusKind final : public DeviceKind {
  public:
   std::string_view type() const override { return "oculus"; }
   std::string_view title() const override { return "Oculus"; }
+  std::vector<std::string_view> models() const override { return {"m750d", "m1200d"}; }
   bool scanning() const override { return false; }
   bool has_sensors() const override { return true; }
 

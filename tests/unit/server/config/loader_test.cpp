@@ -546,7 +546,8 @@ TEST_F(Loader, takes_open_water_for_a_world) {
       ElementsAre(HasSubstr("world.file: missing (expected an SDF world; for open water, empty: true)")));
   EXPECT_THAT(
       complaints("world: sea.sdf\n" + rest),
-      ElementsAre(StartsWith("config.yaml:1:8: world: is 'sea.sdf' (expected a mapping, key: value)")));
+      ElementsAre("config.yaml:1:8: world: is 'sea.sdf' (expected a mapping such as {file: world.sdf}, or "
+                  "empty for open water)"));
 }
 
 TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
@@ -712,6 +713,12 @@ TEST_F(Loader, ends_the_complaints_about_a_head_with_its_unknown_type) {
         ElementsAre(AllOf(StartsWith("config.yaml:6:11: heads[0].type: "),
                           HasSubstr("is not understood, did you mean '" + meant + "'? (expected one of "))))
         << given;
+  }
+  for (const char* model : {"m750d", "m1200d"}) {
+    EXPECT_THAT(complaint(model),
+                ElementsAre(fmt::format("config.yaml:6:11: heads[0].type: '{0}' is a model (expected type: "
+                                        "oculus, model: {0})",
+                                        model)));
   }
   EXPECT_THAT(complaint("norbit"),
               ElementsAre(HasSubstr("heads[0].type: 'norbit' is not understood (expected one of ")));
