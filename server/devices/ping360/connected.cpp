@@ -2,6 +2,7 @@
 #include "server/devices/ping360/connected.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,9 +69,10 @@ class Discovery {
 class ConnectedPing360 final : public ConnectedDevice {
  public:
   ConnectedPing360(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
-      : device_(ping360_config(head).device, clock.now()),
-        transport_(open_transports(ping360_config(head), io, clock)) {
-    if (const auto& discovery = ping360_config(head).discovery) {
+      : config_(ping360_config(head)),
+        device_(config_.device, clock.now()),
+        transport_(open_transports(config_, io, clock)) {
+    if (const auto& discovery = config_.discovery) {
       discovery_ = std::make_unique<Discovery>(head.name, *discovery, io);
     }
   }
@@ -89,7 +91,22 @@ class ConnectedPing360 final : public ConnectedDevice {
     }
   }
 
+  std::optional<std::vector<Ipv4>> own_addresses() const override {
+    std::vector<Ipv4> own;
+    for (const UdpTransportConfig& udp : config_.udp) {
+      own.push_back(udp.bind.address);
+    }
+    for (const PlannedSocket& socket : serial_sockets(config_.serial, "serial")) {
+      own.push_back(socket.endpoint.address);
+    }
+    if (config_.discovery) {
+      own.push_back(config_.discovery->address);
+    }
+    return own;
+  }
+
  private:
+  const Ping360Config config_;
   ping360::Device device_;
   SeveralTransports transport_;
   std::unique_ptr<Discovery> discovery_;

@@ -231,6 +231,14 @@ class AddressThatChanges(Machine):
             self.assertEqual([text for text in self.findings() if "is gone" in text], [])
         self.wait_for_status_from(self.far_socket(STATUS_OF_GEMINI), OLD)
 
+    def test_the_address_that_discovery_names_is_missed_too(self):
+        head = PING360.replace("{address}", "0.0.0.0") + f"    discovery: {{{{address: {OLD}, allow: [10.61.0.0/16]}}}}\n"
+        daemon = self.run_daemon(head)
+        self.take(OLD)
+        daemon.wait_for_line(f"warning head=p its address {OLD} is gone from this machine", PATIENCE_S)
+        self.give(OLD)
+        daemon.wait_for_line(f"head=p its address {OLD} is back", PATIENCE_S)
+
     def test_a_head_that_is_named_by_its_address_stays_there(self):
         daemon = self.run_daemon(GEMINI, address=OLD, mask="255.255.255.0")
         self.take(OLD)
