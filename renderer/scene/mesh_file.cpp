@@ -16,6 +16,7 @@
 #include "renderer/scene/local_file.hpp"
 #include "renderer/scene/mesh.hpp"
 #include "renderer/scene/mesh_readers.hpp"
+#include "renderer/scene/uri_resolver.hpp"
 
 namespace sonard::render {
 namespace {
@@ -86,8 +87,8 @@ void require_parts(const RawMesh& raw, const MeshFileRequest& request) {
     throw WorldError(fmt::format("{} triangles are more than {}", triangles, max_triangles));
   }
   if (triangles == 0 && !request.submesh.empty()) {
-    throw WorldError(fmt::format("no submesh '{}' with triangles; names in the file: {}", request.submesh,
-                                 fmt::join(names_in(raw, request.file), ", ")));
+    throw MissingFile(fmt::format("no submesh '{}' with triangles; names in the file: {}", request.submesh,
+                                  fmt::join(names_in(raw, request.file), ", ")));
   }
 }
 
@@ -121,7 +122,7 @@ MeshFile load_checked(const MeshFileRequest& request) {
     loaded.parts.push_back({std::move(material_name), std::make_shared<const TriangleMesh>(std::move(mesh))});
   }
   if (triangles == 0) {
-    throw WorldError("the mesh has no triangles");
+    throw MissingFile("the mesh has no triangles");
   }
   if (bare) {
     loaded.warnings.push_back(fmt::format(
@@ -155,6 +156,8 @@ MeshFile load_mesh_file(const MeshFileRequest& request) {
   }
   try {
     return load_checked(request);
+  } catch (const MissingFile& error) {
+    throw MissingFile(fmt::format("{}: {}", request.file.string(), error.what()));
   } catch (const std::runtime_error& error) {
     throw WorldError(fmt::format("{}: {}", request.file.string(), error.what()));
   }

@@ -38,8 +38,8 @@ struct MeshFile {
   std::string up_axis{};  ///< "X_UP" or "Y_UP" of a COLLADA file, which is not applied; else empty
 };
 
-/// @throws WorldError naming the file: not found, not local, unknown format, damaged, no triangles, no such
-/// submesh, more than 50 million triangles.
+/// @throws MissingFile naming the file: no triangles, no such submesh. WorldError, likewise: not found, not
+/// local, unknown format, damaged, more than 50 million triangles.
 MeshFile load_mesh_file(const MeshFileRequest& request);
 
 }  // namespace sonard::render

@@ -87,10 +87,16 @@ std::vector<Out> elements(const osg::Array* array) {
   return {};
 }
 
+/// What a submesh takes of the nodes below the one of its name.
+enum class Below {
+  own,     ///< as in Gazebo, a node that has another name is a submesh of its own
+  subtree  ///< all of them
+};
+
 class TriangleCollector : public osg::NodeVisitor {
  public:
-  TriangleCollector(RawMesh& mesh, const std::string& submesh)
-      : osg::NodeVisitor(TRAVERSE_ACTIVE_CHILDREN), mesh_(mesh), submesh_(submesh) {}
+  TriangleCollector(RawMesh& mesh, const std::string& submesh, Below below)
+      : osg::NodeVisitor(TRAVERSE_ACTIVE_CHILDREN), mesh_(mesh), submesh_(submesh), below_(below) {}
 
   void apply(osg::Node& node) override {
     descend(node, [] {});
@@ -98,7 +104,12 @@ class TriangleCollector : public osg::NodeVisitor {
 
   void apply(osg::Transform& transform) override {
     const osg::Matrixd outer = matrix_;
+    const int selected = selected_;
+    if (below_ == Below::own && !transform.getName().empty()) {
+      selected_ = 0;
+    }
     descend(transform, [&] { transform.computeLocalToWorldMatrix(matrix_, this); });
+    selected_ = selected;
     matrix_ = outer;
   }
 
@@ -161,6 +172,7 @@ class TriangleCollector : public osg::NodeVisitor {
 
   RawMesh& mesh_;
   const std::string& submesh_;
+  const Below below_;
   osg::Matrixd matrix_;
   std::string material_;
   int selected_ = 0;
@@ -185,11 +197,16 @@ RawMesh read_with_osg(const std::filesystem::path& file, const std::string& subm
                                                       : result.message());
   }
   RawMesh mesh;
-  TriangleCollector collector(mesh, submesh);
-  if (lower_extension(file) == "dae" && node->asGroup() != nullptr) {
-    node->asGroup()->traverse(collector);  // the root is the plugin's own and turns <up_axis> to z
-  } else {
-    node->accept(collector);
+  for (const Below below : {Below::own, Below::subtree}) {
+    TriangleCollector collector(mesh, submesh, below);
+    if (lower_extension(file) == "dae" && node->asGroup() != nullptr) {
+      node->asGroup()->traverse(collector);  // the root is the plugin's own and turns <up_axis> to z
+    } else {
+      node->accept(collector);
+    }
+    if (!mesh.parts.empty()) {
+      break;
+    }
   }
   return mesh;
 }

@@ -16,7 +16,7 @@ namespace sonard::render {
 inline constexpr std::string_view how_to_skip =
     "; correct it, or go on without it by `world: {missing: skip}`";
 
-/// A file that a world names is not there.
+/// A file that a world names is not there, or has nothing of what the world wants of it.
 struct MissingFile : WorldError {
   using WorldError::WorldError;
 };

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // COLLADA files as Gazebo reads them: the unit is applied, up_axis is not, each named node is a submesh.
 // Files are written here by the rules of COLLADA 1.4.1; boxes, areas and volumes are worked out by hand.
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/common.hpp>
 
 #include "renderer/scene/mesh_file.hpp"
+#include "renderer/scene/mesh_readers.hpp"
 #include "tests/unit/renderer/scene/scene_files.hpp"
 
 namespace sonard::render {
@@ -280,6 +287,32 @@ TEST_F(Collada, HasASubmeshForEachNamedNode) {
   expect_box(load(boat(), "lid"), {20, 0, 0}, {21, 2, 3});
   expect_box(load(boat(), "handle"), {25, 0, 0}, {26, 2, 3});
   expect_box(load(boat(), "mast"), {0, 30, 0}, {1, 32, 3});
+}
+
+/// The box of what OpenSceneGraph, the second reader, finds: lowest and highest corner.
+std::pair<glm::dvec3, glm::dvec3> box_by_osg(const std::filesystem::path& file, const std::string& submesh) {
+  glm::dvec3 low(1e9), high(-1e9);
+  std::vector<std::string> warnings;
+  const std::vector<MeshReader> readers = mesh_readers(file);
+  for (const RawPart& part : read_mesh({&readers.at(1), 1}, {file, submesh, {}}, warnings).parts) {
+    for (const glm::dvec3& position : part.positions) {
+      low = glm::min(low, position);
+      high = glm::max(high, position);
+    }
+  }
+  return {low, high};
+}
+
+TEST_F(Collada, HasTheSameSubmeshesInTheSecondReader) {
+  load(boat());  // writes it
+  using Box = std::pair<glm::dvec3, glm::dvec3>;
+  const std::filesystem::path file = folder_.path() / "mesh.dae";
+  EXPECT_EQ(box_by_osg(file, ""), Box({0, 0, 0}, {26, 42, 3}));
+  EXPECT_EQ(box_by_osg(file, "hull"), Box({0, 0, 0}, {1, 2, 3}))
+      << "a node without a name has its id for one, so the hull's part is a submesh, too";
+  EXPECT_EQ(box_by_osg(file, "lid"), Box({20, 0, 0}, {21, 2, 3}));
+  EXPECT_EQ(box_by_osg(file, "mast"), Box({0, 30, 0}, {1, 32, 3}));
+  EXPECT_EQ(box_by_osg(file, "rig"), Box({0, 30, 0}, {1, 42, 3}));
 }
 
 TEST_F(Collada, FindsASubmeshByOtherNamesToo) {

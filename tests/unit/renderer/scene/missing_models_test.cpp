@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What has no echo does not stop a world, and what is missing takes only itself along.
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -135,6 +136,32 @@ TEST_F(WithoutModels, AFolderWithoutAModelIsNotThere) {
       world.warnings,
       ElementsAre(testing::ContainsRegex("include 'model://buoy': there is no file .*models/buoy/model.sdf"),
                   HasSubstr("include 'models/buoy': there is no file ")));
+}
+
+TEST_F(WithoutModels, AMeshOfNothingTakesItsShapeAlong) {
+  folder_.write("empty.stl", "solid empty\nendsolid empty\n");
+  folder_.write("wing.stl",
+                "solid wing\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                "endloop\nendfacet\nendsolid wing\n");
+  const auto with = [](const std::string& mesh) {
+    return post + "<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><mesh>" + mesh +
+           "</mesh></geometry></visual></link></model>";
+  };
+  for (const auto& [mesh, says] :
+       {std::pair<std::string, std::string>("<uri>empty.stl</uri>", "empty.stl: the mesh has no triangles"),
+        {"<uri>wing.stl</uri><submesh><name>tail</name></submesh>",
+         "wing.stl: no submesh 'tail' with triangles; names in the file: wing"}}) {
+    const World world = load(with(mesh));
+    EXPECT_THAT(world.warnings, ElementsAre(AllOf(HasSubstr("shapes are left out: "), HasSubstr(says))));
+    EXPECT_EQ(world.triangle_count(), 12U);
+    try {
+      load(with(mesh), MissingFiles::error);
+      ADD_FAILURE() << "is refused unless told otherwise";
+    } catch (const WorldError& error) {
+      EXPECT_THAT(error.what(),
+                  AllOf(HasSubstr(says), HasSubstr("go on without it by `world: {missing: skip}`")));
+    }
+  }
 }
 
 TEST_F(WithoutModels, AMissingHeightmapTakesItsShapeAlong) {
