@@ -479,7 +479,7 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
     root.choice("world", config.open_water, {{"empty", true}}, "what the sonars see; `empty` is open water");
   }
   if (!is_open_water && !word.empty()) {
-    root.report("world", fmt::format("is {} (expected a mapping such as {{file: world.sdf}}, or empty for "
+    root.report("world", fmt::format("is {} (expected a mapping such as {{file: sea.sdf}}, or empty for "
                                      "open water)",
                                      in_quotes(word)));
   } else if (!is_open_water) {

@@ -284,8 +284,8 @@ class LookAround {
     return neighbour.is_terrain || (sides[1] > 10.0 && sides[0] < 0.5 * sides[1]);
   }
 
-  /// Below the lowest thing there is, where that is wide. Who hears it may be below ice or a ship, but not if
-  /// it turns its back.
+  /// Reports a sonar below the lowest body, if that is wide. If its echo is received, the body may be ice or
+  /// a ship, unless the echo comes from the back of a surface.
   void note_under_ground() {
     const Neighbour* ground = nullptr;
     Crossings overhead;
@@ -300,9 +300,9 @@ class LookAround {
       }
     }
     const bool turns_its_back = overhead.from_behind || (ground != nullptr && ground->is_terrain);
-    const bool hears_it =
+    const bool receives_it =
         sight_.sees_surface.value_or(true) && sight_.echo_over_floor >= least_visible_echo && !turns_its_back;
-    if (ground == nullptr || !findings_.empty() || hears_it ||
+    if (ground == nullptr || !findings_.empty() || receives_it ||
         std::ranges::any_of(neighbours_,
                             [&](const Neighbour& other) { return straight(other, -1.0).count > 0; })) {
       return;

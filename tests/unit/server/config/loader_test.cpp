@@ -546,7 +546,7 @@ TEST_F(Loader, takes_open_water_for_a_world) {
       ElementsAre(HasSubstr("world.file: missing (expected an SDF world; for open water, empty: true)")));
   EXPECT_THAT(
       complaints("world: sea.sdf\n" + rest),
-      ElementsAre("config.yaml:1:8: world: is 'sea.sdf' (expected a mapping such as {file: world.sdf}, or "
+      ElementsAre("config.yaml:1:8: world: is 'sea.sdf' (expected a mapping such as {file: sea.sdf}, or "
                   "empty for open water)"));
 }
 

@@ -202,7 +202,7 @@ TEST(LookAround, SaysThatTheSonarIsUnderTheBed) {
   Sight faint = seeing({7, 3, -24});
   faint.echo_over_floor = 0.01;
   EXPECT_EQ(look(one("bed", box({100, 100, 1})), {}, faint), expected)
-      << "it sees the underside and hears none";
+      << "it sees the underside, and no echo stands out";
 }
 
 TEST(LookAround, BelowAShipOrIceOrABridgeAllIsWell) {
