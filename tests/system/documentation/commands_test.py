@@ -163,7 +163,7 @@ RULES = [
                                                     "cp made/ping_000001.png other/polar-last.png"),
     Run(VIEW + r"compare dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),
     Run(VIEW + r"compare turn.jsonl.*", before=TURNS),
-    Run(CAST + r"(configs/trajectories/docking_demo.csv|FILE|survey.tum .*)", until=POSES_ARRIVE, beside=GEMINI),
+    Run(CAST + r"(configs/trajectories/docking_demo.csv( --loop)?|FILE|survey.tum .*)", until=POSES_ARRIVE, beside=GEMINI),
     Run(CAST + r"dive.csv --tcp --to 10.61.19.200:14601 .*", until="test -s taken", addresses=VEHICLE, before=TAKE_POSES),
     Run(CAST + r"dive.csv --tcp --to 127.0.0.1:14601 .*", before=TAKE_POSES),
     # Scripts
