@@ -40,6 +40,19 @@ double first_echo(Beam beam, double level) {
   return static_cast<double>(beam.size());
 }
 
+/// In lines, from the sonar.
+double centroid(Beam beam) {
+  double moment = 0;
+  for (std::size_t k = 0; k < beam.size(); ++k) {
+    moment += static_cast<double>(k) * static_cast<double>(beam[k]);
+  }
+  return moment / sum(beam);
+}
+
+double strongest_of(Beam beam) {
+  return static_cast<double>(*std::max_element(beam.begin(), beam.end()));
+}
+
 double root_mean(std::span<const double> squares) {
   return std::sqrt(std::accumulate(squares.begin(), squares.end(), 0.0) /
                    static_cast<double>(squares.size()));
@@ -66,7 +79,7 @@ std::optional<ImageError> compare_images(const render::EchoImage& image, const r
   int heard_beams = 0;
   for (int b = 0; b < reference.beams; ++b) {
     const Beam truth = beam_of(reference, b), measured = beam_of(image, b);
-    const double strongest = static_cast<double>(*std::max_element(truth.begin(), truth.end()));
+    const double strongest = strongest_of(truth);
     if (strongest <= 0) {
       continue;
     }
@@ -102,6 +115,22 @@ std::optional<ImageError> compare_images(const render::EchoImage& image, const r
   const auto dropped = static_cast<std::size_t>(trimmed_share * static_cast<double>(squares.size()));
   error.bin_rms_trim = root_mean(std::span(squares).first(squares.size() - dropped));
   return error;
+}
+
+std::vector<BeamError> compare_beams(const render::EchoImage& image, const render::EchoImage& reference) {
+  std::vector<BeamError> errors;
+  for (int b = 0; b < reference.beams; ++b) {
+    const Beam truth = beam_of(reference, b), measured = beam_of(image, b);
+    const double strongest = strongest_of(truth);
+    if (strongest <= 0) {
+      continue;
+    }
+    const double level = loud * strongest;
+    errors.push_back({std::abs(sum(measured) / sum(truth) - 1),
+                      std::abs(centroid(measured) - centroid(truth)),
+                      std::abs(first_echo(measured, level) - first_echo(truth, level))});
+  }
+  return errors;
 }
 
 }  // namespace sonard::bench

@@ -34,4 +34,14 @@ struct ImageError {
 /// @throws std::invalid_argument when they have not.
 std::optional<ImageError> compare_images(const render::EchoImage& image, const render::EchoImage& reference);
 
+/// How far one beam is from the truth.
+struct BeamError {
+  double total = 0;             ///< | sum of the beam / its reference - 1 |
+  double centroid_lines = 0;    ///< distance of the two centroids
+  double first_echo_lines = 0;  ///< ImageError::first_echo_bins of this beam
+};
+
+/// Of each beam that receives anything. Both images have the same size.
+std::vector<BeamError> compare_beams(const render::EchoImage& image, const render::EchoImage& reference);
+
 }  // namespace sonard::bench

@@ -26,34 +26,6 @@ SkipSwitches slice_switches(const RendererOptions& options) {
   return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
 }
 
-SliceAccuracy slice_accuracy(const SonarSettings& settings) {
-  SliceAccuracy accuracy;
-  // The paper's sigmoid makes more of small changes of incidence.
-  accuracy.slices_per_beam = settings.model == Model::paper ? 2 : 1;
-  if (settings.sampling.preset == Sampling::Preset::fast) {
-    accuracy.most_divisions = 25;
-    accuracy.first_in_five = true;
-    accuracy.disagreement = 2.5e-2F;
-    accuracy.shift_lines = 1.0F;
-    accuracy.sagitta_lines = 3e-3F;
-    accuracy.linearity = 0.15F;
-    accuracy.change = 0.05F;
-    accuracy.mapped_lines = 4.0F;
-    accuracy.facet_slopes = 0.5F;
-    accuracy.facet_lines = 0.03F;
-  } else if (settings.sampling.preset == Sampling::Preset::reference) {
-    accuracy.slices_per_beam = 9;
-    accuracy.disagreement = 1e-4F;
-    accuracy.shift_lines = 0.02F;
-    accuracy.sagitta_lines = 5e-5F;
-    accuracy.linearity = 0.005F;
-    accuracy.change = 0.001F;
-    accuracy.facet_slopes = 0.03F;
-    accuracy.facet_lines = 0.001F;
-  }
-  return accuracy;
-}
-
 }  // namespace
 
 CpuEngine::CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options)
@@ -117,7 +89,7 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
   const SonarSettings& settings = request.settings;
   const auto cells = slices_.sample(request.T_world_sonar, settings.aperture, settings.range,
                                     settings.range.sampled_range_m(), surface_model(settings, skip_),
-                                    slice_accuracy(settings));
+                                    slice_accuracy(settings.sampling.preset, settings.model));
   statistics.visibility_s += watch.lap();
   statistics.skipped += slices_.skipped();
   BinningResult bins = bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,

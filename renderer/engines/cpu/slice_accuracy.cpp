@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/engines/cpu/slice_accuracy.hpp"
+
+namespace sonard::render {
+
+SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
+  SliceAccuracy accuracy;
+  // The paper's sigmoid makes more of small changes of incidence.
+  accuracy.slices_per_beam = model == Model::paper ? 2 : 1;
+  if (preset == Sampling::Preset::fast) {
+    accuracy.most_divisions = 25;
+    accuracy.first_in_five = true;
+    accuracy.disagreement = 2.5e-2F;
+    accuracy.shift_lines = 1.0F;
+    accuracy.sagitta_lines = 3e-3F;
+    accuracy.linearity = 0.15F;
+    accuracy.change = 0.05F;
+    accuracy.mapped_lines = 4.0F;
+    accuracy.facet_slopes = 0.5F;
+    accuracy.facet_lines = 0.03F;
+  } else if (preset == Sampling::Preset::reference) {
+    accuracy.slices_per_beam = 9;
+    accuracy.disagreement = 1e-4F;
+    accuracy.shift_lines = 0.02F;
+    accuracy.sagitta_lines = 5e-5F;
+    accuracy.linearity = 0.005F;
+    accuracy.change = 0.001F;
+    accuracy.facet_slopes = 0.03F;
+    accuracy.facet_lines = 0.001F;
+  }
+  return accuracy;
+}
+
+}  // namespace sonard::render
