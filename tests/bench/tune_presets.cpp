@@ -184,6 +184,7 @@ std::vector<Candidate> candidates(int drawn, unsigned seed) {
 
 ordered_json parameters(const SliceAccuracy& set) {
   return {{"most_divisions", set.most_divisions},
+          {"most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes},
           {"first_in_five", set.first_in_five},
           {"disagreement", set.disagreement},
           {"shift_lines", set.shift_lines},
@@ -199,6 +200,7 @@ SliceAccuracy accuracy_of(const nlohmann::json& row) {
   SliceAccuracy set;
   const auto read = [&](const char* key, auto& value) { row.at(key).get_to(value); };
   read("most_divisions", set.most_divisions);
+  read("most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes);
   read("first_in_five", set.first_in_five);
   read("disagreement", set.disagreement);
   read("shift_lines", set.shift_lines);

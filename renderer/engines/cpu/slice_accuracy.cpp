@@ -8,10 +8,10 @@ SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
   // The paper's sigmoid makes more of small changes of incidence.
   accuracy.slices_per_beam = model == Model::paper ? 2 : 1;
   if (preset == Sampling::Preset::fast) {
-    accuracy.most_divisions = 25;
-    accuracy.first_in_five = true;
+    accuracy.most_divisions = 5;
+    accuracy.most_divisions_of_lone_echoes = 25;
     accuracy.disagreement = 2.5e-2F;
-    accuracy.shift_lines = 1.0F;
+    accuracy.shift_lines = 0.9F;
     accuracy.sagitta_lines = 3e-3F;
     accuracy.linearity = 0.15F;
     accuracy.change = 0.05F;

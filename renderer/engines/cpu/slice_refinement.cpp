@@ -20,6 +20,7 @@ constexpr float three_helps_by = 9.0F;    // the error falls with the width, and
 constexpr float curves_per_edge = 10.0F;  // what a sagitta displaces stays nearby, what an edge hides is gone
 constexpr float ends_per_edge = 1.0F;  // where the range ends, the smear of a slice is right in first order
 constexpr std::size_t borders_per_job = 32;
+constexpr float lone_share = 0.6F;  // of what a beam receives, in disagreement
 constexpr float least_ensonified = 0.5F / side_probes;
 
 /// Compares neighbours. Ranges are secant / w: compared without dividing, and without those out of range in
@@ -214,18 +215,21 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
     SliceCell& cell = *cells_[order_[i]];
     cell.fresh = false;
     const float width = setting.share_of_beam(cell);
-    if (width * static_cast<float>(setting.accuracy.most_divisions) < 1.5F) {
-      continue;
-    }
     const SliceBorder port = i > 0 ? cells_[order_[i - 1]]->to_starboard : SliceBorder{};
     const SliceBorder starboard = cell.to_starboard;
     const auto beam = static_cast<std::size_t>(cell.beam);
+    const float mismatch = std::max(port.range_mismatch, starboard.range_mismatch);
+    const float curvature = std::max(port.curvature, starboard.curvature);
+    const bool lone = std::max(mismatch, curvature) > lone_share * ensonified[beam];
+    const int most_divisions =
+        lone ? setting.accuracy.most_divisions_of_lone_echoes : setting.accuracy.most_divisions;
+    if (width * static_cast<float>(most_divisions) < 1.5F) {
+      continue;
+    }
     const float most = setting.accuracy.disagreement * ensonified[beam] / width;
     const float most_mismatch = most / std::sqrt(in_error[beam]);
-    const float mismatch = std::max(port.range_mismatch, starboard.range_mismatch);
     const bool shifted =
         std::max(port.shift_lines, starboard.shift_lines) * width > setting.accuracy.shift_lines;
-    const float curvature = std::max(port.curvature, starboard.curvature);
     const float ending =
         cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.ensonified, least_ensonified);
     if (cell.misses_something || mismatch > most_mismatch || shifted) {

@@ -15,9 +15,9 @@ namespace sonard::test {
 /// Largest errors that a preset may make (docs/physics.md 6). "Bins" are range lines.
 struct AccuracyLimits {
   double bin_rms;           ///< pooled over all bins above 1e-2 of their beam's maximum
-  double beam_total;        ///< relative, worst beam
-  double first_echo_bins;   ///< worst beam
-  double centroid_bins;     ///< of the echo in range, worst beam
+  double beam_total;        ///< relative, of 99 % of the beams
+  double first_echo_bins;   ///< of 99 % of the beams
+  double centroid_bins;     ///< of the echo in range, of 99 % of the beams
   double bearing_beams;     ///< of the strongest beam
   double bearing_centroid;  ///< of the echo across beams, beams
   double hole_fraction;     ///< of the same bins as bin_rms
@@ -27,7 +27,8 @@ struct AccuracyLimits {
 
 AccuracyLimits targets_of(render::Sampling::Preset preset);
 
-/// An image against its truth: what of AccuracyLimits can be told of any image.
+/// An image against its truth: what of AccuracyLimits can be told of any image. 99 % of the beams keep the
+/// errors of beams.
 struct ImageAccuracy {
   double bin_rms = 0, beam_total = 0, first_echo_bins = 0, centroid_bins = 0, hole_fraction = 0;
 };
