@@ -21,7 +21,7 @@ struct SliceAccuracy {
   /// Slices are divided until their range mismatch is at most this share of the elevations at which the beam
   /// receives anything: (share of elevations at which neighbours disagree) * (width / beam width), summed
   /// over the beam as independent errors are.
-  float disagreement = 3.2e-3F;
+  float disagreement = 2e-3F;
   /// Slices are divided too while the elevations at which they disagree might move the centroid of the beam's
   /// echo by more than this: a few elevations may hold much of an echo.
   float shift_lines = 0.2F;
