@@ -191,6 +191,8 @@ struct WebConfig {
   AllowList allow;
   std::string token;                 ///< lets whoever knows it change state; empty: only this machine may
   std::vector<std::string> origins;  ///< other sites whose pages may connect, "https://example.org"
+  int max_viewers = 128;             ///< WebSockets at a time; 1 to 1000
+  int max_viewers_per_peer = 64;     ///< of them with one address; 1 to 1000
 };
 
 struct DaemonConfig {

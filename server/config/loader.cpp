@@ -465,6 +465,13 @@ void read_web(YamlSection& section, WebConfig& web) {
   constexpr TextForm origins{"an origin such as https://example.org", "origins", R"("type": "string")"};
   section.parsed_list("origins", web.origins, &any_text, origins,
                       "other sites whose pages may connect from a browser; the page's own always may");
+  section.integer(
+      "max_viewers", web.max_viewers, 1, 1000,
+      "WebSockets at a time; further ones are refused with status 503. Monitors always get a place");
+  section.integer(
+      "max_viewers_per_peer", web.max_viewers_per_peer, 1, 1000,
+      "WebSockets of one address at a time. A tab of the page has one. Programs behind one gateway "
+      "or proxy, such as Docker's, share its address");
 }
 
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config) {

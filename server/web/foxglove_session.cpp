@@ -83,8 +83,9 @@ std::uint32_t id_of(const json& value) {
 
 }  // namespace
 
-FoxgloveSession::FoxgloveSession(Site& site, boost::beast::tcp_stream stream)
-    : WebSocket(site, std::move(stream), std::string(protocol), most_request_bytes), timer_(executor()) {}
+FoxgloveSession::FoxgloveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer)
+    : WebSocket(site, std::move(stream), peer, std::string(protocol), most_request_bytes),
+      timer_(executor()) {}
 
 void FoxgloveSession::close() {
   timer_.cancel();
@@ -176,7 +177,7 @@ void FoxgloveSession::every_second() {
       site().with_status_text(
           [weak = weak<FoxgloveSession>()](const std::shared_ptr<const std::string>& text) {
             if (const auto self = weak.lock()) {
-              self->send_on({0, Kind::status}, *text);
+              self->send_on({0, Kind::status}, text);
             }
           });
     }
@@ -196,15 +197,19 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
     return;  // before the channels were made known
   }
   if (subscriptions_.contains({head, Kind::transform}) && ping->T_world_mount && has_room()) {
-    send_on({head, Kind::transform},
-            text_of(transform_json(*ping->T_world_mount, heads_[head], foxglove_time(ping->time))));
+    send_on({head, Kind::transform}, std::make_shared<const std::string>(text_of(transform_json(
+                                         *ping->T_world_mount, heads_[head], foxglove_time(ping->time)))));
   }
-  if (!subscriptions_.contains({head, Kind::image}) || !has_room()) {
-    return;
+  if (subscriptions_.contains({head, Kind::image}) && has_room()) {
+    show_picture(ping->head, site().picture_of(ping->head, heads_[head]));
   }
-  const std::shared_ptr<const std::string> picture = site().picture_of(ping->head, heads_[head]);
-  if (picture && std::exchange(shown_[head], picture) != picture) {
-    send_on({head, Kind::image}, *picture);
+}
+
+void FoxgloveSession::show_picture(int head, const Text& picture) {
+  const auto place = static_cast<std::size_t>(head);
+  if (picture && subscriptions_.contains({place, Kind::image}) && has_room() &&
+      std::exchange(shown_[place], picture) != picture) {
+    send_on({place, Kind::image}, picture);
   }
 }
 
@@ -217,16 +222,15 @@ void FoxgloveSession::show_last(std::size_t head) {
 }
 
 /// Message data: the opcode 1, the subscription, the time, and the message.
-void FoxgloveSession::send_on(const Channel& channel, std::string_view json_text) {
+void FoxgloveSession::send_on(const Channel& channel, Text json_text) {
   const auto subscription = subscriptions_.find(channel);
   if (subscription == subscriptions_.end()) {
     return;
   }
-  std::string bytes(1, '\1');
-  append_number(bytes, subscription->second);
-  append_number(bytes, static_cast<std::uint64_t>((site().now() + unix_time_offset()).count()));
-  bytes += json_text;
-  send({std::make_shared<const std::string>(std::move(bytes)), true});
+  std::string head(1, '\1');
+  append_number(head, subscription->second);
+  append_number(head, static_cast<std::uint64_t>((site().now() + unix_time_offset()).count()));
+  send({std::move(head), std::move(json_text), true});
 }
 
 }  // namespace sonard::server

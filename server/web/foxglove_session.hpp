@@ -24,9 +24,10 @@ class FoxgloveSession final : public WebSocket {
  public:
   static constexpr std::string_view protocol = "foxglove.websocket.v1";
 
-  FoxgloveSession(Site& site, boost::beast::tcp_stream stream);
+  FoxgloveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer);
 
   void show(const std::shared_ptr<const ShownPing>& ping) override;
+  void show_picture(int head, const Text& picture) override;
   void close() override;
 
  private:
@@ -43,13 +44,13 @@ class FoxgloveSession final : public WebSocket {
   void advertise(const DaemonStatus& status);
   void every_second();
   void show_last(std::size_t head);
-  void send_on(const Channel& channel, std::string_view json_text);
+  void send_on(const Channel& channel, Text json_text);
   void complain(const std::string& what);
 
-  std::map<std::uint32_t, Channel> channels_;                        ///< by id
-  std::map<Channel, std::uint32_t> subscriptions_;                   ///< ids that the other side chose
-  std::vector<std::string> heads_;                                   ///< their names
-  std::map<std::size_t, std::shared_ptr<const std::string>> shown_;  ///< by head, the picture that went last
+  std::map<std::uint32_t, Channel> channels_;       ///< by id
+  std::map<Channel, std::uint32_t> subscriptions_;  ///< ids that the other side chose
+  std::vector<std::string> heads_;                  ///< their names
+  std::map<std::size_t, Text> shown_;               ///< by head, the picture that went last
   boost::asio::steady_timer timer_;
 };
 

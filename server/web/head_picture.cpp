@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/web/head_picture.hpp"
 
+#include <utility>
+
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 
@@ -20,27 +22,37 @@ std::string base64(const std::string& bytes) {
 
 }  // namespace
 
-std::shared_ptr<const std::string> HeadPicture::newest(const Pings& pings, const std::string& head,
-                                                       TimePoint now, std::chrono::nanoseconds interval) {
-  const std::shared_ptr<const ShownPing>& ping = pings.back();
-  if (drawn_ && (drawn_ == ping || now - drawn_at_ < interval)) {
-    return text_;
+bool HeadPicture::begin(const std::shared_ptr<const ShownPing>& newest, TimePoint now,
+                        std::chrono::nanoseconds interval) {
+  if (under_way_ || (begun_ && (begun_ == newest || now - begun_at_ < interval))) {
+    return false;
   }
+  begun_ = newest;
+  begun_at_ = now;
+  under_way_ = true;
+  return true;
+}
+
+Text HeadPicture::draw(const Pings& pings, const std::string& head) {
+  const std::shared_ptr<const ShownPing>& ping = pings.back();
   if (ping->record.settings.beams == 1) {
     for (const std::shared_ptr<const ShownPing>& line : pings) {
       picture_.keep(line->record);
     }
   }
-  drawn_ = ping;
-  drawn_at_ = now;
-  text_ = nullptr;
-  if (const cv::Mat drawn = picture_.draw(ping->record); !drawn.empty()) {
-    text_ = std::make_shared<const std::string>(text_of({{"timestamp", foxglove_time(ping->time)},
-                                                         {"frame_id", head},
-                                                         {"data", base64(picture::png_file(drawn, 1))},
-                                                         {"format", "png"}}));
+  const cv::Mat drawn = picture_.draw(ping->record);
+  if (drawn.empty()) {
+    return nullptr;
   }
-  return text_;
+  return std::make_shared<const std::string>(text_of({{"timestamp", foxglove_time(ping->time)},
+                                                      {"frame_id", head},
+                                                      {"data", base64(picture::png_file(drawn, 1))},
+                                                      {"format", "png"}}));
+}
+
+void HeadPicture::drawn(Text picture) {
+  under_way_ = false;
+  text_ = std::move(picture);
 }
 
 }  // namespace sonard::server

@@ -11,20 +11,27 @@
 
 namespace sonard::server {
 
-/// Belongs to the thread of the page.
+/// Belongs to the thread of the page, except draw().
 class HeadPicture {
  public:
-  /// The newest picture as text of a foxglove.CompressedImage; null if there is none yet. Draws only if there
-  /// is a newer ping and the last picture is older than `interval`: viewers who ask meanwhile share it.
+  /// Whether the caller must draw() and then call drawn(): there is a newer ping, the last drawing began at
+  /// least `interval` ago, and none is under way.
+  bool begin(const std::shared_ptr<const ShownPing>& newest, TimePoint now,
+             std::chrono::nanoseconds interval);
+  /// The picture as text of a foxglove.CompressedImage; null if there is none yet. Drawing thread.
   /// @param pings of the head, the newest last; not empty
-  std::shared_ptr<const std::string> newest(const Pings& pings, const std::string& head, TimePoint now,
-                                            std::chrono::nanoseconds interval);
+  Text draw(const Pings& pings, const std::string& head);
+  /// @param picture null: there is none
+  void drawn(Text picture);
+  /// The newest picture that is drawn; null: none.
+  const Text& text() const { return text_; }
 
  private:
-  PingPicture picture_;
-  std::shared_ptr<const ShownPing> drawn_;  ///< the ping of text_
-  TimePoint drawn_at_{};
-  std::shared_ptr<const std::string> text_;
+  PingPicture picture_;                     ///< belongs to draw()
+  std::shared_ptr<const ShownPing> begun_;  ///< the ping of the last drawing
+  TimePoint begun_at_{};
+  bool under_way_ = false;
+  Text text_;
 };
 
 }  // namespace sonard::server

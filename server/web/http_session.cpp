@@ -39,8 +39,28 @@ HttpSession::HttpSession(Site& site, boost::asio::ip::tcp::socket socket, const 
     : site_(site), stream_(std::move(socket)), peer_(peer) {}
 
 HttpSession::~HttpSession() {
-  if (counted_) {
-    site_.close_connection();
+  leave();
+}
+
+void HttpSession::start() {
+  place_ = site_.connections().enter(peer_.address, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) {
+      self->displace();
+    }
+  });
+  read();
+}
+
+/// Another connection got the place of this one.
+void HttpSession::displace() {
+  place_.reset();
+  stream_.close();
+  site_.log_refusal(peer_, "too many connections; the one that was silent longest is closed");
+}
+
+void HttpSession::leave() {
+  if (place_) {
+    site_.connections().leave(*std::exchange(place_, std::nullopt));
   }
 }
 
@@ -59,6 +79,10 @@ void HttpSession::on_read(beast::error_code error) {
     refuse(error);
     return;
   }
+  if (!place_) {
+    return;  // displaced while this handler waited for its turn
+  }
+  site_.connections().used(*place_);
   HttpRequest request = parser_->release();
   if (beast::websocket::is_upgrade(request) && !site_.refusal(request)) {
     if (offers(request, FoxgloveSession::protocol)) {
@@ -113,9 +137,14 @@ void HttpSession::drain() {
 
 template <class Session>
 void HttpSession::upgrade(HttpRequest request) {
+  if (const std::string why = site_.connections().add_viewer(peer_.address); !why.empty()) {
+    site_.log_refusal(peer_, why);
+    send(error_response(request, http::status::service_unavailable, why));
+    return;
+  }
+  leave();
   stream_.expires_never();
-  counted_ = false;
-  const auto session = std::make_shared<Session>(site_, std::move(stream_));
+  const auto session = std::make_shared<Session>(site_, std::move(stream_), peer_);
   site_.add(session);
   session->start(std::move(request));
 }

@@ -15,16 +15,15 @@
 namespace sonard::server {
 
 /// Belongs to the thread of the page. It lives as long as one of its operations is under way; `site` outlives
-/// it, and counts it as long as it is there.
+/// it.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  /// The site has counted the connection.
   HttpSession(Site& site, boost::asio::ip::tcp::socket socket, const Endpoint& peer);
   ~HttpSession();
   HttpSession(const HttpSession&) = delete;
   HttpSession& operator=(const HttpSession&) = delete;
 
-  void start() { read(); }
+  void start();
 
  private:
   using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
@@ -37,11 +36,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void refuse(boost::beast::error_code why);
   void drain();
   void close();
+  void displace();
+  void leave();
 
   Site& site_;
   boost::beast::tcp_stream stream_;
   Endpoint peer_;
-  bool counted_ = true;
+  std::optional<Connections::Place> place_;
   bool refused_ = false;
   std::size_t drained_bytes_ = 0;
   boost::beast::flat_buffer buffer_;

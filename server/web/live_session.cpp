@@ -19,8 +19,8 @@ constexpr std::chrono::milliseconds status_interval{500};
 
 }  // namespace
 
-LiveSession::LiveSession(Site& site, boost::beast::tcp_stream stream)
-    : WebSocket(site, std::move(stream), "", most_message_bytes), status_timer_(executor()) {}
+LiveSession::LiveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer)
+    : WebSocket(site, std::move(stream), peer, "", most_message_bytes), status_timer_(executor()) {}
 
 void LiveSession::close() {
   status_timer_.cancel();
@@ -81,11 +81,12 @@ void LiveSession::answer(Wanted& wanted) {
   wanted.asked = false;
   wanted.answered = site().now();
   const Pings pings = std::exchange(wanted.pings, {});
-  if (pings.back()->record.settings.beams == 1) {
-    send({std::make_shared<const std::string>(live_frame(pings, wanted.max_rows, site().now())), true});
-  } else {
-    send({site().frame_of(pings.back(), wanted.max_rows), true});
-  }
+  promise();
+  site().with_frame(pings, wanted.max_rows, [weak = weak<LiveSession>()](const Text& frame) {
+    if (const auto self = weak.lock()) {
+      self->send_promised({"", frame, true});
+    }
+  });
 }
 
 void LiveSession::send_status() {

@@ -18,7 +18,7 @@ namespace sonard::server {
 /// is hidden or slow asks for nothing, and costs nothing. docs/page.md lists the messages.
 class LiveSession final : public WebSocket {
  public:
-  LiveSession(Site& site, boost::beast::tcp_stream stream);
+  LiveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer);
 
   void show(const std::shared_ptr<const ShownPing>& ping) override;
   void close() override;

@@ -2,11 +2,12 @@
 #include "server/web/site.hpp"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "server/web/access.hpp"
 #include "server/web/assets.hpp"
@@ -81,8 +82,12 @@ void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping) {
   pings.push_back(ping);
 }
 
-Site::Site(WebConfig config, WebSources sources)
-    : config_(std::move(config)), sources_(std::move(sources)), started_(clock_.now()) {}
+Site::Site(WebConfig config, WebSources sources, Draw draw)
+    : config_(std::move(config)),
+      sources_(std::move(sources)),
+      draw_(std::move(draw)),
+      started_(clock_.now()),
+      connections_(config_.max_viewers, config_.max_viewers_per_peer) {}
 
 Site::~Site() = default;
 
@@ -129,8 +134,8 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer, std::functio
       const bool ready = answer["ready"].get<bool>();
       send(json_response(request, ready ? http::status::ok : http::status::service_unavailable, answer));
     });
-  } else if (auto world = world_answer(request, path)) {
-    send(std::move(*world));
+  } else if (answer_world(request, path, send)) {
+    return;
   } else if (const Asset* asset = find_asset(path == "/" ? "/index.html" : path)) {
     send(response(request, http::status::ok, asset->type, std::string(asset->bytes)));
   } else {
@@ -138,26 +143,31 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer, std::functio
   }
 }
 
-std::optional<HttpResponse> Site::world_answer(const HttpRequest& request, std::string_view path) {
-  const auto made_once = [](std::optional<std::string>& kept, auto make) {
-    if (!kept) {
-      kept = make();
-    }
-    return *kept;
-  };
+bool Site::answer_world(const HttpRequest& request, std::string_view path,
+                        const std::function<void(HttpResponse)>& send) {
+  std::function<std::string()> make;
+  const render::World& world = sources_.world;
   if (path == "/api/world") {
-    return response(request, http::status::ok, "application/json",
-                    made_once(world_json_, [this] { return text_of(world_json(sources_.world)); }));
+    make = [&world] { return text_of(world_json(world)); };
+  } else if (path == "/api/world/top.png") {
+    make = [&world] { return world_png(world, ViewFrom::above); };
+  } else if (path == "/api/world/side.png") {
+    make = [&world] { return world_png(world, ViewFrom::south); };
+  } else {
+    return false;
   }
-  if (path == "/api/world/top.png") {
-    return response(request, http::status::ok, "image/png",
-                    made_once(world_above_, [this] { return world_png(sources_.world, ViewFrom::above); }));
+  std::shared_ptr<SharedText>& kept = world_[std::string(path)];
+  if (!kept) {
+    kept = std::make_shared<SharedText>();
   }
-  if (path == "/api/world/side.png") {
-    return response(request, http::status::ok, "image/png",
-                    made_once(world_south_, [this] { return world_png(sources_.world, ViewFrom::south); }));
-  }
-  return std::nullopt;
+  kept->get(
+      draw_, [make] { return std::make_shared<const std::string>(make()); },
+      [request, send, type = path.ends_with(".png") ? "image/png" : "application/json"](const Text& made) {
+        send(made ? response(request, http::status::ok, type, *made)
+                  : error_response(request, http::status::internal_server_error,
+                                   "This view of the world cannot be drawn; the log says why."));
+      });
+  return true;
 }
 
 HttpResponse Site::change_recording(const HttpRequest& request, const Endpoint& peer) {
@@ -209,12 +219,10 @@ void Site::with_status_text(std::function<void(std::shared_ptr<const std::string
 
 // ---- Connections
 
-bool Site::open_connection() {
-  if (connections_ >= most_connections) {
-    return false;
+void Site::log_refusal(const Endpoint& peer, const std::string& why) {
+  if (const std::uint64_t count = refusals_.count(why); std::has_single_bit(count)) {
+    spdlog::warn("page: {} refused: {} ({} so far)", endpoint_text(peer), why, count);
   }
-  ++connections_;
-  return true;
 }
 
 void Site::add(const std::shared_ptr<Viewer>& viewer) {
@@ -232,11 +240,35 @@ void Site::show(const std::shared_ptr<const ShownPing>& ping) {
   }
 }
 
-void Site::close_viewers() {
+void Site::count_waiting(std::ptrdiff_t bytes) {
+  waiting_bytes_ += static_cast<std::size_t>(bytes);
+  if (bytes > 0 && waiting_bytes_ > most_waiting_bytes) {
+    close_the_slowest();
+  }
+}
+
+void Site::close_the_slowest() {
+  std::shared_ptr<Viewer> slowest;
+  for (const std::weak_ptr<Viewer>& weak : viewers_) {
+    auto viewer = weak.lock();
+    if (viewer && viewer->waits_since() && (!slowest || viewer->waits_since() < slowest->waits_since())) {
+      slowest = std::move(viewer);
+    }
+  }
+  if (slowest) {
+    slowest->close();
+  }
+}
+
+void Site::close() {
   for (const std::weak_ptr<Viewer>& weak : std::exchange(viewers_, {})) {
     if (const auto viewer = weak.lock()) {
       viewer->close();
     }
+  }
+  waiting_.clear();
+  for (const auto& [path, text] : world_) {
+    text->close();
   }
 }
 
@@ -250,33 +282,52 @@ std::chrono::milliseconds Site::interval() const {
   return std::max(least_interval, interval_of_each * static_cast<int>(viewers_.size()));
 }
 
-std::shared_ptr<const std::string> Site::picture_of(int head, const std::string& name) {
+Text Site::picture_of(int head, const std::string& name) {
   const Pings& pings = last_pings(head);
   if (pings.empty()) {
     return nullptr;
   }
-  std::unique_ptr<HeadPicture>& picture = pictures_[head];
+  std::shared_ptr<HeadPicture>& picture = pictures_[head];
   if (!picture) {
-    picture = std::make_unique<HeadPicture>();
+    picture = std::make_shared<HeadPicture>();
   }
-  return picture->newest(pings, name, now(), 2 * interval());
+  if (picture->begin(pings.back(), now(), 2 * interval())) {
+    draw_([picture, pings, name] { return picture->draw(pings, name); },
+          [this, picture, head](const Text& drawn) {
+            picture->drawn(drawn);
+            for (const std::weak_ptr<Viewer>& weak : viewers_) {
+              if (const auto viewer = weak.lock()) {
+                viewer->show_picture(head, drawn);
+              }
+            }
+          });
+  }
+  return picture->text();
 }
 
-std::shared_ptr<const std::string> Site::frame_of(const std::shared_ptr<const ShownPing>& ping,
-                                                  int max_rows) {
+void Site::with_frame(const Pings& pings, int max_rows, std::function<void(Text)> take) {
+  const auto make = [this, pings, max_rows] {
+    return std::make_shared<const std::string>(live_frame(pings, max_rows, now()));
+  };
+  const std::shared_ptr<const ShownPing>& ping = pings.back();
+  if (ping->record.settings.beams == 1) {
+    draw_(make, std::move(take));
+    return;
+  }
   // A frame says how old its ping is, so it does not serve for long.
   std::erase_if(frames_, [this](const Frame& frame) { return now() - frame.made > status_age; });
   const auto known = std::ranges::find_if(
       frames_, [&](const Frame& frame) { return frame.ping == ping && frame.max_rows == max_rows; });
   if (known != frames_.end()) {
-    return known->bytes;
+    known->bytes->get(draw_, make, std::move(take));
+    return;
   }
-  auto bytes = std::make_shared<const std::string>(live_frame(std::array{ping}, max_rows, now()));
   if (frames_.size() == most_frames) {
     frames_.erase(frames_.begin());
   }
-  frames_.push_back({ping, max_rows, now(), bytes});
-  return bytes;
+  frames_.push_back({ping, max_rows, now(), std::make_shared<SharedText>()});
+  const std::shared_ptr<SharedText> frame = frames_.back().bytes;
+  frame->get(draw_, make, std::move(take));
 }
 
 }  // namespace sonard::server

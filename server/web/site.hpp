@@ -19,6 +19,9 @@
 #include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 #include "server/devices/ping_viewer.hpp"
+#include "server/program_log/reasons.hpp"
+#include "server/web/connections.hpp"
+#include "server/web/shared_text.hpp"
 #include "server/web/status.hpp"
 
 namespace sonard::server {
@@ -49,6 +52,10 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   virtual void show(const std::shared_ptr<const ShownPing>& ping) = 0;
+  /// A picture of a head was drawn that somebody asked for by Site::picture_of().
+  virtual void show_picture(int /*head*/, const Text& /*picture*/) {}
+  /// Since when the message waits that is being sent; nullopt: none waits.
+  virtual std::optional<TimePoint> waits_since() const = 0;
   virtual void close() = 0;
 };
 
@@ -62,7 +69,7 @@ HttpResponse error_response(const HttpRequest& request, boost::beast::http::stat
 /// Belongs to the thread of the page.
 class Site {
  public:
-  Site(WebConfig config, WebSources sources);
+  Site(WebConfig config, WebSources sources, Draw draw);
   ~Site();
   Site(const Site&) = delete;
   Site& operator=(const Site&) = delete;
@@ -81,41 +88,52 @@ class Site {
 
   // ---- Connections
 
-  /// False: there are too many already.
-  bool open_connection();
-  void close_connection() { --connections_; }
+  Connections& connections() { return connections_; }
+  /// Logs the first, second, fourth, ... time that this happens to a peer.
+  void log_refusal(const Endpoint& peer, const std::string& why);
   void add(const std::shared_ptr<Viewer>& viewer);
   /// Keeps the ping, and gives it to all viewers.
   void show(const std::shared_ptr<const ShownPing>& ping);
   /// What a new viewer of a head begins with: the newest ping, or the last lines of a scanning head, all of
   /// one size, the oldest first. Empty: no ping went out yet.
   const Pings& last_pings(int head) const;
-  void close_viewers();
+  /// Counts bytes that begin to wait for viewers, or (negative) do so no longer. If there are more than
+  /// most_waiting_bytes, the viewer whose message waits longest is closed.
+  void count_waiting(std::ptrdiff_t bytes);
+  /// Closes all viewers, and forgets all who wait for an answer.
+  void close();
 
   /// Between two pings of one head to one viewer: the more there are, the longer.
   std::chrono::milliseconds interval() const;
-  /// live_frame() of one ping; made once for all viewers who want it in one size.
-  std::shared_ptr<const std::string> frame_of(const std::shared_ptr<const ShownPing>& ping, int max_rows);
-  /// HeadPicture::newest() of a head from which pings have come; drawn once for all viewers.
-  std::shared_ptr<const std::string> picture_of(int head, const std::string& name);
+  /// Hands live_frame() of these pings to a function, at once or later; null: it cannot be made. That of a
+  /// fan is made once for all viewers who want it in one size.
+  void with_frame(const Pings& pings, int max_rows, std::function<void(Text)> take);
+  /// The newest picture of a head for Foxglove; null: none is drawn yet. If it is time for a newer one, it is
+  /// drawn once for all viewers and given to them by Viewer::show_picture().
+  Text picture_of(int head, const std::string& name);
   TimePoint now() const { return clock_.now(); }
 
-  static constexpr int most_connections = 128;
+  static constexpr std::size_t most_waiting_bytes = 64 << 20;
 
  private:
   void took_status(DaemonStatus status);
   std::chrono::duration<double> uptime() const { return now() - started_; }
   HttpResponse change_recording(const HttpRequest& request, const Endpoint& peer);
-  std::optional<HttpResponse> world_answer(const HttpRequest& request, std::string_view path);
+  bool answer_world(const HttpRequest& request, std::string_view path,
+                    const std::function<void(HttpResponse)>& send);
+  void close_the_slowest();
 
   const WebConfig config_;
   const WebSources sources_;
+  const Draw draw_;
   SteadyClock clock_;
   const TimePoint started_;
-  int connections_ = 0;
+  Connections connections_;
+  Reasons refusals_;
+  std::size_t waiting_bytes_ = 0;
   std::vector<std::weak_ptr<Viewer>> viewers_;
   std::map<int, Pings> last_pings_;                       ///< by head
-  std::map<int, std::unique_ptr<HeadPicture>> pictures_;  ///< by head; of those that were asked for
+  std::map<int, std::shared_ptr<HeadPicture>> pictures_;  ///< by head; of those that were asked for
 
   std::optional<DaemonStatus> status_;  ///< the newest
   TimePoint status_at_{};
@@ -125,11 +143,11 @@ class Site {
     std::shared_ptr<const ShownPing> ping;
     int max_rows = 0;
     TimePoint made{};
-    std::shared_ptr<const std::string> bytes;
+    std::shared_ptr<SharedText> bytes;
   };
   std::vector<Frame> frames_;  ///< of the newest pings
 
-  std::optional<std::string> world_json_, world_above_, world_south_;  ///< once they were asked for
+  std::map<std::string, std::shared_ptr<SharedText>, std::less<>> world_;  ///< by path; once asked for
 };
 
 }  // namespace sonard::server

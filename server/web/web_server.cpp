@@ -25,8 +25,10 @@ namespace asio = boost::asio;
 
 namespace {
 
-constexpr int nice_value = 19;
-constexpr int most_pings_waiting = 64;  // where this thread gets no time, pings are not kept for it
+constexpr int page_nice = 10;
+constexpr int drawing_nice = 19;
+constexpr int send_buffer_bytes = 256 << 10;  // of a connection, in the kernel; Linux doubles it
+constexpr int most_pings_waiting = 64;        // where this thread gets no time, pings are not kept for it
 
 }  // namespace
 
@@ -35,15 +37,26 @@ struct WebServer::Impl {
       : config(web), listener(std::make_shared<TcpListener>(io, "page", web.bind, web.allow)) {}
 
   void accept(asio::ip::tcp::socket socket, const Endpoint& peer) {
-    if (site->open_connection()) {
-      std::make_shared<HttpSession>(*site, std::move(socket), peer)->start();
-    } else {
-      listener->refuse(peer, "too many connections");
-    }
+    boost::system::error_code ignored;  // the peer may be gone already
+    socket.set_option(asio::socket_base::send_buffer_size{send_buffer_bytes}, ignored);
+    std::make_shared<HttpSession>(*site, std::move(socket), peer)->start();
   }
 
-  void run() {
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice_value);
+  void draw(std::function<Text()> make, std::function<void(Text)> take) {
+    asio::post(drawing_io, [this, make = std::move(make), take = std::move(take)]() mutable {
+      Text made;
+      try {
+        made = make();
+      } catch (const std::exception& error) {
+        spdlog::error("page: cannot draw: {}", error.what());
+      }
+      make = nullptr;  // what it holds is given back on this thread, before anybody waits for the next one
+      asio::post(io, [take = std::move(take), made = std::move(made)] { take(made); });
+    });
+  }
+
+  static void run(asio::io_context& io, int nice) {
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice);
     for (bool again = true; again;) {
       again = false;
       try {
@@ -61,9 +74,12 @@ struct WebServer::Impl {
   asio::io_context io{1};
   asio::executor_work_guard<asio::io_context::executor_type> work{asio::make_work_guard(io)};
   std::shared_ptr<TcpListener> listener;
+  asio::io_context drawing_io{1};  // after io, whose sockets what it holds may own
+  asio::executor_work_guard<asio::io_context::executor_type> drawing_work{asio::make_work_guard(drawing_io)};
   std::atomic<bool> serving{false};
   std::atomic<int> pings_waiting{0};  // for this thread, which has the lowest priority
   std::thread thread;
+  std::thread drawing_thread;
 };
 
 WebServer::WebServer(const WebConfig& config) : impl_(std::make_unique<Impl>(config)) {
@@ -75,12 +91,16 @@ WebServer::~WebServer() {
 }
 
 void WebServer::start(WebSources sources) {
-  impl_->site.emplace(impl_->config, std::move(sources));
+  impl_->site.emplace(impl_->config, std::move(sources),
+                      [impl = impl_.get()](std::function<Text()> make, std::function<void(Text)> take) {
+                        impl->draw(std::move(make), std::move(take));
+                      });
   impl_->listener->start([impl = impl_.get()](asio::ip::tcp::socket socket, const Endpoint& peer) {
     impl->accept(std::move(socket), peer);
   });
   impl_->serving = true;
-  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+  impl_->thread = std::thread([impl = impl_.get()] { Impl::run(impl->io, page_nice); });
+  impl_->drawing_thread = std::thread([impl = impl_.get()] { Impl::run(impl->drawing_io, drawing_nice); });
 }
 
 void WebServer::stop() {
@@ -88,10 +108,14 @@ void WebServer::stop() {
   if (!impl_->thread.joinable()) {
     return;
   }
-  impl_->io.stop();  // not posted: it would wait until all pictures in the queue are drawn
+  impl_->io.stop();  // not posted: it would wait for all that is queued
+  impl_->drawing_io.stop();
   impl_->thread.join();
+  if (impl_->drawing_thread.joinable()) {
+    impl_->drawing_thread.join();
+  }
   impl_->listener->close();
-  impl_->site->close_viewers();
+  impl_->site->close();
 }
 
 void WebServer::on_page(std::function<void()> task) {

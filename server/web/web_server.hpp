@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in the browser, /metrics and the rest, on a thread of their own.
+// The page in the browser, /metrics and the rest, on threads of their own.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace sonard::server {
 
-/// Its thread has the lowest priority: viewers do not slow down pings. show() is called on the I/O
-/// thread, everything else on main.
+/// One thread has all connections, and answers monitors while the other one draws. Both have low priorities,
+/// so that viewers do not slow down pings. show() is called on the I/O thread, everything else on main.
 class WebServer final : public PingViewer {
  public:
   /// Opens the port. @throws SocketError

@@ -135,8 +135,10 @@ class Fleet(OwnMachine):
         self.addCleanup(pod.kill)
         pod.wait_for_line("sonard ready", 120)
         ports = {port["name"]: port["containerPort"] for port in container["ports"]}
-        for probe in ("readinessProbe", "livenessProbe"):
+        for probe, path in (("readinessProbe", "/ready"), ("livenessProbe", "/health")):
             asked = container[probe]["httpGet"]
+            self.assertEqual(asked["path"], path, "ready to serve is not the same as alive")
+            self.assertGreaterEqual(container[probe]["timeoutSeconds"], 5, "the default of 1 s is short for a busy node")
             self.wait_until_well(f"http://127.0.0.2:{ports[asked['port']]}{asked['path']}")
         view = subprocess.run([PROGRAMS / "sonarview", "--pings", "3", "--range", "10"], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertIn("summary pings_complete=3 pings_incomplete=0", view.stdout)

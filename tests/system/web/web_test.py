@@ -304,6 +304,103 @@ class Web(OwnMachine):
         client.terminate(PATIENCE_S)
         self.assertRegex(client.output(), r"summary pings_complete=[1-9].* lines_missing=0 ")
 
+    def test_health_beside_128_idle_sockets_and_twenty_viewers(self):
+        """Two peers have all places of viewers, and one of them wants pings and pictures besides."""
+        self.start()
+        self.client(600)
+
+        async def idle(peer):
+            return await websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", local_addr=(peer, 0))
+
+        async def live():
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_size=None) as viewer:
+                while True:
+                    await viewer.send('{"type": "want", "head": 0, "max_rows": 500}')
+                    await viewer.recv()
+
+        async def foxglove():
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}", max_size=None,
+                                          subprotocols=["foxglove.websocket.v1"]) as viewer:
+                await viewer.send('{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 1}]}')
+                while True:
+                    await viewer.recv()
+
+        def health_s():
+            began = time.monotonic()
+            for path in ("/health", "/metrics", "/ready"):
+                self.assertEqual(self.ask("GET", path)[0], 200, path)
+            return time.monotonic() - began
+
+        async def all_of_them():
+            viewers = [asyncio.create_task(viewer()) for viewer in (live, foxglove) for _ in range(10)]
+            await asyncio.sleep(1)
+            kept = [await idle("127.0.0.1") for _ in range(44)] + [await idle("127.0.0.3") for _ in range(64)]
+            for peer in ("127.0.0.1", "127.0.0.3", "127.0.0.4"):
+                with self.assertRaises(websockets.InvalidStatusCode) as refused:
+                    await idle(peer)
+                self.assertEqual(refused.exception.status_code, 503)
+            took = [await asyncio.to_thread(health_s) for _ in range(20)]
+            self.assertFalse([viewer for viewer in viewers if viewer.done()], "a viewer was closed")
+            for viewer in viewers:
+                viewer.cancel()
+            for socket_ in kept:
+                socket_.transport.abort()
+            return took
+
+        took = sorted(asyncio.run(all_of_them()))
+        print(f"/health, /metrics and /ready beside 128 viewers: median {took[10]:.3f} s, most {took[-1]:.3f} s")
+        self.assertLess(took[-1], 5.0, "promised: 0.1 s each, on a machine that has nothing else to do")
+
+    def test_connections_that_are_silent_make_room_for_a_monitor(self):
+        self.start()
+        kept = [socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S) for _ in range(300)]
+        self.addCleanup(lambda: [connection.close() for connection in kept])
+        self.assertEqual(self.ask("GET", "/health")[0], 200)
+
+    def test_sockets_that_are_silent_or_never_read_are_closed(self):
+        daemon = self.start()
+        self.client(600)
+
+        def shake_hands(path):
+            raw = socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S)
+            self.addCleanup(raw.close)
+            raw.sendall((f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
+            answer = b""
+            while b"\r\n\r\n" not in answer:
+                answer += raw.recv(1)
+            self.assertIn(b" 101 ", answer)
+            return raw
+
+        def ended(raw):
+            try:
+                raw.setblocking(False)
+                while raw.recv(65536):
+                    pass
+                return True
+            except BlockingIOError:
+                return False
+            except OSError:
+                return True
+
+        unread = shake_hands("/api/live")
+        silent = [socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S), shake_hands("/api/live")]
+        self.addCleanup(silent[0].close)
+        text = b'{"type": "want", "head": 0, "max_rows": 4000}'
+        frame = bytes([0x81, 0x80 | len(text)]) + bytes(4) + text  # masked with zeros
+        end = time.monotonic() + 2 * PATIENCE_S
+        while True:  # it only sends, and what it is sent fills all buffers
+            try:
+                unread.sendall(frame)
+            except OSError:
+                break
+            self.assertLess(time.monotonic(), end, "a viewer that never reads is kept")
+            time.sleep(0.02)
+        self.assertRegex(daemon.output(), r"page: 127\.0\.0\.1:\d+ refused: a viewer that reads too slowly")
+        while not all(ended(raw) for raw in silent):
+            self.assertLess(time.monotonic(), end, "a silent connection is kept")
+            time.sleep(0.2)
+
     def test_sigterm_does_not_wait_for_sixty_viewers(self):
         """Of pictures for Foxglove; half of the viewers never read."""
         daemon = self.start()

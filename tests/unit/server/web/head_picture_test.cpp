@@ -23,19 +23,21 @@ std::shared_ptr<const ShownPing> fan(std::uint64_t number) {
 TEST(HeadPicture, IsDrawnOnceForAllViewers) {
   HeadPicture picture;
   const Pings pings{fan(1)};
-  const auto first = picture.newest(pings, "bow", TimePoint{}, milliseconds{100});
-  ASSERT_NE(first, nullptr);
+  ASSERT_TRUE(picture.begin(pings.back(), TimePoint{}, milliseconds{100}));
+  EXPECT_FALSE(picture.begin(fan(2), TimePoint{} + milliseconds{500}, milliseconds{100})) << "one at a time";
+  picture.drawn(picture.draw(pings, "bow"));
+  EXPECT_NE(picture.text(), nullptr);
   for (int viewer = 0; viewer < 60; ++viewer) {
-    EXPECT_EQ(picture.newest(pings, "bow", TimePoint{} + milliseconds{500 * viewer}, milliseconds{100}),
-              first);
+    EXPECT_FALSE(picture.begin(pings.back(), TimePoint{} + milliseconds{500 * viewer}, milliseconds{100}));
   }
 }
 
 TEST(HeadPicture, IsDrawnAgainForANewerPingAfterTheInterval) {
   HeadPicture picture;
-  const auto first = picture.newest({fan(1)}, "bow", TimePoint{}, milliseconds{100});
-  EXPECT_EQ(picture.newest({fan(2)}, "bow", TimePoint{} + milliseconds{99}, milliseconds{100}), first);
-  EXPECT_NE(picture.newest({fan(2)}, "bow", TimePoint{} + milliseconds{100}, milliseconds{100}), first);
+  ASSERT_TRUE(picture.begin(fan(1), TimePoint{}, milliseconds{100}));
+  picture.drawn(nullptr);
+  EXPECT_FALSE(picture.begin(fan(2), TimePoint{} + milliseconds{99}, milliseconds{100}));
+  EXPECT_TRUE(picture.begin(fan(2), TimePoint{} + milliseconds{100}, milliseconds{100}));
 }
 
 }  // namespace
