@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the daemon records, against what its clients received, by readers that share no code with it.
 
-    recording_test.py --programs DIR --npm DIR [--kills N] [--seconds N] [TestCase.test_name ...]
+    recording_test.py --programs DIR --npm DIR --slow-disk FILE [--kills N] [--seconds N] [TestCase.test_name ...]
 """
 
 import argparse
@@ -34,6 +34,7 @@ WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
 PROGRAMS = None
 NPM = None
+SLOW_DISK = None
 KILLS = 50
 SECONDS = 10
 # What a client has for so long is off the recorder's queue, however busy the machine (docs/logs.md 5): a few milliseconds
@@ -172,7 +173,7 @@ class RecordingTest(unittest.TestCase):
 
     # ---- Set-up ----
 
-    def start_daemon(self, recording="", seed=513, noisy=True, more="", play=None):
+    def start_daemon(self, recording="", seed=513, noisy=True, more="", play=None, wrapper=()):
         """Runs the configuration, or plays a log with it."""
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
@@ -181,7 +182,7 @@ class RecordingTest(unittest.TestCase):
                                      more=more.format(head=HEAD_ADDRESS, folder=self.folder.name,
                                                       seed=seed)))
         task = ["run", path] if play is None else ["replay", play, "--config", path]
-        daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), *task)
+        daemon = self.lab.start(self.lab.head, *wrapper, os.path.join(PROGRAMS, "sonard"), *task)
         daemon.wait_for_line("sonard ready", START_S)
         return daemon
 
@@ -723,12 +724,43 @@ class FullDisk(RecordingTest):
         self.assertGreater(len(pings_of(self.packets())), 20)
 
 
+class SlowDisk(RecordingTest):
+    def end_with_a_disk_of(self, bytes_per_s):
+        """@return the daemon, and how long it took to end"""
+        # A sanitizer would else insist that its own library comes first.
+        wrapper = ["env", f"LD_PRELOAD={SLOW_DISK}", f"SLOW_DISK_BYTES_PER_S={bytes_per_s}",
+                   "ASAN_OPTIONS=verify_asan_link_order=0"]
+        daemon = self.start_daemon(", stop_deadline_s: 1", wrapper=wrapper)
+        viewer = self.start_viewer("--continuous", "60", range_m=20)
+        viewer.wait_for_line("^ping ", PATIENCE_S, count=100)
+        code, took_s = daemon.terminate(PATIENCE_S)
+        self.assertEqual(code, 0, daemon.tail())
+        print(f"SIGTERM with a disk of {bytes_per_s} bytes per second and a deadline of 1 s: {took_s:.2f} s")
+        self.assertLess(took_s, 1.0 + 5.0, "promised: the deadline and 1 s, on a machine that has nothing else to do")
+        viewer.kill()
+        return daemon
+
+    def test_the_daemon_ends_after_its_deadline_though_the_disk_is_slow(self):
+        daemon = self.end_with_a_disk_of(500_000)
+        self.assertRegex(daemon.output(), r"the disk is too slow to end within stop_deadline_s=1.*, not on the disk: images=[1-9]")
+        self.assertNotIn("slow disk: exit()", daemon.output(), "the recorder's thread uses what exit() destroys")
+        self.end_daemon(self.start_daemon())
+        self.check_folder()
+
+    def test_a_disk_that_is_fast_enough_gets_everything(self):
+        daemon = self.end_with_a_disk_of(1_000_000_000)
+        self.assertNotIn("not on the disk", daemon.output())
+        self.assertIn("slow disk: exit()", daemon.output(), "it ends as programs do")
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--programs", required=True)
     parser.add_argument("--npm", required=True, help="folder with read_mcap.js and its node_modules")
+    parser.add_argument("--slow-disk", required=True, help="the library of tests/support/slow_disk.cpp")
     parser.add_argument("--kills", type=int, default=KILLS)
     parser.add_argument("--seconds", type=int, default=SECONDS, help="of test_a_run_of_both_heads")
     options, rest = parser.parse_known_args()
     PROGRAMS, NPM, KILLS, SECONDS = os.path.abspath(options.programs), options.npm, options.kills, options.seconds
+    SLOW_DISK = os.path.abspath(options.slow_disk)
     unittest.main(argv=[sys.argv[0], *rest])
