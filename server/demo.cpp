@@ -24,6 +24,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/streambuf.hpp>
 
+#include "protocol/common/printable.hpp"
 #include "server/boost_process.hpp"
 #include "server/daemon/exit_codes.hpp"
 
@@ -93,6 +94,7 @@ class Part {
                              std::istream in(&buffer_);
                              std::string line;
                              std::getline(in, line);
+                             line = printable(line);
                              if (log_.is_open()) {
                                log_ << line << std::endl;
                              }
@@ -227,7 +229,7 @@ class Demo {
       fmt::print("demo: {}\n", filled_in(entry_["report"].as<std::string>(), summary_));
     }
     if (!options_.out.empty()) {
-      fmt::print("demo: pictures and the programs' lines are in {}\n", options_.out.string());
+      fmt::print("demo: pictures and the programs' lines are in {}\n", printable(options_.out.string()));
     }
     return exit_clean;
   }
@@ -277,12 +279,14 @@ int run_demo(const DemoOptions& options) {
   const std::vector<std::string> names = demo_names();
   const std::string& name = options.name.empty() ? names.front() : options.name;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", name, fmt::join(names, ", "));
+    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", printable(name),
+               printable(fmt::format("{}", fmt::join(names, ", "))));
     return exit_config;
   }
   std::error_code error;
   if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
-    fmt::print(stderr, "demo: --out: cannot make the folder {}: {}\n", options.out.string(), error.message());
+    fmt::print(stderr, "demo: --out: cannot make the folder {}: {}\n", printable(options.out.string()),
+               error.message());
     return exit_output;
   }
   const fs::path configurations = folder_of_configurations();

@@ -86,10 +86,10 @@ void print_places(const DaemonConfig& config, const render::World& world, const 
   }
   TrialPings pings(config, world);
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
-    fmt::print("  looks    head '{}': {}\n", config.heads[i].name,
+    fmt::print("  looks    head '{}': {}\n", printable(config.heads[i].name),
                pings.view(i, to_render(sample.T_world_vehicle), moved));
     for (const Finding& finding : pings.ping(i, to_render(sample.T_world_vehicle), moved)) {
-      fmt::print("  wrong?   head '{}': {}\n", config.heads[i].name, printable(finding.text));
+      fmt::print("  wrong?   head '{}': {}\n", printable(config.heads[i].name), printable(finding.text));
     }
   }
 }
@@ -144,7 +144,7 @@ int listen_to_poses(const DaemonConfig& config, const render::World& world,
     }
     inputs.stop();
   } catch (const PoseSourceError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    fmt::print(stderr, "{}\n", printable(error.what()));
     return exit_network;
   }
   return any ? exit_clean : exit_config;

@@ -411,7 +411,8 @@ int main_program(int argc, char** argv) {
       for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
         names.push_back(subcommand->get_name());
       }
-      fmt::print(stderr, "'{}' is no subcommand (expected one of: {})\n", argv[1], fmt::join(names, ", "));
+      fmt::print(stderr, "'{}' is no subcommand (expected one of: {})\n", printable(argv[1]),
+                 fmt::join(names, ", "));
       return exit_usage;
     }
     return app.exit(error) == 0 ? exit_clean : exit_usage;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "protocol/common/printable.hpp"
 #include "renderer/engines/gpu/gl_devices.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/pipeline/self_test.hpp"
@@ -83,12 +84,12 @@ void run_tests(Report& report, const render::RendererOptions& options) {
 void print_devices(const Report& report) {
   fmt::print("OpenGL   {}\n", report.devices.empty() ? "EGL lists no device" : "devices of EGL:");
   for (const std::string& line : describe(report.devices)) {
-    fmt::print("         {}\n", line);
+    fmt::print("         {}\n", printable(line));
   }
   if (report.taken) {
-    fmt::print("         {} is taken: {}\n", report.taken->number, report.taken->reason);
+    fmt::print("         {} is taken: {}\n", report.taken->number, printable(report.taken->reason));
   } else {
-    fmt::print("         none is taken: {}\n", report.device_problem);
+    fmt::print("         none is taken: {}\n", printable(report.device_problem));
   }
   const bool hardware = std::ranges::any_of(report.devices, [](const render::GlDevice& device) {
     return !device.software && !device.description.empty();
@@ -105,14 +106,14 @@ void print_text(const Report& report, bool with_devices) {
   for (const Report::Engine& engine : report.engines) {
     if (engine.problem.empty()) {
       fmt::print("{}      a wall is {:.3f} % RMS from its closed form: {}\n", name_of(engine.kind),
-                 100.0 * engine.result.error, engine.result.engine);
+                 100.0 * engine.result.error, printable(engine.result.engine));
     } else {
-      fmt::print("{}      {}\n", name_of(engine.kind), engine.problem);
+      fmt::print("{}      {}\n", name_of(engine.kind), printable(engine.problem));
     }
   }
   if (report.trial) {
     fmt::print(
-        "auto     {}. {}\n", describe(*report.trial),
+        "auto     {}. {}\n", printable(describe(*report.trial)),
         report.trial->software_gl.empty()
             ? "Timed before that wall, with 256 beams of 1000 range lines; `sonard run` measures in its "
               "own world"

@@ -14,6 +14,7 @@
 
 #include "clients/posecast/caster.hpp"
 #include "clients/posecast/pose_link.hpp"
+#include "protocol/common/printable.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "sonard_build_info.hpp"
 
@@ -132,7 +133,7 @@ int cast(const Arguments& arguments) {
       fmt::print(stderr,
                  "posecast: {}: nobody listens there (poses.udp.bind of sonard's configuration says where it "
                  "does); going on\n",
-                 link->description());
+                 printable(link->description()));
     }
   });
   const auto began = std::chrono::steady_clock::now();
@@ -145,14 +146,14 @@ int cast(const Arguments& arguments) {
 
   if (!arguments.quiet) {
     fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
-               link->description(), counters.refused, counters.skipped);
+               printable(link->description()), counters.refused, counters.skipped);
   }
   // Nothing comes back for the last datagram: there was no time.
   if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {
     failure = link->description() + ": nobody listens there";
   }
   if (!failure.empty()) {
-    fmt::print(stderr, "posecast: {}\n", failure);
+    fmt::print(stderr, "posecast: {}\n", printable(failure));
     return exit_network;
   }
   return exit_done;
@@ -171,10 +172,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_done : exit_usage;
   } catch (const pose::TrajectoryError& error) {
-    fmt::print(stderr, "posecast: {}\n", error.what());
+    fmt::print(stderr, "posecast: {}\n", printable(error.what()));
     return exit_usage;
   } catch (const client::LinkError& error) {
-    fmt::print(stderr, "posecast: {}\n", error.what());
+    fmt::print(stderr, "posecast: {}\n", printable(error.what()));
     return exit_network;
   }
 }

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <boost/system/system_error.hpp>
 
+#include "protocol/common/printable.hpp"
 #include "server/daemon/exit_codes.hpp"
 
 namespace sonard::server {
@@ -77,7 +78,7 @@ bool tells_of_no_thread(const std::exception& error) {
       fmt::print(stderr, "{}\n", *sentence);
       _exit(exit_exhausted);
     }
-    fmt::print(stderr, "defect: {}\n", error.what());
+    fmt::print(stderr, "defect: {}\n", printable(error.what()));
   } catch (...) {
   }
   std::abort();

@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "protocol/common/printable.hpp"
 #include "protocol/glf/deflate.hpp"
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"
@@ -392,7 +393,7 @@ void RenderRun::render_missing() {
   }
   const int found = of_shard - static_cast<int>(missing.size());
   if (found > 0) {
-    fmt::print(stderr, "{}: {}\n", folder_.path().string(), found_text(of_shard, found));
+    fmt::print(stderr, "{}: {}\n", printable(folder_.path().string()), found_text(of_shard, found));
   }
   Progress progress(of_shard, found);
   std::deque<std::future<void>> writing;
@@ -422,7 +423,7 @@ void RenderRun::render_missing() {
   wait_until_fewer_than(1);
   progress.end();
   if (interrupted_by != 0 && progress.state().found + progress.state().made < of_shard) {
-    fmt::print(stderr, "{}: {}\n", folder_.path().string(), interrupted_text(progress.state()));
+    fmt::print(stderr, "{}: {}\n", printable(folder_.path().string()), interrupted_text(progress.state()));
   }
 }
 
@@ -438,7 +439,7 @@ bool RenderRun::all_whole() const {
 }
 
 void RenderRun::finish() {
-  const std::string out = folder_.path().string();
+  const std::string out = printable(folder_.path().string());
   if (!all_whole()) {
     fmt::print("{}: this share is there; of the {} frames others are missing\n", out, frames_->count());
     return;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "protocol/common/printable.hpp"
+
 namespace sonard::client {
 namespace {
 
@@ -74,7 +76,7 @@ void LineViewer::line_speaks() {
   }
   if (spoke_) {
     ++counters_.reconnects;
-    fmt::print(stderr, "sonarview: {} is open again\n", line_text_);
+    fmt::print(stderr, "sonarview: {} is open again\n", printable(line_text_));
   }
   spoke_ = true;
   lost_at_.reset();
@@ -90,10 +92,11 @@ void LineViewer::line_lost(const std::string& why) {
   retry_due_ = at + retry_period;
   if (!lost_at_) {
     lost_at_ = at;
-    fmt::print(stderr, "sonarview: lost {}: {}; trying again for {:.1f} s\n", line_text_, why,
-               seconds(options_.wait));
+    fmt::print(stderr, "sonarview: lost {}: {}; trying again for {:.1f} s\n", printable(line_text_),
+               printable(why), seconds(options_.wait));
   } else if (why != trouble_) {  // said once, not at each try
-    fmt::print(stderr, "sonarview: cannot open {}: {}; trying again\n", line_text_, why);
+    fmt::print(stderr, "sonarview: cannot open {}: {}; trying again\n", printable(line_text_),
+               printable(why));
   }
   trouble_ = why;
   advance();
@@ -174,7 +177,7 @@ void LineViewer::check_limits(TimePoint at) {
 }
 
 void LineViewer::fail(ExitStatus failure, const std::string& message) {
-  fmt::print(stderr, "sonarview: {}\n", message);
+  fmt::print(stderr, "sonarview: {}\n", printable(message));
   failure_ = failure_.value_or(failure);
 }
 

@@ -15,6 +15,7 @@
 
 #include "clients/sonarview/gemini/sockets.hpp"
 #include "protocol/common/endpoint.hpp"
+#include "protocol/common/printable.hpp"
 #include "protocol/gemini/codec.hpp"
 
 namespace sonard::client {
@@ -199,7 +200,7 @@ void WatchedHead::check_limits(TimePoint at) {
 }
 
 void WatchedHead::fail(ExitStatus status, const std::string& why) {
-  fmt::print(stderr, "{}{}\n", says_, why);
+  fmt::print(stderr, "{}{}\n", says_, printable(why));
   failure_ = status;
   end();
 }
@@ -240,7 +241,7 @@ ExitStatus WatchedHead::sum_up(std::uint64_t kernel_drops) {
     counters.images_written = writer_->written();
     counters.images_skipped = writer_->skipped();
     if (!writer_->error().empty()) {
-      fmt::print(stderr, "{}{}\n", says_, writer_->error());
+      fmt::print(stderr, "{}{}\n", says_, printable(writer_->error()));
       failure_ = failure_.value_or(ExitStatus::system);
     }
   }

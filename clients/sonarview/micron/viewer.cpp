@@ -12,6 +12,7 @@
 #include "clients/sonarview/micron/line_file.hpp"
 #include "clients/sonarview/micron/scan_log.hpp"
 #include "clients/sonarview/micron/scan_sweeps.hpp"
+#include "protocol/common/printable.hpp"
 #include "protocol/micron/units.hpp"
 
 namespace sonard::client {
@@ -142,7 +143,7 @@ void Viewer::greet_head() {
   if (options_.run.quiet || host_.statistics().head_commands != 1) {
     return;
   }
-  fmt::print(stderr, "sonarview: head {} at {}", options_.host.node, options_.line.text());
+  fmt::print(stderr, "sonarview: head {} at {}", options_.host.node, printable(options_.line.text()));
   if (head.version) {
     fmt::print(stderr, ", serial number {}, software {:#04x}", head.version->serial_number,
                head.version->software_version);

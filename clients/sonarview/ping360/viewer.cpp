@@ -13,6 +13,7 @@
 
 #include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/ping360/sweeps.hpp"
+#include "protocol/common/printable.hpp"
 #include "protocol/ping360/host.hpp"
 #include "protocol/ping360/units.hpp"
 
@@ -165,9 +166,9 @@ void Viewer::greet_head() {
     return;
   }
   greeted_ = true;
-  fmt::print(stderr, "sonarview: head at {}, device type {}, firmware {}.{}.{}\n", options_.line.text(),
-             information->device_type, information->firmware_major, information->firmware_minor,
-             information->firmware_patch);
+  fmt::print(stderr, "sonarview: head at {}, device type {}, firmware {}.{}.{}\n",
+             printable(options_.line.text()), information->device_type, information->firmware_major,
+             information->firmware_minor, information->firmware_patch);
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {

@@ -6,8 +6,11 @@
 """
 
 import argparse
+import glob
 import json
 import os
+import re
+import shutil
 import socket
 import struct
 import subprocess
@@ -19,8 +22,10 @@ import daemon_test
 from daemon_test import PATIENCE_S, START_S, WORLD, DaemonCase, free_port
 
 SOURCE = daemon_test.SOURCE
-sys.path += [os.path.join(SOURCE, *folder) for folder in (("clients", "python"), ("tests", "support"))]
+sys.path += [os.path.join(SOURCE, *folder) for folder in (("clients", "python"), ("tests", "support"),
+                                                       ("tests", "system", "ping360"))]
 import glf_writer  # noqa: E402
+import messages  # noqa: E402
 from sonard_client.poses import _message_field, _quaternion, encode_pose  # noqa: E402
 
 # A line of its own that clears the screen: by ESC, by the one-character CSI, and behind a mark of direction.
@@ -122,6 +127,18 @@ class HostileText(DaemonCase):
             with self.subTest(command):
                 self.expect_clean(self.run_to_end("sonard", *command, codes=(0, 2)))
 
+    def test_no_program_prints_an_error_or_a_path_as_it_is(self):
+        """What is tested above are the ways that a test can reach; this finds a new one."""
+        argument = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
+        prints = 0
+        for path in glob.glob(os.path.join(SOURCE, "server", "**", "*.cpp"), recursive=True) + \
+                glob.glob(os.path.join(SOURCE, "clients", "**", "*.cpp"), recursive=True):
+            with open(path, encoding="utf-8") as file:
+                for statement in re.findall(r"fmt::print\(.*?\);", file.read(), re.DOTALL):
+                    prints += 1
+                    self.assertNotRegex(re.sub("printable" + argument, "", statement), r"what\(\)|\.string\(\)|argv|\.name\b(?!\()", path)
+        self.assertGreater(prints, 40)
+
     def test_the_page_makes_no_html_of_text(self):
         page = os.path.join(SOURCE, "server", "web", "page")
         scripts = [name for name in os.listdir(page) if name.endswith(".js")]
@@ -129,6 +146,87 @@ class HostileText(DaemonCase):
         for name in scripts:
             with open(os.path.join(page, name), encoding="utf-8") as file:
                 self.assertNotRegex(file.read(), r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(", name)
+
+    def test_what_a_head_refuses_in_the_line_viewer(self):
+        with socket.create_server(("127.0.0.1", 0)) as head:
+            view = subprocess.Popen([os.path.join(daemon_test.PROGRAMS, "sonarview"), "ping360", "--tcp",
+                                     f"127.0.0.1:{head.getsockname()[1]}", "--ping-wait", "10"],
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            self.processes.append(view)
+            self.addCleanup(view.stdout.close)
+            head.settimeout(PATIENCE_S)
+            answers = {messages.PROTOCOL_VERSION: bytes(4), messages.DEVICE_INFORMATION: bytes(6),
+                       messages.DEVICE_DATA: bytes(14)}
+            parser = messages.Parser()
+            with head.accept()[0] as connection:
+                while data := connection.recv(4096):
+                    for asked in parser.feed(data):
+                        if asked.message == messages.GENERAL_REQUEST:
+                            wanted = struct.unpack("<H", asked.payload)[0]
+                            connection.sendall(messages.frame(wanted, answers[wanted], source=2))
+                        elif asked.message == messages.TRANSDUCER:
+                            refusal = struct.pack("<H", asked.message) + HOSTILE.encode()
+                            connection.sendall(messages.frame(messages.NACK, refusal, source=2))
+                output, _ = view.communicate(timeout=PATIENCE_S)
+        self.expect_clean(output)
+
+    def test_names_of_lines_and_trajectories_in_the_clients(self):
+        for device in ("micron", "ping360"):
+            with self.subTest(device):
+                self.expect_clean(self.run_to_end("sonarview", device, "--tty", self.path(HOSTILE), "--wait", "0.2",
+                                                  codes=range(1, 128)))
+        self.expect_clean(self.run_to_end("posecast", self.path(HOSTILE), codes=range(1, 128)))
+        path = self.path(HOSTILE + ".csv")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(f"t,x,y,z,qx,qy,qz,qw\n{HOSTILE}\n")
+        self.expect_clean(self.run_to_end("posecast", path, codes=range(1, 128)))
+
+    def test_what_render_prints_and_the_names_of_its_files(self):
+        way = self.path("way.csv")
+        with open(way, "w", encoding="ascii") as file:
+            file.write("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n")
+        _, _, configuration = self.configuration()
+        with open(configuration, encoding="utf-8") as file:
+            text = file.read()
+        out = self.path(HOSTILE + "out")
+        for _ in range(2):  # the second run finds what the first has made
+            self.expect_clean(self.run_to_end("sonard", "render", configuration, "--trajectory", way, "--out", out,
+                                              "--still", codes=(0,)))
+        self.assertTrue(os.listdir(out))
+        for name in os.listdir(out):
+            self.assertRegex(name, r"^[A-Za-z0-9_.-]+$")
+        with open(configuration, "w", encoding="utf-8") as file:
+            file.write(text.replace("engine: cpu", f"engine: cpu\n{AS_YAML}: 1"))
+        self.expect_clean(self.run_to_end("sonard", "render", configuration, "--trajectory", way, "--out", out, codes=(2,)))
+
+    def test_what_the_demo_passes_on(self):
+        """Beside programs that print what they like; the demo takes its programs from its own folder."""
+        programs = self.path("a/b/bin")
+        os.makedirs(programs)
+        os.symlink(os.path.join(SOURCE, "configs"), self.path("configs"))
+        demo = os.path.join(programs, "the_demo")
+        shutil.copy(os.path.join(daemon_test.PROGRAMS, "sonard"), demo)
+        line = HOSTILE.replace("\n", "")
+        for name, last in (("sonard", "sonard ready"), ("posecast", ""), ("sonarview", f"summary rate_hz={line}")):
+            path = os.path.join(programs, name)
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(f"#!/bin/sh\ncat <<'END'\n{line}\n{last}\nEND\n" + ("" if name == "sonarview" else "exec sleep 60\n"))
+            os.chmod(path, 0o755)
+        for arguments, codes in ((["--out", self.path(HOSTILE)], (0,)), ([HOSTILE], (2, 64))):
+            done = subprocess.run([demo, "demo", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  timeout=START_S, check=False)
+            self.assertIn(done.returncode, codes, done.stdout)
+            self.expect_clean(done.stdout)
+
+    def test_the_name_of_a_gpu_in_the_selftest(self):
+        os.environ["force_gl_renderer"] = HOSTILE  # Mesa's own switch for the name of its renderer
+        try:
+            output = self.run_to_end("sonard", "selftest", codes=(0,))
+        finally:
+            del os.environ["force_gl_renderer"]
+        if b"Mesa" not in output:
+            self.skipTest("no OpenGL of Mesa here")
+        self.expect_clean(output)
 
     def test_what_a_head_says_in_sonarview(self):
         with socket.create_server(("127.0.0.1", 0)) as head:
