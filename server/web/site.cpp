@@ -106,7 +106,8 @@ std::optional<std::string> Site::refusal(const HttpRequest& request) const {
   return std::nullopt;
 }
 
-void Site::answer(const HttpRequest& request, const Endpoint& peer, std::function<void(HttpResponse)> send) {
+void Site::answer(const HttpRequest& request, const Endpoint& peer,
+                  const std::function<void(HttpResponse)>& send) {
   const std::string_view path = path_of(request);
   if (const auto why = refusal(request)) {
     send(error_response(request, http::status::forbidden, *why));

@@ -78,7 +78,8 @@ class Site {
   const WebSources& sources() const { return sources_; }
 
   /// Answers a request that is no WebSocket's.
-  void answer(const HttpRequest& request, const Endpoint& peer, std::function<void(HttpResponse)> send);
+  void answer(const HttpRequest& request, const Endpoint& peer,
+              const std::function<void(HttpResponse)>& send);
   /// Why a request is not served, whatever it asks for; nullopt: it is.
   std::optional<std::string> refusal(const HttpRequest& request) const;
   /// The status, no older than a quarter of a second.
