@@ -725,30 +725,31 @@ class FullDisk(RecordingTest):
 
 
 class SlowDisk(RecordingTest):
-    def end_with_a_disk_of(self, bytes_per_s):
+    def end_with_a_disk_of(self, bytes_per_s, deadline_s):
         """@return the daemon, and how long it took to end"""
         # A sanitizer would else insist that its own library comes first.
         wrapper = ["env", f"LD_PRELOAD={SLOW_DISK}", f"SLOW_DISK_BYTES_PER_S={bytes_per_s}",
                    "ASAN_OPTIONS=verify_asan_link_order=0"]
-        daemon = self.start_daemon(", stop_deadline_s: 1", wrapper=wrapper)
+        daemon = self.start_daemon(f", stop_deadline_s: {deadline_s}", wrapper=wrapper)
         viewer = self.start_viewer("--continuous", "60", range_m=20)
         viewer.wait_for_line("^ping ", PATIENCE_S, count=100)
         code, took_s = daemon.terminate(PATIENCE_S)
         self.assertEqual(code, 0, daemon.tail())
-        print(f"SIGTERM with a disk of {bytes_per_s} bytes per second and a deadline of 1 s: {took_s:.2f} s")
-        self.assertLess(took_s, 1.0 + 5.0, "promised: the deadline and 1 s, on a machine that has nothing else to do")
+        print(f"SIGTERM with a disk of {bytes_per_s} bytes per second and a deadline of {deadline_s} s: {took_s:.2f} s")
+        self.assertLess(took_s, deadline_s + 5.0, "promised: the deadline and 1 s, on a machine that has nothing else to do")
         viewer.kill()
         return daemon
 
     def test_the_daemon_ends_after_its_deadline_though_the_disk_is_slow(self):
-        daemon = self.end_with_a_disk_of(500_000)
+        daemon = self.end_with_a_disk_of(500_000, deadline_s=1)
         self.assertRegex(daemon.output(), r"the disk is too slow to end within stop_deadline_s=1.*, not on the disk: images=[1-9]")
         self.assertNotIn("slow disk: exit()", daemon.output(), "the recorder's thread uses what exit() destroys")
         self.end_daemon(self.start_daemon())
         self.check_folder()
 
     def test_a_disk_that_is_fast_enough_gets_everything(self):
-        daemon = self.end_with_a_disk_of(1_000_000_000)
+        # A busy machine may be seconds behind with compressing.
+        daemon = self.end_with_a_disk_of(1_000_000_000, deadline_s=PATIENCE_S)
         self.assertNotIn("not on the disk", daemon.output())
         self.assertIn("slow disk: exit()", daemon.output(), "it ends as programs do")
 
