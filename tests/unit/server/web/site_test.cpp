@@ -30,7 +30,7 @@ struct Page {
   }
 
   std::vector<std::function<void()>> drawings;
-  const render::World world;
+  const render::World world{};
   Site site{WebConfig{},
             WebSources{.ask_status = [](const std::function<void(DaemonStatus)>& take) { take({}); },
                        .turn_recording = nullptr,
