@@ -114,7 +114,7 @@ until grep -q :3909 /proc/net/tcp; do sleep 0.1; done"""  # 14601 in hexadecimal
 RULES = [
     NotRun(r"\./run|\./test", "installs packages and builds; tests/package and ./test itself do"),
     NotRun(r"(cmake|ctest) .*", "configures, builds or installs"),
-    NotRun(r"build/release/bin/\w+_(test|bench|pictures)( .*)?", "a test or measurement by itself, of minutes"),
+    NotRun(r"build/release/bin/(\w+_(test|bench|pictures)|tune_presets)( .*)?", "a test or measurement by itself, of minutes"),
     NotRun(r"tests/bench/.*", "draws the measurements of the command before"),
     NotRun(r"(docker|kubectl|apt) .*|docker/.*", "needs another host, a cluster or packages; tests/containers and tests/cluster run them"),
     NotRun(r"sudo .*", "needs sudo, and interfaces with these names; tests/system/gemini/link_test.py makes the same network"),
