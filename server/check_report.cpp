@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 namespace sonard::server {
 namespace {

@@ -24,7 +24,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/streambuf.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "server/boost_process.hpp"
 #include "server/daemon/exit_codes.hpp"
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <boost/asio/io_context.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/diagnosis/pose_stream.hpp"

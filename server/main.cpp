@@ -15,7 +15,8 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/command_line/help_formatter.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/renderer_options.hpp"
@@ -28,7 +29,6 @@
 #include "server/daemon/process.hpp"
 #include "server/demo.hpp"
 #include "server/devices/kinds/kinds.hpp"
-#include "server/help_formatter.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
 #include "server/logs/log_file.hpp"

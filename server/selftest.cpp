@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "renderer/engines/gpu/gl_devices.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/pipeline/self_test.hpp"

@@ -10,11 +10,13 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <string>
 
 #include "clients/posecast/caster.hpp"
 #include "clients/posecast/pose_link.hpp"
-#include "protocol/common/printable.hpp"
+#include "common/command_line/help_formatter.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "sonard_build_info.hpp"
 
@@ -163,6 +165,7 @@ int cast(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Plays a trajectory file as a pose stream for sonard"};
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("posecast " SONARD_BUILD_INFO));
   Arguments arguments;
   declare(app, arguments);

@@ -2,11 +2,13 @@
 #include "clients/sonarview/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "clients/sonarview/compare/subcommand.hpp"
+#include "common/command_line/help_formatter.hpp"
 #include "sonard_build_info.hpp"
 
 namespace sonard::client {
@@ -27,6 +29,7 @@ void refuse_options_before(const CLI::App& app, const std::string& subcommand) {
 std::optional<Run> parse_command_line(int argc, const char* const* argv, ExitStatus& status) {
   const std::span<const Subcommand> devices = device_subcommands();
   CLI::App app{devices.front().summary, "sonarview"};
+  app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("sonarview " SONARD_BUILD_INFO));
   app.footer(devices.front().footer);
   const Prepare usual = devices.front().declare(app);

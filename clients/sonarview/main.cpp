@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "clients/sonarview/command_line.hpp"
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 int main(int argc, char** argv) {
   using namespace sonard::client;

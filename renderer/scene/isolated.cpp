@@ -20,7 +20,7 @@
 
 #include <fmt/format.h>
 
-#include "renderer/scene/printable.hpp"
+#include "common/text/printable.hpp"
 
 namespace sonard::render {
 namespace {

@@ -5,8 +5,8 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 
+#include "common/text/printable.hpp"
 #include "renderer/scene/blob.hpp"
-#include "renderer/scene/printable.hpp"
 
 namespace sonard::render {
 namespace {

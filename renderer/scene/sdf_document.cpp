@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "common/text/printable.hpp"
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/local_file.hpp"
-#include "renderer/scene/printable.hpp"
 #include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/world.hpp"
 

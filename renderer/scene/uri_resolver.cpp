@@ -10,9 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "common/text/printable.hpp"
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/local_file.hpp"
-#include "renderer/scene/printable.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {

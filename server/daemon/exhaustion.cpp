@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <boost/system/system_error.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "server/daemon/exit_codes.hpp"
 
 namespace sonard::server {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "server/devices/kinds/kinds.hpp"
 #include "server/info/info_text.hpp"
 #include "server/info/thumbnails.hpp"

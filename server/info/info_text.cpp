@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 #include "server/devices/kinds/kinds.hpp"
 

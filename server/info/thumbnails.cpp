@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text/printable.hpp"
 #include "protocol/common/linear_samples.hpp"
-#include "protocol/common/printable.hpp"
 #include "renderer/picture/fan_image.hpp"
 #include "renderer/picture/picture_file.hpp"
 #include "server/info/recorded_sweeps.hpp"

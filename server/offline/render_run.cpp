@@ -21,7 +21,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/glf/deflate.hpp"
 #include "protocol/glf/log_time.hpp"
 #include "protocol/pose/trajectory.hpp"

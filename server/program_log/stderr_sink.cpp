@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 namespace sonard::server {
 

@@ -21,14 +21,15 @@ DEVICES = devices()
 # Which folders the files of a folder may include. The longest prefix that fits decides; a folder may include itself and
 # what lies in it.
 MAY_INCLUDE = {
+    "common": (),
     "protocol": ("protocol",),
     # Devices do not know each other; a log format of their users they may know.
     **{f"protocol/{device}": ("protocol/common", "protocol/glf") for device in DEVICES},
-    "renderer": ("renderer",),
+    "renderer": ("renderer", "common/text"),
     # Clients draw pictures, too, and nothing else of the renderer.
     "renderer/picture": (),
-    "server": ("server", "renderer", "protocol"),
-    "clients": ("clients", "protocol", "renderer/picture"),
+    "server": ("server", "renderer", "protocol", "common"),
+    "clients": ("clients", "protocol", "renderer/picture", "common"),
 }
 
 # Libraries of others that a folder keeps out of.

@@ -118,6 +118,8 @@ class Layers(LintTest):
               ("protocol/pose/a.cpp", '"renderer/pose.hpp"'),
               ("protocol/gemini/a.cpp", '"protocol/micron/frame.hpp"'),
               ("renderer/a.hpp", '"protocol/common/result.hpp"'),
+              ("renderer/a.hpp", '"common/command_line/help_formatter.hpp"'),
+              ("common/text/a.hpp", '"protocol/common/result.hpp"'),
               ("renderer/picture/a.hpp", '"renderer/pose.hpp"'),
               ("clients/x/a.hpp", '"server/clock.hpp"'),
               ("clients/x/a.hpp", '"renderer/pose.hpp"'),
@@ -130,6 +132,8 @@ class Layers(LintTest):
     def test_arrows_down_pass(self):
         self.assertEqual(self.refused([("protocol/gemini/a.cpp", '"protocol/common/result.hpp"'),
                                        ("server/a/a.cpp", '"renderer/pose.hpp"'),
+                                       ("renderer/a.cpp", '"common/text/printable.hpp"'),
+                                       ("clients/x/b.cpp", '"common/text/printable.hpp"'),
                                        ("server/b/a.cpp", '"protocol/micron/frame.hpp"'),
                                        ("clients/x/a.cpp", '"renderer/picture/fan_image.hpp"'),
                                        ("renderer/a.cpp", "<osg/Node>"),

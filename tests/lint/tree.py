@@ -7,7 +7,7 @@ import subprocess
 
 CPP = (".cpp", ".hpp", ".h")
 # Rooms of the product, in which includes have rules.
-ROOMS = ("protocol", "renderer", "server", "clients")
+ROOMS = ("common", "protocol", "renderer", "server", "clients")
 # What others wrote, or what programs wrote: bytes, pictures, worlds, locked versions.
 DATA = ("tests/data/*", "tests/fuzz/corpus/*", "configs/worlds/meshes/*", "*/package-lock.json", "LICENSE")
 

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 namespace sonard::client {
 namespace {

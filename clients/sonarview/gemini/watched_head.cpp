@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "clients/sonarview/gemini/sockets.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/common/endpoint.hpp"
-#include "protocol/common/printable.hpp"
 #include "protocol/gemini/codec.hpp"
 
 namespace sonard::client {

@@ -12,7 +12,7 @@
 #include "clients/sonarview/micron/line_file.hpp"
 #include "clients/sonarview/micron/scan_log.hpp"
 #include "clients/sonarview/micron/scan_sweeps.hpp"
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/micron/units.hpp"
 
 namespace sonard::client {

@@ -13,7 +13,7 @@
 #include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/oculus/ping_pictures.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/host.hpp"
 

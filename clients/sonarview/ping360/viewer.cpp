@@ -13,7 +13,7 @@
 
 #include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/ping360/sweeps.hpp"
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 #include "protocol/ping360/host.hpp"
 #include "protocol/ping360/units.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/common/printable.hpp"
+#include "common/text/printable.hpp"
 
 #include <array>
 #include <cstddef>

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace sonard::server {
+namespace sonard {
 
 /// Prints "NUMBER", "0..100" or "{auto,gpu,cpu}" where CLI11 prints its own names of types and validators.
 class HelpFormatter final : public CLI::Formatter {
@@ -17,4 +17,4 @@ class HelpFormatter final : public CLI::Formatter {
 /// @param type what CLI11 calls the values: "FLOAT:FLOAT in [0 - 100]"
 std::string value_text(const std::string& type);
 
-}  // namespace sonard::server
+}  // namespace sonard

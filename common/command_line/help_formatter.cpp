@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/help_formatter.hpp"
+#include "common/command_line/help_formatter.hpp"
 
 #include <regex>
 
 #include <fmt/format.h>
 
-namespace sonard::server {
+namespace sonard {
 
 std::string value_text(const std::string& type) {
   constexpr std::size_t longest_limit = 6;  // 1e+06 and 2^53 say nothing to a reader
@@ -30,8 +30,8 @@ std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
     return "";  // a flag
   }
   std::string text = " " + value_text(option->get_type_name());
-  if (!option->get_default_str().empty()) {
-    text += " [" + option->get_default_str() + "]";
+  if (const std::string& value = option->get_default_str(); !value.empty()) {
+    text += value.starts_with('[') ? " " + value : " [" + value + "]";  // a list has brackets
   }
   if (option->get_expected_min() > 1) {
     text += fmt::format(" x {}", option->get_expected_min());
@@ -39,4 +39,4 @@ std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
   return text + (option->get_required() ? " REQUIRED" : "");
 }
 
-}  // namespace sonard::server
+}  // namespace sonard
