@@ -45,17 +45,15 @@ std::string with_own_prefix(const char* name, const tinyxml2::XMLElement& elemen
   const std::string_view given = name;
   const std::size_t colon = given.find(':');
   if (colon == std::string_view::npos) {
-    return default_namespace && element.Attribute("xmlns", own_namespace) != nullptr
-               ? fmt::format("sonard:{}", given)
-               : std::string(given);
+    const char* const bound = default_namespace ? element.Attribute("xmlns") : nullptr;
+    return bound != nullptr && is_own_namespace(bound) ? fmt::format("sonard:{}", given) : std::string(given);
   }
   const std::string declaration = fmt::format("xmlns:{}", given.substr(0, colon));
   for (const tinyxml2::XMLNode* node = &element; node != nullptr; node = node->Parent()) {
     const auto* const around = node->ToElement();
     const char* const bound = around == nullptr ? nullptr : around->Attribute(declaration.c_str());
     if (bound != nullptr) {
-      return std::string_view(bound) == own_namespace ? fmt::format("sonard:{}", given.substr(colon + 1))
-                                                      : std::string(given);
+      return is_own_namespace(bound) ? fmt::format("sonard:{}", given.substr(colon + 1)) : std::string(given);
     }
   }
   return std::string(given);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/materials.hpp"
 
 namespace sonard::render {
@@ -55,8 +56,11 @@ void check_own_element(const SdfElement& element, WorldProblems& problems) {
     }
     check_attributes(element, {}, problems);  // the height is its text
   } else {
-    complain(fmt::format("unknown element <{}>; there are <{}> and <{}>", element.name, material_element,
-                         water_surface_element));
+    const std::string own = lower_case(element.name);
+    complain(own == material_element || own == water_surface_element
+                 ? fmt::format("unknown element <{}>: write <{}>", element.name, own)
+                 : fmt::format("unknown element <{}>; there are <{}> and <{}>", element.name,
+                               material_element, water_surface_element));
   }
   if (parent.child(element.name) != &element) {
     complain(fmt::format("<{}> is given twice in <{}>", element.name, parent.name));
@@ -78,11 +82,16 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
   }
 }
 
-/// Whether "sonar:material" may be meant as ours.
-bool looks_like_ours(std::string_view prefix, std::string_view name, std::string_view element) {
-  constexpr std::array<std::string_view, 2> own_names{"material", "water_surface_z"};
-  return prefix.starts_with("sonar") || prefix.starts_with("Sonar") ||
-         std::ranges::find(own_names, name) != own_names.end() || (element == "sensor" && name == "type");
+/// The name of ours, with its prefix, that a name may be meant for: "sonard:material" for "sonar:Material" or
+/// "x:material"; "sonard:x" for "sonar:x"; empty: it is another program's.
+/// @param element that has the name as an attribute; empty: the name is an element's
+std::string meant_name(std::string_view prefix, std::string_view local, std::string_view element) {
+  const std::string own = "sonard:" + lower_case(local);
+  if (element.empty() ? own == material_element || own == water_surface_element
+                      : own == sonar_attribute && element == "sensor") {
+    return own;
+  }
+  return lower_case(prefix).starts_with("sonar") ? fmt::format("sonard:{}", local) : "";
 }
 
 struct LookAlike {
@@ -99,18 +108,19 @@ void note_look_alike(std::string_view name, const SdfElement& element, bool is_a
   }
   const std::string_view prefix = name.substr(0, colon);
   const std::string_view local = name.substr(colon + 1);
-  if (prefix == "sonard" || prefix == "xml" || prefix == "xmlns" ||
-      !looks_like_ours(prefix, local, is_attribute ? element.name : "")) {
+  const std::string meant = meant_name(prefix, local, is_attribute ? element.name : "");
+  if (prefix == "sonard" || prefix == "xml" || prefix == "xmlns" || meant.empty()) {
     return;
   }
   LookAlike& kind = found[fmt::format("{} {}", is_attribute, name)];
   if (kind.count++ == 0) {
+    const bool prefix_alone = meant.ends_with(fmt::format(":{}", local));
     kind.line = fmt::format(
-        "{}: {} is left out: its prefix is not sonard's; write {}, or declare xmlns:{}=\"{}\" in <sdf>",
-        element.place(),
+        "{}: {} is left out: {} not sonard's; write {}{}", element.place(),
         is_attribute ? fmt::format("attribute {} of <{}>", name, element.name) : fmt::format("<{}>", name),
-        is_attribute ? fmt::format("sonard:{}", local) : fmt::format("<sonard:{}>", local), prefix,
-        own_namespace);
+        prefix_alone ? "its prefix is" : "prefix and name are",
+        is_attribute ? meant : fmt::format("<{}>", meant),
+        prefix_alone ? fmt::format(", or declare xmlns:{}=\"{}\" in <sdf>", prefix, own_namespace) : "");
   }
 }
 

@@ -61,6 +61,10 @@ std::string SdfElement::place() const {
   return fmt::format("{}:{}", file->string(), line);
 }
 
+bool is_own_namespace(std::string_view uri) {
+  return uri == own_namespace || uri == "urn:sonard";
+}
+
 bool is_true(const std::string* attribute) {
   return attribute != nullptr && (strcasecmp(attribute->c_str(), "true") == 0 || *attribute == "1");
 }

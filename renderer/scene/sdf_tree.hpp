@@ -53,6 +53,8 @@ struct SdfElement {
 
 /// The XML namespace of our own elements, whose prefix is "sonard:" in the tree, whatever it is in the file.
 inline constexpr const char* own_namespace = "https://sonard.dev/sdf";
+/// Whether an XML namespace is ours. "urn:sonard" is that of worlds shipped before version 0.2.
+bool is_own_namespace(std::string_view uri);
 
 /// Whether an attribute is "true", in any case, or "1", as libsdformat has it. Null is false.
 bool is_true(const std::string* attribute);

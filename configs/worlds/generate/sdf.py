@@ -4,7 +4,7 @@
 _HEAD = """<?xml version="1.0"?>
 <!-- Made by configs/worlds/generate. {about}
      Frame: x east, y north, z up, metres; the water surface is at z = 0. -->
-<sdf version="1.9" xmlns:sonard="urn:sonard">
+<sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf">
   <world name="{name}">
     <sonard:water_surface_z>0</sonard:water_surface_z>
 """

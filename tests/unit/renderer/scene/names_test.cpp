@@ -186,7 +186,8 @@ TEST(Prefix, IsFreeIfItIsBoundToOurNamespace) {
   for (const auto& [declarations, prefix] :
        {std::pair("xmlns:sonard=\"https://sonard.dev/sdf\"", "sonard:"),
         std::pair("xmlns:sonar=\"https://sonard.dev/sdf\"", "sonar:"),
-        std::pair("xmlns:x='https://sonard.dev/sdf' xmlns:gz='http://gazebosim.org/schema'", "x:")}) {
+        std::pair("xmlns:x='https://sonard.dev/sdf' xmlns:gz='http://gazebosim.org/schema'", "x:"),
+        std::pair("xmlns:sonard=\"urn:sonard\"", "sonard:"), std::pair("xmlns:old=\"urn:sonard\"", "old:")}) {
     const test::TempFolder folder;
     const World world = load_world(folder.write("w.sdf", own(declarations, prefix)), {});
     EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "mud") << prefix;
@@ -223,6 +224,26 @@ TEST(Prefix, IsNamedIfItLooksLikeOurs) {
                                     HasSubstr("w.sdf:2: attribute " + std::string(prefix) +
                                               ":type of <sensor> is left out")));
   }
+}
+
+TEST(Prefix, IsNamedWithTheNameIfTheirLettersAreCapital) {
+  const std::string box = "<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box/></geometry>";
+  const World world =
+      load_text(box + "<Sonard:Material>mud</Sonard:Material><gz:MATERIAL/></visual></link></model>");
+  EXPECT_THAT(world.warnings,
+              testing::UnorderedElementsAre(
+                  HasSubstr("<Sonard:Material> is left out: prefix and name are not sonard's; write "
+                            "<sonard:material>"),
+                  HasSubstr("<gz:MATERIAL> is left out: prefix and name are not sonard's; write "
+                            "<sonard:material>")));
+  for (const std::string& warning : world.warnings) {
+    EXPECT_THAT(warning, testing::Not(HasSubstr("declare"))) << "the name would still be wrong";
+  }
+  const test::TempFolder folder;
+  EXPECT_THAT(
+      complaints(folder.write("w.sdf", in_a_world(box + "<sonard:Material>mud</sonard:Material></visual>"
+                                                        "</link></model>"))),
+      Contains(HasSubstr("unknown element <sonard:Material>: write <sonard:material>")));
 }
 
 TEST(Prefix, OfAnotherProgramIsItsOwnBusiness) {
