@@ -19,6 +19,7 @@ namespace {
 
 constexpr double half_turn_deg = 180.0;
 constexpr double told_deg = 0.5;  // less is rounded away
+constexpr double least_up = 0.5;  // of a bed's normal: slopes of up to 60 degrees
 
 /// "forward", "30 degrees to port"
 std::string bearing_words(double to_port_deg) {
@@ -184,11 +185,13 @@ std::optional<BedView> view_of_bed(const render::World& world, const std::vector
   }
   BedView view{bed->name, below_m, {}, {}};
   const BeamPlane plane(T_world_sonar, settings);
+  const glm::dvec3 up = glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1);
   const render::Pose T_sonar_body = render::inverse(T_world_sonar) * pose_of(*bed);
   each_triangle(*bed, [&](const std::array<glm::dvec3, 3>& corners) {
     const auto from_sonar = seen(corners, T_sonar_body);
     const glm::dvec3 normal = glm::cross(from_sonar[1] - from_sonar[0], from_sonar[2] - from_sonar[0]);
-    if (glm::dot(normal, from_sonar[0]) < 0) {  // not the underside of a slab
+    // Not the underside of a slab, nor a wall that is one body with the floor.
+    if (glm::dot(normal, from_sonar[0]) < 0 && glm::dot(normal, up) > least_up * glm::length(normal)) {
       plane.look_at(from_sonar, view, settings.range.max_range_m());
     }
   });

@@ -21,7 +21,8 @@ struct BedView {
   std::string body;      ///< name of the nearest one below
   double below_m = 0.0;  ///< how far down it is
   /// Slant ranges of the first and the last point that its vertical beam (-3 dB) meets in the plane of the
-  /// acoustic axis; nullopt: none is within the range of the ping. What hides what is not looked at.
+  /// acoustic axis; nullopt: none is within the range of the ping. Surfaces steeper than 60 degrees are
+  /// walls. Occlusion is ignored.
   std::optional<double> nearest_m, farthest_m;
 };
 

@@ -119,6 +119,29 @@ TEST(BedWindow, BelowTheBedNothingIsBelow) {
   EXPECT_FALSE(view_of_bed(level_bed(), {}, "seabed", {{0, 0, -10}, {1, 0, 0, 0}}, settings(50)));
 }
 
+/// A floor at z = -20 with a wall at x = 18 that stands on it to z = 0, one body.
+render::World tank() {
+  render::World world = level_bed();
+  auto mesh = std::make_shared<render::TriangleMesh>(*world.bodies[0].parts[0].mesh);
+  const auto first = static_cast<std::uint32_t>(mesh->positions.size());
+  for (const glm::vec3& corner : {glm::vec3(18, 50, 0), {18, -50, 0}, {18, -50, 20}, {18, 50, 20}}) {
+    mesh->positions.push_back(corner);
+  }
+  for (const std::uint32_t corner : {2U, 1U, 0U, 3U, 2U, 0U}) {  // its front is to -x
+    mesh->indices.push_back(first + corner);
+  }
+  world.bodies[0].parts[0].mesh = mesh;
+  return world;
+}
+
+TEST(BedWindow, IsNotAWallOfTheSameBody) {
+  // 15 m to the wall; the floor, 10 m down, begins at 10 / sin 10 = 57.6 m.
+  const render::Pose level{{3, -7, -10}, mount(0, 0, 0).orientation};
+  EXPECT_FALSE(view_of_bed(tank(), {}, "", level, settings(40))->nearest_m);
+  EXPECT_NEAR(*view_of_bed(tank(), {}, "", level, settings(100))->nearest_m,
+              10.0 / std::sin(glm::radians(10.0)), 1e-3);
+}
+
 TEST(BedWindow, FollowsABodyThatHasMoved) {
   const auto seen = view_of_bed(level_bed(), {{"seabed", {{0, 0, -15}, {1, 0, 0, 0}}}}, "",
                                 {{3, -7, -10}, mount(0, 20, 0).orientation}, settings(100));
