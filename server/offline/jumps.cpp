@@ -49,15 +49,24 @@ bool continues(const Step& before, const Step& step) {
          glm::length(step.turn_radps - before.turn_radps) <= most_turn_acceleration_radps2 * between_s;
 }
 
-void name_first(Jumps& jumps, const pose::TrajectoryPoint& from, const pose::TrajectoryPoint& to,
-                const Step& step) {
-  constexpr double degrees = 57.29577951308232;
-  if (jumps.first.empty()) {
-    jumps.first =
-        fmt::format("from t={:g} to t={:g}: {:.3g} m/s, {:.3g} deg/s",
-                    1e-9 * static_cast<double>(from.time_ns), 1e-9 * static_cast<double>(to.time_ns),
-                    glm::length(step.velocity_mps), glm::length(step.turn_radps) * degrees);
-  }
+constexpr double degrees = 57.29577951308232;
+
+std::string times_text(const pose::TrajectoryPoint& from, const pose::TrajectoryPoint& to) {
+  return fmt::format("from t={:g} to t={:g}: ", 1e-9 * static_cast<double>(from.time_ns),
+                     1e-9 * static_cast<double>(to.time_ns));
+}
+
+std::string speeds_text(const Step& step) {
+  return fmt::format("{:.3g} m/s, {:.3g} deg/s", glm::length(step.velocity_mps),
+                     glm::length(step.turn_radps) * degrees);
+}
+
+/// What changes from one step to the next, a time apart.
+std::string change_text(const Step& before, const Step& step) {
+  return fmt::format("velocity changes by {:.3g} m/s and turn rate by {:.3g} deg/s within {:.3g} s",
+                     glm::length(step.velocity_mps - before.velocity_mps),
+                     glm::length(step.turn_radps - before.turn_radps) * degrees,
+                     (before.seconds + step.seconds) / 2.0);
 }
 
 bool are_many(std::size_t broken, std::size_t steps) {
@@ -76,9 +85,11 @@ bool many_steps_break(const std::vector<pose::TrajectoryPoint>& points, Jumps& j
       continue;
     }
     ++steps;
-    if (step.jump() || (before && !continues(*before, step))) {
-      ++broken;
-      name_first(jumps, points[from], points[to], step);
+    const bool breaks = before && !continues(*before, step);
+    broken += step.jump() || breaks ? 1 : 0;
+    if (jumps.first.empty() && (step.jump() || breaks)) {
+      jumps.first = times_text(points[from], points[to]) +
+                    (step.jump() ? speeds_text(step) : change_text(*before, step));
     }
     before = step;
     from = to;
@@ -95,7 +106,9 @@ Jumps find_jumps(const std::vector<pose::TrajectoryPoint>& points) {
     jumps.steps.push_back(step.jump());
     if (step.jump()) {
       ++jumps.count;
-      name_first(jumps, points[k], points[k + 1], step);
+      if (jumps.first.empty()) {
+        jumps.first = times_text(points[k], points[k + 1]) + speeds_text(step);
+      }
     }
   }
   const bool many_break = many_steps_break(points, jumps);  // it may name the first

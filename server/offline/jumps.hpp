@@ -27,8 +27,9 @@ struct Jumps {
   /// A quarter of the steps or more are jumps, or do not continue the step before them: the poses are
   /// independent of each other. Steps of shortest_compared_step_s or more are looked at.
   bool independent = false;
-  /// The first jump, or step that does not continue the one before: "from t=0 to t=1: 14 m/s, 120 deg/s".
-  /// Empty: there is none.
+  /// The first jump, "from t=0 to t=1: 34 m/s, 120 deg/s", or the first step that does not continue the one
+  /// before, "from t=1 to t=2: velocity changes by 9 m/s and turn rate by 80 deg/s within 1 s". Empty:
+  /// neither.
   std::string first;
 };
 

@@ -84,6 +84,15 @@ TEST(Jumps, ATurnThatIsTooFastIsOne) {
   EXPECT_EQ(find_jumps({point(0, 0, 0, 0), point(1, 0, 21, 0)}).count, 1U);
 }
 
+// The steps are within the limits; what breaks them is how they follow each other.
+TEST(Jumps, AChangeThatIsTooFastIsNamedAsAChange) {
+  const Jumps jumps =
+      find_jumps({point(0, 0, 0, 0), point(1, 4, 0, 0), point(2, 0, 0, 0), point(3, 4, 0, 0)});
+  EXPECT_EQ(jumps.count, 0U);
+  EXPECT_TRUE(jumps.independent);
+  EXPECT_EQ(jumps.first, "from t=1 to t=2: velocity changes by 8 m/s and turn rate by 0 deg/s within 1 s");
+}
+
 // In a tank of 6 m no step is fast, but no step continues the one before it.
 TEST(Jumps, RandomPosesAreIndependent) {
   for (unsigned int seed = 0; seed < 50; ++seed) {
