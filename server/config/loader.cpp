@@ -540,6 +540,22 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
 
 }  // namespace
 
+namespace {
+
+void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds) {
+  if (findings.unknown_keys.empty()) {
+    return;
+  }
+  std::vector<std::vector<KeyReference>> known;
+  known.reserve(kinds.size());
+  for (const HeadKind* const kind : kinds) {
+    known.push_back(describe_config(*kind));
+  }
+  name_sections(findings.problems, findings.unknown_keys, known);
+}
+
+}  // namespace
+
 std::string read_config(const std::filesystem::path& file) {
   return read_file(file);
 }
@@ -558,6 +574,7 @@ LoadedConfig load_config(const std::filesystem::path& file, const std::string& t
     YamlSection root(findings, document, "");
     read_document(root, kinds, loaded.config);
   }
+  name_sections(findings, kinds);
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);
   }

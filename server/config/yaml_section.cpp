@@ -173,6 +173,15 @@ std::string quoted_words(const std::vector<std::string_view>& words, char quote)
   return text;
 }
 
+/// Whether a plain text is `sea.sdf"`: YAML takes a quote that does not begin a value for a part of it.
+bool ends_with_stray_quote(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Tag() != plain_tag || node.Scalar().empty()) {
+    return false;
+  }
+  const char last = node.Scalar().back();
+  return (last == '"' || last == '\'') && std::ranges::count(node.Scalar(), last) == 1;
+}
+
 /// The parser places an empty value at what comes next in the file, which is another key.
 SourcePosition place_of(const YAML::Node& node, const SourcePosition& otherwise) {
   return node.IsNull() && otherwise.line > 0 ? otherwise : position_of(node.Mark());
@@ -211,6 +220,12 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
     }
     entry_of_.emplace(name, entries_.size());
     entries_.push_back({name, name_at, place_of(pair.second, name_at), pair.second});
+    if (ends_with_stray_quote(pair.second)) {
+      problem(entries_.back().value_at, path_of(name),
+              fmt::format(
+                  "{} ends with a quote that none before it opens (expected no quote, or one on each side)",
+                  describe(pair.second)));
+    }
   }
 }
 
@@ -546,6 +561,9 @@ void YamlSection::report_unknown(const Entry& entry) {
   }
   message +=
       names.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(names, ", "));
+  if (meant.empty()) {
+    findings_.unknown_keys.push_back({findings_.problems.size(), entry.name, entry.value.IsScalar()});
+  }
   problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));
 }
 

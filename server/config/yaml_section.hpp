@@ -22,6 +22,7 @@
 
 #include "server/config/config_error.hpp"
 #include "server/config/key_reference.hpp"
+#include "server/config/misplaced_keys.hpp"
 
 namespace sonard::server {
 
@@ -30,6 +31,7 @@ struct YamlFindings {
   std::vector<ConfigProblem> problems;
   std::set<std::string, std::less<>> keys_with_problems;  ///< of these
   std::size_t problems_left_out = 0;                      ///< beyond the most that are worth reading
+  std::vector<UnknownKey> unknown_keys;                   ///< without a similar key in their section
   std::vector<ConfigWarning> warnings;                    ///< each once
   KeyPositions positions;                                 ///< of the value of every key that was read
   bool describing = false;  ///< no file is read: every section is entered, for what it knows (KeyReference)

@@ -200,6 +200,31 @@ TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
               ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
 }
 
+TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
+  EXPECT_THAT(complaints(minimal_config + "    acoustics: {multipath: off}\n"),
+              ElementsAre(StartsWith("config.yaml:11:17: heads[0].acoustics.multipath: unknown key; it is "
+                                     "'acoustics.physical.multipath.level' (expected one of mode,")));
+  EXPECT_THAT(complaints(minimal_config + "    multipath: {level: off}\n"),
+              ElementsAre(StartsWith("config.yaml:11:5: heads[0].multipath: unknown key; it is "
+                                     "'acoustics.physical.multipath' (expected one of type,")));
+  EXPECT_THAT(complaints(minimal_config + "temperature_c: 10\n"),
+              ElementsAre(StartsWith("config.yaml:11:1: temperature_c: unknown key; it is "
+                                     "'water.temperature_c' (expected one of log,")));
+  // A key of several sections is named without one.
+  EXPECT_THAT(complaints(minimal_config + "bind: 127.0.0.1\n"),
+              ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
+}
+
+TEST_F(Loader, names_a_quote_that_nothing_opens) {
+  EXPECT_THAT(
+      complaints(minimal_config + "engine: cpu\"\n"),
+      ElementsAre(StartsWith("config.yaml:11:9: engine: 'cpu\"' ends with a quote that none before it "
+                             "opens")));
+  EXPECT_THAT(complaints(minimal_config + "    name: bow'\n"),
+              ElementsAre(StartsWith("config.yaml:11:11: heads[0].name: 'bow'' ends with a quote")));
+  EXPECT_THAT(complaints(minimal_config + "    name: \"bow's\"\n"), testing::IsEmpty());
+}
+
 TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
   EXPECT_THAT(
       complaints(minimal_config + "gpu_binning: on\n"),
