@@ -8,6 +8,7 @@ The system is a folder made by debootstrap from this machine's mirror, for this 
 process and network namespaces of its own. Needs root, debootstrap, lintian, iproute2, and systemd for its opinion of the unit.
 """
 
+import json
 import os
 import pathlib
 import re
@@ -21,9 +22,18 @@ import unittest
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(REPOSITORY / "tests" / "support"))
 from fresh_system import make_fresh_system  # noqa: E402
+from hardening import missing_protections  # noqa: E402
 
 PACKAGE = None
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
+
+
+def system_calls(name):
+    """Those of a set of systemd ("@system-service"), or the one of a name."""
+    if not name.startswith("@"):
+        return {name}
+    lines = subprocess.run(["systemd-analyze", "syscall-filter", "--no-pager", name], check=True, stdout=subprocess.PIPE, text=True).stdout.split("\n")[1:]
+    return {call for line in lines if line.strip() and not line.strip().startswith("#") for call in system_calls(line.strip())}
 
 
 class System:
@@ -104,6 +114,37 @@ class Package(unittest.TestCase):
         line = subprocess.run(["systemd-analyze", "security", "--offline=true", "--no-pager", unit], stdout=subprocess.PIPE, text=True).stdout
         print(line.strip().splitlines()[-1])
         self.assertRegex(line, "Overall exposure level for .*: [0-2]\\.")
+
+    def test_7_the_unit_allows_each_system_call_of_the_service(self):
+        """Under strace the service loads its world, serves, records and ends; none of its calls is outside of the filter."""
+        self.system.run("apt-get install --yes --no-install-recommends strace")
+        printed = self.system.run(
+            "cd /tmp && sed 's/^heads:/recording: {directory: rec}\\nheads:/' /etc/sonard/sonard.yaml >/etc/sonard/recorded.yaml && "
+            "strace --follow-forks --summary-only --output=/tmp/calls sonard run /etc/sonard/recorded.yaml 2>/tmp/log & "
+            "for try in $(seq 600); do grep -q 'sonard ready' /tmp/log && break; sleep 0.2; done; "
+            "sonarview --pings 3 --range 10; kill $(pidof sonard); wait; rm /etc/sonard/recorded.yaml; cat /tmp/log /tmp/calls", network=False)
+        self.assertIn("summary pings_complete=3", printed)
+        made = set(re.findall(r"^\s*[0-9.]+\s+[0-9.]+\s+\d+\s+\d+\s+(?:\d+\s+)?(\w+)$", printed, re.MULTILINE)) - {"total"}
+        self.assertGreater(len(made), 50)
+        unit = (self.system.root / "usr/lib/systemd/system/sonard.service").read_text()
+        allowed = set()
+        for line in re.findall("^SystemCallFilter=(.*)$", unit, re.MULTILINE):
+            calls = {call for word in line.lstrip("~").split() for call in system_calls(word)}
+            allowed = allowed - calls if line.startswith("~") else allowed | calls
+        # Libraries ask for these and go on without them.
+        self.assertEqual(sorted(made - allowed - {"sched_setaffinity", "mbind", "set_mempolicy"}), [])
+
+    def test_8_programs_are_hardened_and_their_parts_are_listed(self):
+        for name in ("sonard", "sonarview", "posecast"):
+            self.assertEqual(missing_protections(str(self.system.root / "usr/bin" / name)), [], name)
+        bill = json.loads((self.system.root / "usr/share/doc/sonard/sonard.spdx.json").read_text())
+        self.assertEqual(bill["spdxVersion"], "SPDX-2.3")
+        listed = {package["name"]: package["versionInfo"] for package in bill["packages"]}
+        depends = self.system.run("dpkg-query --show --showformat='${Depends}' sonard")
+        libraries = {name.split()[0] for name in depends.split(", ")} - {"python3:any", "libgl1-mesa-dri"}
+        self.assertEqual(sorted(libraries - set(listed)), [])
+        installed = self.system.run("dpkg-query --show --showformat='${Version}' libyaml-cpp0.7 2>/dev/null || true")
+        self.assertEqual(listed.get("libyaml-cpp0.7", ""), installed)
 
     def test_9_purged_it_leaves_nothing(self):
         self.system.run("apt-get purge --yes sonard")
