@@ -69,9 +69,11 @@ double triangle_below(double x) {
   return at < 0 ? 0.5 * (1 + at) * (1 + at) : 1 - 0.5 * (1 - at) * (1 - at);
 }
 
-/// Two unit vectors across a third.
-void make_axes(const glm::dvec3& normal, glm::dvec3& a, glm::dvec3& b) {
-  const glm::dvec3 other = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+/// Two unit vectors across a third, which turn with the sonar: so the paths are the same if world and sonar
+/// are turned together.
+void make_axes(const glm::dquat& R_world_sonar, const glm::dvec3& normal, glm::dvec3& a, glm::dvec3& b) {
+  const glm::dvec3 up = R_world_sonar * glm::dvec3(0, 0, 1);
+  const glm::dvec3 other = std::abs(glm::dot(normal, up)) < 0.9 ? up : R_world_sonar * glm::dvec3(1, 0, 0);
   a = glm::normalize(glm::cross(normal, other));
   b = glm::cross(normal, a);
 }
@@ -124,7 +126,7 @@ class Path {
     const double chance = number();
     const double x = number(), y = number();
     glm::dvec3 a, b;
-    make_axes(hit_.normal, a, b);
+    make_axes(ping_.R_world_sonar, hit_.normal, a, b);
     if (chance < shares.lambert) {
       const double sine = std::sqrt(x);
       direction_ =
