@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors whose elements start on a cache line, as wide vector loads want it.
+// Vectors whose memory starts on a cache line, for wide vector loads.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-/// The smallest number of floats that fills whole cache lines and is at least `count`: the stride that keeps
+/// The smallest number of floats that fills whole cache lines and is at least `count`. As a stride it keeps
 /// every row of a table aligned.
 constexpr int aligned_stride(int count) {
   constexpr int floats = static_cast<int>(cache_line_bytes / sizeof(float));

@@ -5,14 +5,13 @@
 
 namespace sonard::render {
 
-/// Settings that no ping can be made of (range <= 0, no beams, beyond GL limits, NaN pose, ...).
-/// what() names the value.
+/// The settings are invalid for a ping (range <= 0, no beams, beyond GL limits, NaN pose, ...). what() names
+/// the value.
 struct RequestError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// No usable GL, a lost context, a failed self test. The process must not go on serving: it would serve
-/// zeros.
+/// No usable GL, a lost context, or a failed self test. The process must end, because it would serve zeros.
 struct RendererError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

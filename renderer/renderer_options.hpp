@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which engine finds the visible surfaces, on how many threads a ping is made, and what may be skipped.
+// Engine, threads and skip rules of a renderer.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +12,35 @@
 namespace sonard::render {
 
 enum class EngineKind {
-  automatic,  ///< the faster of the two, once choose_engine() has measured them (engine_trial); before, `cpu`
+  automatic,  ///< the faster one, measured by choose_engine() (engine_trial); before that, `cpu`
   gpu,        ///< OpenSceneGraph and OpenGL 4.5 through EGL
   cpu,        ///< azimuth slices on the CPU; never opens EGL
 };
 
-/// The name under the key `engine` of a configuration: "auto", "gpu", "cpu".
+/// The value of the key `engine` in a configuration: "auto", "gpu", "cpu".
 std::string_view name_of(EngineKind engine);
 
-/// What engine `gpu` runs on, and what it may take.
+/// The GPU that engine `gpu` uses, and its limits.
 struct GpuOptions {
-  /// A number in the list of `sonard selftest`, or a part of a name in it, in whatever case; empty: the best.
+  /// An index in the list of `sonard selftest`, or part of a name in it, in any case; empty: the best GPU.
   std::string device;
-  /// Video memory that meshes and normal maps may take, MiB, > 0.
+  /// Limit of video memory for meshes and normal maps, MiB, > 0.
   std::uint64_t memory_mib = 4096;
-  /// Seconds after the loss of the GPU until it is tried again, > 0; 0: it is not.
+  /// Seconds from the loss of the GPU to the next attempt, > 0; 0: no attempt.
   double retry_s = 0.0;
-  /// For tests: the OpenGL context is destroyed in the middle of this image, counted from 1; 0: never.
+  /// For tests: destroys the OpenGL context in the middle of this image, counted from 1; 0: never.
   std::uint64_t lose_context_at_image = 0;
 };
 
 struct RendererOptions {
   EngineKind engine = EngineKind::automatic;
-  unsigned threads = 0;  ///< that share the loops of one ping, the caller included; 0: one per core
+  unsigned threads = 0;  ///< for the loops of one ping, including the caller; 0: one per core
   SkipSwitches skip{};   ///< all rules are on by default
-  /// g / c: how much faster sound gets per metre upwards, over its speed at the sonar. Positive where rays
-  /// sink, their radius of curvature is 1 / this; 0: rays are straight (docs/physics.md 2.12).
+  /// g / c: the increase of sound speed per metre upwards, over the speed at the sonar, 1/m. If positive,
+  /// rays sink. The radius of curvature is 1 / this; 0: rays are straight (docs/physics.md 2.12).
   double ray_curvature_per_m = 0.0;
   GpuOptions gpu{};
-  /// Gets a line for the operator when the GPU is lost, or is back; called by the renderer's thread. May be
+  /// Receives a line for the operator when the GPU is lost or back; called on the renderer's thread. May be
   /// empty.
   std::function<void(const std::string&)> report{};
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that is not worked out, and why the image may do without: named rules that can be switched off
-// and that count what they save (docs/skipping.md).
+// Named rules for work that the renderer leaves out, and why the image allows it. Rules can be switched off,
+// and they count what they save (docs/skipping.md).
 #pragma once
 
 #include <algorithm>
@@ -44,13 +44,13 @@ enum class SkipRule : std::uint8_t {
   terrain_detail,
 };
 
-/// One line of the ledger. What a rule may change at most, in one ping with the rule on against the same ping
-/// with it off, is `bound`.
+/// One line of the ledger. `bound` is the largest difference between a ping with the rule on and the same
+/// ping with the rule off.
 struct SkipRuleEntry {
   SkipRule rule;
-  std::string_view name;  ///< as the key `skip.off` of a configuration spells it
+  std::string_view name;  ///< as in the key `skip.off` of a configuration
   std::string_view criterion;
-  std::string_view counts;  ///< what the counter counts
+  std::string_view counts;  ///< unit of the counter
   double bound;
   std::string_view bound_unit = "of the image's maximum";
 };
@@ -150,14 +150,14 @@ constexpr const SkipRuleEntry& entry_of(SkipRule rule) {
   return skip_rules[static_cast<std::size_t>(rule)];
 }
 
-/// nullopt: no rule has that name.
+/// nullopt if no rule has that name.
 constexpr std::optional<SkipRule> skip_rule_named(std::string_view name) {
   const auto* entry = std::find_if(skip_rules.begin(), skip_rules.end(),
                                    [name](const SkipRuleEntry& rule) { return rule.name == name; });
   return entry == skip_rules.end() ? std::nullopt : std::optional(entry->rule);
 }
 
-/// Which rules apply: all, but for those that were switched off.
+/// The rules that apply; by default all.
 class SkipSwitches {
  public:
   constexpr bool on(SkipRule rule) const { return (off_ >> static_cast<unsigned>(rule) & 1U) == 0; }
@@ -165,7 +165,7 @@ class SkipSwitches {
     off_ |= std::uint64_t{1} << static_cast<unsigned>(rule);
     return *this;
   }
-  /// Nothing is skipped: every image is worked out in full.
+  /// All rules off: every image is computed in full.
   static constexpr SkipSwitches none() {
     SkipSwitches switches;
     switches.off_ = (std::uint64_t{1} << skip_rule_count) - 1;
@@ -179,7 +179,8 @@ class SkipSwitches {
   std::uint64_t off_ = 0;
 };
 
-/// How often each rule skipped something, in SkipRuleEntry::counts. A thread has its own; they are added up.
+/// How often each rule skipped something, in units of SkipRuleEntry::counts. Each thread has its own counts,
+/// which are added up later.
 class SkipCounts {
  public:
   constexpr void add(SkipRule rule, std::uint64_t count = 1) {
@@ -192,7 +193,7 @@ class SkipCounts {
     }
     return *this;
   }
-  /// What was counted since `before`.
+  /// The counts since `before`.
   constexpr SkipCounts operator-(const SkipCounts& before) const {
     SkipCounts since;
     for (std::size_t i = 0; i < skip_rule_count; ++i) {

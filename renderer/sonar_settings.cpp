@@ -12,7 +12,8 @@ namespace sonard::render {
 
 namespace {
 constexpr double followed_beamwidths = 1.25;  // on either side: a little beyond the first null
-// No wider: planes of constant elevation must end clear of the vertical. Wide beams have their null beyond.
+// Upper limit: planes of constant elevation must not end near the vertical. Wide beams have their null
+// beyond.
 constexpr double highest_followed_rad = 80 * std::numbers::pi / 180;
 
 double sinc(double x) {
@@ -51,7 +52,7 @@ double Aperture::pattern_height() const {
 
 namespace {
 
-/// What only a receive array needs.
+/// Checks the values that only a receive array uses.
 void check_array(const Aperture& aperture) {
   constexpr int most_fine_beams = 16;
   constexpr double quarter_turn_rad = std::numbers::pi / 2 + 1e-9;

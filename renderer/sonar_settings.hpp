@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one ping asks of the renderer: aperture, range lines, water, receiver. All angles in radians.
+// Settings of the renderer for one ping: aperture, range lines, water, receiver. All angles in radians.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace sonard::render {
 
-/// Surfaces nearer than this along the axis of their view are not seen.
+/// Nearer surfaces are invisible; distance along the axis of the view.
 inline constexpr float nearest_depth_m = 0.02F;
 
 /// The fan of a sonar in its own frame (docs/frames-and-units.md).
@@ -19,34 +19,33 @@ struct Aperture {
   std::vector<double> beam_edges_rad;
   /// -3 dB full width of the vertical beam, one-way, in (0, pi).
   double vertical_beamwidth_rad = 0.349065850398866;  // 20 degrees
-  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern, `sinc_two_way`:
-  /// its square, for an array that sends and receives with one height (docs/physics.md 2.5); both are
+  /// `top_hat`: weight 1 inside the beamwidth, 0 outside. `sinc`: one-way line-array pattern. `sinc_two_way`:
+  /// its square, for an array that sends and receives with the same height (docs/physics.md 2.5). Both are
   /// rendered to 1.25 beamwidths on either side.
   enum class Elevation { top_hat, sinc, sinc_two_way } elevation = Elevation::top_hat;
-  /// -3 dB width of one receive beam at broadside; sets the correlation of speckle and noise across beams,
-  /// and with Azimuth::array the pattern of the beams.
+  /// -3 dB width of one receive beam at broadside. It sets the correlation of speckle and noise across beams
+  /// and, with Azimuth::array, the pattern of the beams.
   double receive_beamwidth_rad = 0.0174532925199433;  // 1 degree
-  /// Amplitude weights of the receive array's elements (docs/physics.md 2.5); `kaiser` has beta 2.5.
+  /// Amplitude weights of the receive array's elements (docs/physics.md 2.5). `kaiser`: with beta 2.5.
   enum class Taper { uniform, kaiser, hann, hamming } taper = Taper::hamming;
-  /// Mode `physical`, two beams or more. `ideal`: a beam receives all that lies between its edges and nothing
-  /// else. `array`: it receives what a straight array steered to its middle does, side lobes and all; the fan
-  /// lies within 90 degrees of the axis then.
+  /// Mode `physical`, two beams or more. `ideal`: a beam receives everything between its edges and nothing
+  /// else. `array`: it receives with the pattern of a straight array steered to its middle, side lobes
+  /// included; then the fan must lie within 90 degrees of the axis.
   enum class Azimuth { ideal, array } azimuth = Azimuth::ideal;
-  /// With `array`: a bearing is known to one part in this many of a beam; 1 to 16.
+  /// With `array`: number of fine beams per beam, the resolution of bearings; 1 to 16.
   int fine_beams = 2;
-  /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` ones, sin psi cos
-  /// theta: what lies off the horizontal appears nearer to the axis.
+  /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` bearings, sin psi cos
+  /// theta: objects off the horizontal plane appear nearer to the axis.
   enum class Bearing { planar, conical } bearing = Bearing::planar;
-  /// With `array`: errors of the elements, which the seed and the stream draw. Standard deviations of the
-  /// amplitude as a share of it, >= 0, and of the phase.
+  /// With `array`: errors of the elements, drawn by seed and stream. Standard deviations of the amplitude,
+  /// relative and >= 0, and of the phase.
   double element_amplitude_sd = 0.0;
   double element_phase_sd_rad = 0.0;
-  /// Draws these errors in the place of PingRequest::seed, so that one array can be given many seeds of
-  /// noise.
+  /// Seed of these errors; nullopt: PingRequest::seed. It keeps one array over many seeds of noise.
   std::optional<std::uint64_t> element_seed{};
 
   int beam_count() const { return beam_edges_rad.empty() ? 0 : static_cast<int>(beam_edges_rad.size()) - 1; }
-  /// Half of the rendered elevation fan.
+  /// Half of the rendered range of elevations.
   double elevation_limit_rad() const;
   /// Power pattern at an elevation; 1 on the axis.
   double elevation_weight(double elevation_rad) const;
@@ -56,18 +55,18 @@ struct Aperture {
   bool operator==(const Aperture&) const = default;
 };
 
-/// @throws RequestError when there are no beams, when their edges are not finite or not falling, when the fan
-/// is wider than a full turn or a beam lies across the backward azimuth, or when its elevations do not end
-/// clear of the vertical.
+/// @throws RequestError if there are no beams, if edges are not finite or not falling, if the fan is wider
+/// than a full turn, if a beam lies across the backward azimuth, or if the elevations end too near the
+/// vertical.
 void check_aperture(const Aperture& aperture);
 
 /// beam_count beams of equal angle over `width_rad`, centred on the acoustic axis.
 std::vector<double> equal_angle_edges(int beam_count, double width_rad);
-/// beam_count beams of equal sine over +-half_width_rad, as a multibeam head forms them.
+/// beam_count beams of equal sine over +-half_width_rad, as a multibeam sonar forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
-/// The range bins of a ping: bin i holds echoes from [i, i+1) * step_m. The lines of the output are averages
-/// (or peaks) of 2^compression_log2 range bins; a remainder is dropped, as the device does.
+/// The range bins of a ping: bin i holds echoes from [i, i+1) * step_m. Output lines are averages (or peaks)
+/// of 2^compression_log2 range bins. A remainder is dropped, as in the device.
 struct RangeLines {
   int count = 1;             ///< range bins, >= 1
   double step_m = 0.01;      ///< > 0
@@ -75,8 +74,8 @@ struct RangeLines {
   bool compression_peak = false;
 
   double max_range_m() const { return count * step_m; }
-  /// How far surfaces are looked for: a little beyond the last line, so that footprints which cross it are
-  /// complete.
+  /// Range within which surfaces are rendered: a little beyond the last line, so that footprints across it
+  /// are complete.
   double sampled_range_m() const { return max_range_m() * 1.05; }
   int output_count() const { return count >> compression_log2; }
 
@@ -88,13 +87,13 @@ enum class Model {
   physical,  ///< sonar equation per solid angle, Rayleigh speckle, additive noise, TVG
 };
 
-/// Mode `paper`, with a reading for each place where the paper is silent (docs/physics.md 1.2).
+/// Mode `paper`, with an interpretation for each point that the paper leaves open (docs/physics.md 1.2).
 struct PaperModel {
   double sigmoid_slope = 18.0;        ///< A1
   double sigmoid_centre = 2.0 / 3.0;  ///< A1
   bool two_sided = true;              ///< A3; false: back faces are invisible
   bool legacy_bin_index = false;      ///< A4; floor(r / R_max (N - 1)) instead of floor(r / R_max N)
-  bool legacy_columns = false;        ///< A7; a column belongs whole to the beam of its centre
+  bool legacy_columns = false;        ///< A7; assigns a whole column to the beam of its centre
   bool elevation_mask = true;         ///< false: the whole planar view counts, as in the paper
   bool footprint = true;              ///< false: a sample is a point in range
   double attenuation_per_m = 0.0;     ///< A10; a of exp(-2 a r), applied before the sigmoid
@@ -106,8 +105,8 @@ struct PaperModel {
 
   bool operator==(const PaperModel&) const = default;
 
-  /// What the authors' later public releases did: folded N(0.95, 0.30) with floor 0.03, and attenuation, here
-  /// that of cool sea water at 720 kHz (0.2085 dB/m as a factor of amplitude).
+  /// The authors' later public releases: folded N(0.95, 0.30) with floor 0.03, and attenuation. The
+  /// attenuation here is cool sea water at 720 kHz (0.2085 dB/m as a factor of amplitude).
   static PaperModel release_2018() {
     PaperModel model;
     model.attenuation_per_m = 0.024;
@@ -119,64 +118,64 @@ struct PaperModel {
   }
 };
 
-/// A scanning head receives the ringing of its own transducer after the pulse (docs/physics.md 2.16).
+/// Ringing of a scanning sonar's own transducer after the pulse (docs/physics.md 2.16).
 struct RingDown {
   bool on = false;
   double level_db = 6.0;  ///< intensity at the peak, re the source intensity at 1 m, before TVG
-  double peak_m = 0.28;   ///< > 0; it rises from 0 at half of this
-  double end_m = 0.95;    ///< where it has fallen by 80 dB, > peak_m
+  double peak_m = 0.28;   ///< > 0; the level rises from 0 at half of this range
+  double end_m = 0.95;    ///< range at which it has fallen by 80 dB, > peak_m
   double sd_db = 2.0;     ///< standard deviation of its level from ping to ping, >= 0
-  /// What the vehicle around the head sends back: intensity at 1 m, re the source intensity at 1 m, before
-  /// TVG; -infinity: nothing.
+  /// Echo of the vehicle around the sonar: intensity at 1 m, re the source intensity at 1 m, before TVG;
+  /// -infinity: no echo.
   double vehicle_level_db = -std::numeric_limits<double>::infinity();
-  double vehicle_fall_db_per_m = 14.0;  ///< how fast that dies off; > 0
-  /// True: the pulse overdrives the receiver, whose output from the first sample on is that of the peak. The
+  double vehicle_fall_db_per_m = 14.0;  ///< decay of the vehicle's echo; > 0
+  /// True: the pulse overdrives the receiver, whose output starts at the peak in the first sample. The
   /// ring-down then has no rise.
   bool from_start = false;
 
   bool operator==(const RingDown&) const = default;
 };
 
-/// The pulse and the lines for which levels are stated. A tone of another length brings more or less energy
+/// The pulse and the lines for which levels are stated. A tone of another length has more or less energy
 /// (docs/physics.md 2.6).
 struct UsualPulse {
-  double cell_m = 0.0;  ///< its PhysicalModel::range_cell_m; 0: levels do not depend on the length of a pulse
-  double step_m = 0.0;  ///< RangeLines::step_m of the lines; > 0 where cell_m is
+  double cell_m = 0.0;  ///< its PhysicalModel::range_cell_m; 0: levels do not depend on pulse length
+  double step_m = 0.0;  ///< RangeLines::step_m of the lines; > 0 if cell_m > 0
 
   bool operator==(const UsualPulse&) const = default;
 };
 
-/// Another sonar, or the vehicle: a burst of noise in a ping (docs/physics.md 2.16).
+/// Bursts of noise from another sonar or the vehicle (docs/physics.md 2.16).
 struct Interference {
-  double probability = 0.0;      ///< of a ping to be hit, [0, 1]
-  double least_db = 2.0;         ///< noise rises by this at least
-  double most_db = 11.0;         ///< and at most; >= least_db
-  double median_length_m = 4.0;  ///< half of the bursts are shorter, none is longer than twice this; > 0
-  double to_the_end_probability = 0.1;  ///< of a burst to last to the end of the ping all the same, [0, 1]
+  double probability = 0.0;             ///< that a ping has a burst, [0, 1]
+  double least_db = 2.0;                ///< smallest rise of the noise
+  double most_db = 11.0;                ///< largest rise; >= least_db
+  double median_length_m = 4.0;         ///< half of the bursts are shorter, the longest have twice this; > 0
+  double to_the_end_probability = 0.1;  ///< that a burst lasts to the end of the ping instead, [0, 1]
 
   bool operator==(const Interference&) const = default;
 };
 
-/// Single things that drift in the water: fish, weed, bubbles (docs/physics.md 2.16).
+/// Small objects that drift in the water: fish, weed, bubbles (docs/physics.md 2.16).
 struct WaterClutter {
   double density_per_m3 = 0.0;        ///< 0: none
-  double target_strength_db = -45.0;  ///< of the mean intensity of one, re 1 m
+  double target_strength_db = -45.0;  ///< of the mean intensity of one object, re 1 m
 
   bool operator==(const WaterClutter&) const = default;
 };
 
-/// What arrives by way of smooth surfaces, of mode `physical` (docs/physics.md 2.11). Where nothing in range
-/// is smooth enough, SkipRule::multipath spares it.
+/// Echoes by way of smooth surfaces, in mode `physical` (docs/physics.md 2.11). If nothing in range is smooth
+/// enough, SkipRule::multipath skips them.
 struct MultipathSettings {
   enum class Level {
     off,      ///< nothing
     surface,  ///< ghosts in the water surface (World::water_surface_z_m)
     full,     ///< ghosts in every surface that mirrors, corner reflectors, bounces
   } level = Level::full;
-  double bounce_loss_db = 3.0;  ///< what a surface takes each time, besides what R and mu say; >= 0
-  int most_bounces = 0;         ///< surfaces that a path may meet; below 2: no paths between rough surfaces
+  double bounce_loss_db = 3.0;      ///< per reflection, in addition to R and mu; >= 0
+  int most_bounces = 0;             ///< surfaces on a path; below 2: no paths between rough surfaces
   double wavelength_m = 0.0020833;  ///< at the middle of the band; > 0
-  /// Rms height of the water surface: 0 is a mirror; rippled by a light breeze some 0.02; with wind it has no
+  /// Rms height of the water surface: 0 is a mirror, a light breeze about 0.02. In wind the surface gives no
   /// image.
   double water_surface_rms_height_m = 0.02;
 
@@ -186,76 +185,76 @@ struct MultipathSettings {
 /// Mode `physical`: water, source and receiver (docs/physics.md 2.1-2.9, 2.16). Levels are intensities in dB.
 struct PhysicalModel {
   double absorption_db_per_m = 0.2085;  ///< one way
-  /// Whether surfaces show their facets near normal incidence, where their material has some, or are plain
-  /// Lambert surfaces (docs/physics.md 2.4).
+  /// `lambert_facet`: surfaces reflect from their facets near normal incidence, if their material has facets.
+  /// `lambert`: all are plain Lambert surfaces (docs/physics.md 2.4).
   enum class Backscatter { lambert, lambert_facet } backscatter = Backscatter::lambert_facet;
   enum class Speckle { off, frozen, per_ping, ou } speckle = Speckle::ou;
-  double aperture_m = 0.1;  ///< array length; sets over which motion speckle stays the same (`ou`)
-  /// Response of the pulse in range, as intensity (docs/physics.md 2.6). `chirp`: matched filter,
-  /// sinc^2. `windowed_chirp`: the same under a Hann window over the band. `tone`: a box. `point`: no length.
+  double aperture_m = 0.1;  ///< array length; sets how far the sonar moves before speckle changes (`ou`)
+  /// Response of the pulse in range, as intensity (docs/physics.md 2.6). `chirp`: matched filter, sinc^2.
+  /// `windowed_chirp`: matched filter with a Hann window over the band. `tone`: a box. `point`: no length.
   enum class Pulse { point, chirp, windowed_chirp, tone } pulse = Pulse::point;
-  /// Scale of those with a length: c / 2B of a chirp of bandwidth B, c tau / 2 of a tone of duration tau.
+  /// Length of the pulse in range: c / 2B of a chirp of bandwidth B, c tau / 2 of a tone of duration tau.
   double range_cell_m = 0.0;
-  /// c / 2B of the band B that the transducer has there and back, which rounds the ends of a tone; 0: sharp.
+  /// c / 2B of the transducer's two-way band B, which rounds the ends of a tone; 0: sharp ends.
   double tone_rounding_m = 0.0;
   UsualPulse usual_pulse;
-  /// What the band of the transducer leaves of this pulse's echoes, there and back; <= 0.
+  /// Two-way loss of this pulse's echoes in the transducer's band; <= 0.
   double band_loss_db = 0.0;
   bool noise = true;
   /// Noise re the source intensity at 1 m, before TVG: NL - DI + 10 log10 B - SL.
-  double noise_level_db = -138.2;  ///< render::noise_level_db() makes it of a sonar equation
-  /// Noise that enters behind TVG and gain, re full scale as gain_db; -infinity: none.
+  double noise_level_db = -138.2;  ///< render::noise_level_db() derives it from a sonar equation
+  /// Noise added after TVG and gain, re full scale like gain_db; -infinity: no such noise.
   double output_noise_db = -std::numeric_limits<double>::infinity();
-  /// c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse, as behind a
-  /// matched filter, and the longer a tone, the less of it (docs/physics.md 2.9).
+  /// c / 2B of the receiver's band B, with white noise in the band. 0: noise has the band of the pulse, as
+  /// after a matched filter, so longer tones have less noise (docs/physics.md 2.9).
   double noise_cell_m = 0.0;
-  /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution, in proportion
-  /// to the range (docs/physics.md 2.8); 0: of no number that shows.
+  /// Effective number of scatterers in a cell at `texture_range_m`, nu of the K distribution; proportional to
+  /// range (docs/physics.md 2.8). 0: no texture.
   double texture_nu = 0.0;
   double texture_range_m = 10.0;  ///< > 0
-  /// With OutputScale::half_decibels and one beam: weight with which the two halves of the neighbouring bins
-  /// next to a bin count in its mean of decibels, [0, 1]; 0: a bin is the mean of its own cells.
+  /// With OutputScale::half_decibels and one beam: weight of the two adjacent halves of the neighbouring bins
+  /// in a bin's mean of decibels, [0, 1]; 0: a bin is the mean of its own cells.
   double bin_overlap = 0.0;
-  /// Scattering strength of the water's volume, dB/m^3 (docs/physics.md 2.10); -infinity: none.
+  /// Scattering strength of the water's volume, dB/m^3 (docs/physics.md 2.10); -infinity: no scattering.
   double volume_scattering_db = -std::numeric_limits<double>::infinity();
   WaterClutter water_clutter;
   double tvg_log_coefficient = 30.0;        ///< X of X log10 r + 2 alpha r
-  double tvg_absorption_db_per_m = 0.2085;  ///< one way; what the device believes the water to be
-  double tvg_max_db = 62.0;                 ///< ceiling of the two terms together
-  /// Output level of unit intensity after TVG, re full scale; a device's gain setting is added to it. Full
-  /// scale of OutputScale::half_decibels is 80 dB.
+  double tvg_absorption_db_per_m = 0.2085;  ///< one way; the absorption that the device assumes
+  double tvg_max_db = 62.0;                 ///< upper limit of the two terms together
+  /// Output level of unit intensity after TVG, re full scale; the device's gain setting is added. Full scale
+  /// of OutputScale::half_decibels is 80 dB.
   double gain_db = 60.0;
   MultipathSettings multipath;
-  // What recordings of multibeam heads show (docs/physics.md 2.16).
-  double near_field_blank_m = 0.7;  ///< output is exactly 0 nearer than this; 0 = off
-  // Of a scanning head: noise differs between bearings by as much as this, the same in each sweep, and no two
-  // sweeps stop at quite the same bearing: standard deviation of where the beam points.
+  // Effects found in recordings of multibeam sonars (docs/physics.md 2.16).
+  double near_field_blank_m = 0.7;  ///< at nearer ranges the output is exactly 0; 0 = off
+  // Scanning sonars: level differences of noise between bearings, the same in each sweep, and the standard
+  // deviation of the beam's direction, which differs between sweeps.
   double noise_by_bearing_db = 0.0;
   double bearing_jitter_rad = 0.0;
   double broadside_stripe_db = 3.5;  ///< extra noise two acoustic beams wide in mid-fan; 0 = off
   RingDown ring_down;
   Interference interference;
   /// Whether receive beams turn with the sonar while echoes return (docs/physics.md 2.14). false: the whole
-  /// ping is received where it was sent.
+  /// ping is received at the transmit pose.
   bool motion_within_ping = true;
 
   bool operator==(const PhysicalModel&) const = default;
 };
 
-/// How closely the world is followed: the error that is aimed at (docs/accuracy.md), pooled RMS over all bins
-/// above 1e-2 of their beam's maximum, or a fixed grid of samples.
+/// Accuracy of sampling: a target error (docs/accuracy.md), pooled RMS over all bins above 1e-2 of their
+/// beam's maximum, or a fixed grid of samples.
 struct Sampling {
   enum class Preset {
     fast,       ///< 5 %
     normal,     ///< 1 %
-    reference,  ///< the closest there is, for offline use
-    grid,       ///< the grid below, whatever the error
+    reference,  ///< the smallest possible error, for offline use
+    grid,       ///< the grid below, regardless of the error
   } preset = Preset::normal;
   // Only with `grid`:
-  int views = 3;  ///< side-by-side frusta; more are used where one would exceed 60 degrees
+  int views = 3;  ///< side-by-side frusta; more are used if one would exceed 60 degrees
   int columns_per_view = 256;
   int rows = 512;
-  /// false: a sample is a point in range, as where footprints are unknown; for comparison
+  /// false: a sample is a point in range, as in a renderer without footprints; for comparison
   /// (docs/benchmark.md).
   bool footprint = true;
 
@@ -265,11 +264,11 @@ struct Sampling {
   bool operator==(const Sampling&) const = default;
 };
 
-/// What a sample says of the amplitude at the output.
+/// How the code of a sample depends on the amplitude at the output.
 enum class OutputScale {
-  linear,         ///< in proportion, full scale at the highest code
-  power,          ///< in proportion to its power `output_exponent`, rounded down: the highest code is not met
-  half_decibels,  ///< of a scanning head: 255 codes for 80 dB in steps of half a decibel, none above 191
+  linear,         ///< proportional, full scale at the highest code
+  power,          ///< proportional to its power `output_exponent`, rounded down: below the highest code
+  half_decibels,  ///< for scanning sonars: 255 codes for 80 dB in half-decibel steps, at most 191
 };
 
 struct SonarSettings {
@@ -279,13 +278,13 @@ struct SonarSettings {
   PaperModel paper;
   PhysicalModel physical;
   Sampling sampling;
-  bool transmit = true;      ///< false: the sonar only listens, there is no echo
-  bool sixteen_bit = false;  ///< output samples of 16 instead of 8 bits; not of half decibels
+  bool transmit = true;      ///< false: the sonar only listens, without echoes
+  bool sixteen_bit = false;  ///< 16-bit instead of 8-bit output samples; not with half decibels
   OutputScale output_scale = OutputScale::linear;
   double output_exponent = 1.0;  ///< with OutputScale::power; > 0
 };
 
-/// Whether the beams are those of a straight array: mode `physical`, Azimuth::array, two beams or more.
+/// Whether the beams have patterns of a straight array: mode `physical`, Azimuth::array, two beams or more.
 inline bool has_array_beams(const SonarSettings& settings) {
   return settings.model == Model::physical && settings.aperture.azimuth == Aperture::Azimuth::array &&
          settings.aperture.beam_count() > 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time spent, for statistics.
+// Elapsed time, for statistics.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@ namespace sonard::render {
 
 class Stopwatch {
  public:
-  /// Seconds since the last call, or since it was made.
+  /// Seconds since the last call, or since construction.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - last_).count();

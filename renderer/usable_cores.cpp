@@ -15,13 +15,13 @@
 namespace sonard::render {
 namespace {
 
-/// Where a container sees the control group of its own.
+/// The process's own control group, as a container sees it.
 constexpr const char* quota_file = "/sys/fs/cgroup/cpu.max";
 
 unsigned cores_of_schedule() {
   cpu_set_t set;
   CPU_ZERO(&set);
-  // It fails where the machine has more cores than the set has bits.
+  // Fails if the machine has more cores than the set has bits.
   return sched_getaffinity(0, sizeof set, &set) == 0 ? static_cast<unsigned>(CPU_COUNT(&set))
                                                      : std::thread::hardware_concurrency();
 }

@@ -16,19 +16,19 @@ namespace {
 
 using std::chrono::microseconds;
 
-// Workers bridge the serial parts between the loops of a ping: waking one that sleeps takes 5 to 20 us.
+// Covers the serial parts between the loops of a ping: to wake a sleeping worker takes 5 to 20 us.
 constexpr microseconds worker_spin{50};
-// The caller bridges what is left of a job.
+// Covers the rest of the last jobs.
 constexpr microseconds caller_spin{20};
 
-/// Lets the other half of a core run, and keeps the loop from flooding the memory bus.
+/// Frees the core for its other hardware thread, and keeps the loop from flooding the memory bus.
 inline void pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
 #endif
 }
 
-/// Returns when `value` is what `wanted` says, or after `longest`.
+/// Returns when `wanted` accepts `value`, or after `longest`.
 template <class Wanted>
 void spin_until(const std::atomic<int>& value, microseconds longest, Wanted wanted) {
   const auto end = std::chrono::steady_clock::now() + longest;
@@ -49,7 +49,7 @@ WorkerPool::WorkerPool(unsigned threads) {
   if (threads == 0) {
     threads = cores;
   }
-  may_spin_ = threads <= cores;  // else spinning would keep a thread with work from running
+  may_spin_ = threads <= cores;  // else spinning threads would block threads with work
   try {
     for (unsigned i = 1; i < threads; ++i) {
       threads_.emplace_back([this] { work(); });
@@ -88,7 +88,7 @@ void WorkerPool::run(int count, const std::function<void(int)>& job) {
   caller_core_.store(sched_getcpu(), std::memory_order_relaxed);
   unclaimed_.store(count);
   if (sleeping_workers_ > 0) {
-    mutex_.lock();  // a worker that counts as sleeping holds the mutex until it does
+    mutex_.lock();  // a worker holds the mutex from its announcement until it sleeps
     mutex_.unlock();
     jobs_.notify_all();
   }
@@ -107,7 +107,7 @@ void WorkerPool::run(int count, const std::function<void(int)>& job) {
 void WorkerPool::do_job(int number) {
   try {
     (*job_)(number);
-  } catch (...) {  // memory has run out, most likely; the other jobs still use what the caller owns
+  } catch (...) {  // most likely out of memory; other jobs still use the caller's data
     const std::lock_guard lock(mutex_);
     if (!thrown_) {
       thrown_ = std::current_exception();
@@ -149,7 +149,8 @@ void WorkerPool::sleep_until_done() {
 void WorkerPool::work() {
   while (unclaimed_ != stopped) {
     take_jobs();
-    // On a busy machine the kernel likes to wake a worker on the caller's own core. There it must make room.
+    // On a busy machine the kernel often wakes a worker on the caller's core. The worker must then free that
+    // core.
     if (may_spin_ && sched_getcpu() != caller_core_.load(std::memory_order_relaxed)) {
       spin_until(unclaimed_, worker_spin, [](int unclaimed) { return unclaimed != 0; });
     }

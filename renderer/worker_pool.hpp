@@ -12,27 +12,27 @@
 
 namespace sonard::render {
 
-/// Runs independent jobs on all cores. Which thread runs which job is left open, so a job must write only
-/// what is its own; results are then the same for any number of threads. One caller at a time.
+/// Runs independent jobs on all cores. Any thread may run any job, so a job must write only to its own data.
+/// Results are then the same for any number of threads. One caller at a time.
 ///
-/// A ping is a few loops shortly after one another, each a fraction of a millisecond. A thread that waits
-/// therefore spins for some tens of microseconds before it sleeps in the kernel: workers for the next loop,
-/// the caller for the end of this one. Between pings all workers sleep. A worker that wakes late costs
-/// nothing: the others have taken its share.
+/// A ping is a few loops in quick succession, each a fraction of a millisecond. A waiting thread therefore
+/// spins for some tens of microseconds before it sleeps in the kernel: workers wait for the next loop, the
+/// caller for the end of this one. Between pings all workers sleep. A worker that wakes late costs nothing:
+/// the other threads have done its share.
 class WorkerPool {
  public:
   /// @param threads total number of threads including the caller; 0: one per usable core.
-  /// @throws std::system_error when a thread cannot be started
+  /// @throws std::system_error if a thread cannot be started
   explicit WorkerPool(unsigned threads = 0);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// Threads that share the jobs, the caller included; >= 1.
+  /// Threads that share the jobs, including the caller; >= 1.
   unsigned size() const { return static_cast<unsigned>(threads_.size()) + 1; }
 
   /// Calls job(0) ... job(count - 1), each once, and returns when all are done.
-  /// @throws what a job has thrown, the first one where several have
+  /// @throws the exception of a job, the first one if several jobs throw
   void run(int count, const std::function<void(int)>& job);
 
  private:
@@ -45,18 +45,18 @@ class WorkerPool {
 
   static constexpr int stopped = -1;
 
-  // Written by the caller while `unclaimed_` is 0, read by a thread that has claimed a job. A claim holds
-  // run() up until that job is done, so neither changes under a reader.
+  // Written by the caller while `unclaimed_` is 0, read by a thread that has claimed a job. run() waits for
+  // claimed jobs, so neither value changes while a thread reads it.
   const std::function<void(int)>* job_ = nullptr;
   int count_ = 0;
-  std::atomic<int> unclaimed_{0};   ///< jobs of this run that are not claimed; `stopped` at the end
+  std::atomic<int> unclaimed_{0};   ///< jobs of this run that are not claimed; `stopped` at destruction
   std::atomic<int> unfinished_{0};  ///< jobs of this run that are not done
-  std::exception_ptr thrown_;       ///< by a job of this run; under the mutex until all are done
+  std::exception_ptr thrown_;       ///< by a job of this run; guarded by the mutex until all are done
 
-  // For sleeping only. A thread about to sleep says so under the mutex before it reads the numbers above a
-  // last time; a thread that changes them checks whether a thread said so after. In one order of all these
-  // accesses (they are sequentially consistent) at least one sees the other, so no wake-up is lost, and none
-  // costs a useless system call.
+  // For sleeping only. Under the mutex, a thread announces that it will sleep and then reads the numbers
+  // above once more. A thread that changes the numbers checks for such an announcement afterwards. All these
+  // accesses are sequentially consistent, so at least one thread sees the other's write. No wake-up is lost,
+  // and no system call is useless.
   std::mutex mutex_;
   std::condition_variable jobs_, done_;
   std::atomic<int> sleeping_workers_{0};
