@@ -24,8 +24,8 @@
 namespace sonard::render {
 namespace {
 
-/// Lets Assimp open the files that a world may name: regular ones below its folders. The first other one that
-/// a mesh names is kept as a sentence.
+/// Lets Assimp open only regular files below the folders of the world. Keeps a message about the first other
+/// file that a mesh names.
 class WorldFiles : public Assimp::DefaultIOSystem {
  public:
   WorldFiles(const MeshSource& source, std::string& refusal) : folders_(source.folders), refusal_(refusal) {
@@ -84,8 +84,8 @@ glm::dmat4 matrix_of(const aiMatrix4x4& m) {
   return matrix;
 }
 
-/// Metres of an FBX with z up, from its own unit and axes. Without a word of them: centimetres and y up, the
-/// defaults of the format.
+/// Transform to metres with z up, from the unit and the axes in an FBX file. If the file does not state them:
+/// centimetres and y up, the defaults of the format.
 glm::dmat4 fbx_axes(const aiScene& scene) {
   const auto setting = [&](const char* name, auto value) {
     if (scene.mMetaData != nullptr) {
@@ -108,9 +108,8 @@ glm::dmat4 fbx_axes(const aiScene& scene) {
   return matrix;
 }
 
-/// Transform of the root node. Assimp adds that node to COLLADA, 3DS and FBX. For COLLADA and 3DS it turns
-/// the file to y up and applies the unit, which is the task of mesh_file. For FBX, releases of Assimp differ
-/// in it.
+/// Transform of the root node, which Assimp adds to COLLADA, 3DS and FBX. For COLLADA and 3DS it turns the
+/// file to y up and applies the unit, which mesh_file does instead. For FBX, the releases of Assimp differ.
 glm::dmat4 root_transform(const aiScene& scene, const std::string& extension) {
   if (extension == "dae" || extension == "3ds") {
     return glm::dmat4(1.0);
@@ -143,7 +142,7 @@ RawPart triangles_of(const aiScene& scene, const aiMesh& mesh) {
   return part;
 }
 
-/// Which names of a mesh in the scene may be the submesh's, from the one that Gazebo knows to the widest.
+/// The names of a mesh in the scene that can match the submesh, from Gazebo's rule to the widest.
 enum class SubmeshRule { node_name, own_names, names_above };
 
 class Collector {
@@ -154,7 +153,7 @@ class Collector {
   void add(const aiNode& node, const glm::dmat4& T_mesh_node, const std::string& outer_name,
            bool outer_wanted) {
     const std::string given_name = given_name_of(node);
-    // Gazebo counts a node without a name to the next one above that has one.
+    // For Gazebo, a node without a name belongs to the nearest named node above it.
     const std::string& name = given_name.empty() ? outer_name : given_name;
     const bool has_this_name = is_wanted(given_name) || is_wanted(id_of(node));
     const bool wanted = submesh_.empty() ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as bytes between a reader in its child process and us. Both ends are this program: host byte order.
+// Values as bytes between a reader's child process and this process. Both run this program: host byte order.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,8 @@ class BlobWriter {
   std::string bytes_;
 };
 
-/// Throws std::runtime_error when the bytes end early: a reader that damaged its own memory may hand over
-/// anything.
+/// Throws std::runtime_error if the bytes end early: a reader that damaged its own memory may return any
+/// bytes.
 class BlobReader {
  public:
   explicit BlobReader(const std::string& bytes) : bytes_(bytes) {}

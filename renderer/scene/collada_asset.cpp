@@ -23,10 +23,10 @@ std::string without_comments(std::string xml) {
   return xml;
 }
 
-/// The text of the first <asset>, which is the document's.
+/// The text of the first <asset>, which belongs to the document as a whole.
 std::string asset_of(const std::filesystem::path& file) {
   std::string head = head_of(file, 65536);
-  std::erase(head, '\0');  // of UTF-16, the tags' second halves
+  std::erase(head, '\0');  // the second halves of UTF-16 characters in tags
   head = without_comments(std::move(head));
   const std::size_t begin = head.find("<asset");
   return begin == std::string::npos ? "" : head.substr(begin, head.find("</asset>", begin) - begin);
@@ -39,7 +39,7 @@ double unit_m_of(const std::string& asset) {
     return 1.0;
   }
   std::string text = match[1].str();
-  std::ranges::replace(text, ',', '.');  // as some exporters write it in some countries
+  std::ranges::replace(text, ',', '.');  // some exporters write a decimal comma, depending on the locale
   double metres = 0.0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
   if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(metres) || metres <= 0.0) {

@@ -18,7 +18,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-/// The whole numbers in the element's text; what is no whole number counts as 0.
+/// The whole numbers in the element's text; other words count as 0.
 std::vector<std::uint64_t> numbers_in(const XMLElement* element) {
   const char* const text = element == nullptr ? nullptr : element->GetText();
   std::istringstream words(text == nullptr ? "" : text);
@@ -29,7 +29,7 @@ std::vector<std::uint64_t> numbers_in(const XMLElement* element) {
   return numbers;
 }
 
-/// Indices that each corner has: one for each offset.
+/// Number of indices per corner: one for each offset.
 std::uint64_t indices_of_a_corner(const XMLElement& primitives) {
   unsigned int most = 0;
   for (const auto* input = primitives.FirstChildElement("input"); input != nullptr;

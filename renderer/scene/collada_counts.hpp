@@ -7,9 +7,9 @@
 namespace sonard::render {
 
 /// Compares `count` of <float_array>, <triangles> and <polylist> with the numbers in them. Assimp refuses a
-/// difference; OpenSceneGraph, which reads what Assimp refuses, takes what is there. A document that tinyxml2
-/// cannot parse passes.
-/// @throws std::runtime_error naming the line, what is promised and what is there
+/// difference, but OpenSceneGraph, the second reader, accepts it and reads the values that are there. A
+/// document that tinyxml2 cannot parse passes.
+/// @throws std::runtime_error with the line, the stated and the actual count
 void require_collada_counts(std::string_view document);
 
 }  // namespace sonard::render

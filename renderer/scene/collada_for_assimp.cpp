@@ -31,7 +31,7 @@ std::vector<XMLElement*> children_of(XMLElement& element, const std::vector<cons
 
 class Mender : public tinyxml2::XMLVisitor {
  public:
-  /// Notes what to mend: a visitor must not change what it visits.
+  /// Collects the elements to mend, because a visitor must not change the document.
   bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute*) override {
     const std::string_view name = element.Name();
     in_mesh_ += name == "mesh" ? 1 : 0;
@@ -62,7 +62,7 @@ class Mender : public tinyxml2::XMLVisitor {
 
  private:
   void name_values(XMLElement& accessor) {
-    constexpr std::array<const char*, 4> names{"X", "Y", "Z", "A"};  // Assimp's for the values 0 to 3
+    constexpr std::array<const char*, 4> names{"X", "Y", "Z", "A"};  // Assimp's names for the values 0 to 3
     constexpr std::array<const char*, 4> texture_names{"S", "T", "P", "A"};
     constexpr std::array<const char*, 4> colour_names{"R", "G", "B", "A"};
     const unsigned int values = std::min(accessor.UnsignedAttribute("stride", 1), 4U);

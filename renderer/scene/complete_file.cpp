@@ -18,7 +18,7 @@
 namespace sonard::render {
 namespace {
 
-/// A header that ends early reads as zeros.
+/// Bytes beyond the end of a header count as zeros.
 std::uint64_t little_endian(std::string_view bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
   for (std::size_t i = at + size; i > at; --i) {
@@ -59,8 +59,7 @@ void check_png(std::string_view bytes) {
   throw_without_end("the chunk IEND");
 }
 
-/// ITU-T T.81: segments of a marker and a length until the first scan; in the scans, FF D9 stands for the end
-/// alone.
+/// ITU-T T.81: segments of a marker and a length until the first scan. In the scans, FF D9 is only the end.
 void check_jpeg(std::string_view bytes) {
   constexpr std::uint64_t start_of_scan = 0xFFDA;
   std::size_t at = 2;
@@ -90,7 +89,7 @@ void check_bmp(std::string_view bytes) {
 }
 
 void check_tga(std::string_view bytes) {
-  constexpr std::uint64_t run_lengths = 8;  // added to a type of picture
+  constexpr std::uint64_t run_lengths = 8;  // added to the image type
   const std::uint64_t type = little_endian(bytes, 2, 1);
   const std::uint64_t pixel_bytes = (little_endian(bytes, 16, 1) + 7) / 8;
   const std::uint64_t pixels = little_endian(bytes, 12, 2) * little_endian(bytes, 14, 2);
@@ -173,14 +172,14 @@ void check_3ds(std::string_view bytes) {
 void check_collada(std::string_view bytes) {
   constexpr std::size_t longest_tail = 65536;
   std::string tail(bytes.substr(bytes.size() - std::min(bytes.size(), longest_tail)));
-  std::erase(tail, '\0');  // of UTF-16, the tags' second halves
+  std::erase(tail, '\0');  // the second halves of UTF-16 characters in tags
   if (tail.find("COLLADA>", std::min(tail.rfind("</"), tail.size())) == std::string::npos) {
     throw_without_end("</COLLADA>");
   }
   require_collada_counts(bytes);
 }
 
-/// OpenSceneGraph's text: braces around each object, names in quotes.
+/// OpenSceneGraph's text format: braces around each object, names in quotes.
 void check_osgt(std::string_view bytes) {
   int depth = 0;
   bool is_quoted = false;

@@ -22,12 +22,12 @@ using Triangle = std::array<Index, 3>;
 
 constexpr Index none = ~Index{0};
 constexpr double least_quality =
-    1e-4;  // height over longest side: of thinner triangles the normal is rounding
+    1e-4;  // height over longest side: in thinner triangles the normal is mostly rounding error
 
-/// Corners of the mesh in which every place has one number, however often the file repeats it.
+/// The mesh with one vertex per position, even if the file repeats positions.
 struct Welded {
   std::vector<glm::vec3> positions;
-  std::vector<Triangle> triangles;  ///< those with three different corners
+  std::vector<Triangle> triangles;  ///< triangles with three different corners
 };
 
 struct PlaceHash {
@@ -63,7 +63,7 @@ Welded weld(const TriangleMesh& mesh) {
   return out;
 }
 
-/// Vertices around which there are no more than two directions of facets: only these can be taken out.
+/// Vertices whose facets have at most two directions: only these can be removed.
 std::vector<Index> vertices_between_two_directions(const Welded& mesh) {
   struct Directions {
     glm::vec3 seen[2];
@@ -94,8 +94,8 @@ std::vector<Index> vertices_between_two_directions(const Welded& mesh) {
   return found;
 }
 
-/// Takes vertices out by drawing each onto one of its neighbours (a half-edge collapse). Everything in
-/// doubles: positions are differences of floats.
+/// Removes vertices by moving each onto one of its neighbours (half-edge collapse). Computes in doubles,
+/// because it takes differences of float positions.
 class FacetMerger {
  public:
   explicit FacetMerger(Welded mesh);
@@ -110,7 +110,7 @@ class FacetMerger {
   struct Ring {
     std::vector<Index> neighbours;
     std::vector<Index> triangles;  ///< triangle i lies between neighbours i and i + 1
-    bool closed = true;            ///< else one neighbour more than triangles
+    bool closed = true;            ///< else there is one more neighbour than triangles
   };
 
   glm::dvec3 at(Index vertex) const { return glm::dvec3(mesh_.positions[vertex]); }
@@ -133,10 +133,10 @@ class FacetMerger {
   Welded mesh_;
   double tolerance_m_;
   std::vector<std::vector<Index>> triangles_of_;  ///< of each vertex
-  std::vector<Index> plane_of_;                   ///< of each triangle; none: it is gone, or has no area
+  std::vector<Index> plane_of_;                   ///< of each triangle; none: removed, or without area
   std::vector<Plane> planes_;
-  std::vector<double> moved_m_;       ///< by how much edges at a vertex may have moved so far
-  std::vector<std::uint8_t> locked_;  ///< vertices beside which something changed in this pass
+  std::vector<double> moved_m_;       ///< largest possible movement so far of edges at a vertex
+  std::vector<std::uint8_t> locked_;  ///< vertices with a change beside them in this pass
 };
 
 FacetMerger::FacetMerger(Welded mesh) : mesh_(std::move(mesh)) {
@@ -150,7 +150,7 @@ FacetMerger::FacetMerger(Welded mesh) : mesh_(std::move(mesh)) {
 bool FacetMerger::in_plane(const Triangle& t, const Plane& plane) const {
   const glm::dvec3 cross = cross_of(t);
   const double along = glm::dot(cross, plane.normal);
-  // Compares the sine of the angle between them: no more than 1e-4 rad.
+  // Compares the sine of the angle between the normals: at most 1e-4 rad.
   if (!(along > 0) || glm::length(cross - plane.normal * along) > flat_rad * along) {
     return false;
   }
@@ -177,8 +177,8 @@ void FacetMerger::find_planes() {
   }
 }
 
-/// The plane of one triangle and all that hangs together with it and lies in that plane. It is always the
-/// seed that is compared with, so that a surface of small bends does not count as flat in the end.
+/// The plane of one triangle and of all connected triangles in that plane. All are compared with the seed, so
+/// that a surface of many small bends does not count as flat.
 void FacetMerger::grow_plane(Index seed) {
   const glm::dvec3 cross = cross_of(mesh_.triangles[seed]);
   const double length = glm::length(cross);
@@ -204,7 +204,7 @@ void FacetMerger::grow_plane(Index seed) {
   }
 }
 
-/// nullopt where the surface is not a disc, or half of one, around the vertex.
+/// nullopt if the surface around the vertex is not a disc or half a disc.
 std::optional<FacetMerger::Ring> FacetMerger::ring_of(Index vertex) const {
   const std::vector<Index>& around = triangles_of_[vertex];
   constexpr std::size_t most = 64;
@@ -258,7 +258,7 @@ double FacetMerger::bend_at(Index before, Index vertex, Index after) const {
                                      : std::numeric_limits<double>::infinity();
 }
 
-/// The neighbours onto which the vertex may be drawn without moving an edge between planes or a border.
+/// The neighbours onto which the vertex can move without moving an edge between planes or a border.
 std::vector<Index> FacetMerger::targets(Index vertex, const Ring& ring) const {
   std::vector<Index> ends;  // neighbours at which edges or borders leave the vertex
   const std::size_t count = ring.triangles.size();
@@ -282,7 +282,7 @@ std::vector<Index> FacetMerger::targets(Index vertex, const Ring& ring) const {
   return straight ? ends : std::vector<Index>{};
 }
 
-/// Least height over longest side of the triangles that would remain. Negative: not possible.
+/// Smallest height over longest side of the remaining triangles. Negative: not possible.
 double FacetMerger::worst_quality(Index target, const Ring& ring) const {
   double worst = 1.0;
   for (std::size_t i = 0; i < ring.triangles.size(); ++i) {
@@ -302,7 +302,7 @@ double FacetMerger::worst_quality(Index target, const Ring& ring) const {
   return worst >= least_quality ? worst : -1.0;
 }
 
-/// Whether no other neighbour of the two meets both: else two sheets would be glued together.
+/// Whether the two vertices share only the neighbours at their common edge; else two sheets would be joined.
 bool FacetMerger::keeps_manifold(Index vertex, Index target, const Ring& ring) const {
   std::size_t shared = 0;
   std::vector<Index> seen;
@@ -321,8 +321,8 @@ bool FacetMerger::keeps_manifold(Index vertex, Index target, const Ring& ring) c
   return shared == (at_border ? 1 : 2);
 }
 
-/// The edge from `before` to `after`, out of which a vertex is taken, may be off by what the vertex was, and
-/// more: kept at both its ends, so that small bends do not add up to a large one.
+/// When a vertex is removed, the edge from `before` to `after` is off by the vertex's distance and its
+/// earlier movement. Both ends store the sum, so that small bends do not add up to a large one.
 void FacetMerger::note_movement(Index before, Index vertex, Index after) {
   const double moved = moved_m_[vertex] + bend_at(before, vertex, after);
   moved_m_[before] = std::max(moved_m_[before], moved);
@@ -347,7 +347,7 @@ bool FacetMerger::take_out(Index vertex) {
   if (best == none) {
     return false;
   }
-  if (choices.size() == 2) {  // inside a plane there are more
+  if (choices.size() == 2) {  // inside a plane there are more choices
     note_movement(choices[0], vertex, choices[1]);
   }
   for (const Index t : ring->triangles) {
@@ -370,7 +370,7 @@ bool FacetMerger::take_out(Index vertex) {
   return true;
 }
 
-/// Neighbours of what was taken out wait for the next pass, so that what is left stays even.
+/// Neighbours of removed vertices wait for the next pass, so that the remaining vertices are evenly spread.
 void FacetMerger::pass(std::vector<Index>& candidates) {
   locked_.assign(mesh_.positions.size(), 0);
   std::erase_if(candidates, [this](Index v) { return locked_[v] == 0 && take_out(v); });
@@ -404,7 +404,7 @@ TriangleMesh FacetMerger::merged(std::vector<Index> candidates) {
 }  // namespace
 
 TriangleMesh merge_coplanar_facets(const TriangleMesh& mesh) {
-  constexpr std::size_t least_share = 64;  // of the vertices; below, it is not worth the while
+  constexpr std::size_t least_share = 64;  // of the vertices; merging fewer is not worth the time
   Welded welded = weld(mesh);
   std::vector<Index> candidates = vertices_between_two_directions(welded);
   if (candidates.size() < welded.positions.size() / least_share) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One server under two names; caches have either.
+// One server with two names; caches use either name.
 constexpr std::array<std::string_view, 2> hosts{"fuel.gazebosim.org", "fuel.ignitionrobotics.org"};
 
 std::string unescaped(std::string_view text) {
@@ -48,7 +48,7 @@ std::vector<std::string> segments_of(std::string_view path) {
   return segments;
 }
 
-/// A name that would lead out of the folder where it is looked for, "%2F" undone.
+/// Whether a name leads out of its folder, after "%2F" is decoded.
 bool leads_up(const std::string& name) {
   return name == ".." || name.find('/') != std::string::npos;
 }
@@ -72,7 +72,7 @@ std::vector<fs::path> cache_folders() {
   return folders;
 }
 
-/// The folder of the highest number; nullopt where there is none.
+/// The folder with the highest number; nullopt if there is none.
 std::optional<fs::path> newest_version(const fs::path& model) {
   std::optional<fs::path> newest;
   int highest = -1;
@@ -110,7 +110,7 @@ std::optional<FuelUri> parse_fuel_uri(std::string_view uri) {
     }
     parts.erase(parts.begin());
     if (!parts.empty() && parts[0].find('.') != std::string::npos) {
-      parts.erase(parts.begin());  // the version of Fuel's interface
+      parts.erase(parts.begin());  // the version of Fuel's API
     }
     if (parts.size() < 3 || parts[1] != "models") {
       return std::nullopt;

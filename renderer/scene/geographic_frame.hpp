@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a world is on Earth.
+// The position of a world on Earth.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,9 @@
 
 namespace sonard::render {
 
-/// The place of the world's (0, 0, 0): x is east, y north, z up there. WGS 84. Heights are above mean sea
-/// level, as MAVLink's are; heights of other vertical datums are subtracted as they are, for what lies
-/// between two depends on the place and the tide.
+/// The position of the world's (0, 0, 0), where x is east, y north, z up. WGS 84. Heights are above mean sea
+/// level, as in MAVLink. Heights of other vertical datums are used without conversion, because the difference
+/// depends on place and tide.
 struct GeographicOrigin {
   double latitude_deg = 0.0;   ///< -90 to 90, north is positive
   double longitude_deg = 0.0;  ///< -180 to 180, east is positive
@@ -19,15 +19,15 @@ struct GeographicOrigin {
   bool operator==(const GeographicOrigin&) const = default;
 };
 
-/// Places on Earth as poses in the world: a plane that touches the ellipsoid in the origin, so that the sea
-/// is 8 cm lower at a distance of 1 km. By GeographicLib::LocalCartesian. Reading it from several threads is
-/// safe.
+/// Positions on Earth as poses in the world. The world's x-y plane touches the ellipsoid at the origin, so
+/// the sea is 8 cm lower at a distance of 1 km. Uses GeographicLib::LocalCartesian. Several threads may read
+/// it.
 class GeographicFrame {
  public:
-  /// @throws WorldError where sonard was built without GeographicLib
+  /// @throws WorldError if sonard was built without GeographicLib
   explicit GeographicFrame(const GeographicOrigin& origin);
 
-  /// Of the axes east, north and up of a place.
+  /// Pose of the axes east, north and up at a position.
   Pose T_world_place(double latitude_deg, double longitude_deg, double altitude_m) const;
 
  private:
@@ -35,8 +35,8 @@ class GeographicFrame {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Geographic coordinates of a place in a zone of UTM.
-/// @throws WorldError where the numbers are no place of the zone, and as GeographicFrame does
+/// Geographic coordinates of a position in a zone of UTM.
+/// @throws WorldError if the numbers are not in the zone, or if sonard was built without GeographicLib
 GeographicOrigin place_of_utm(int zone, bool northern, double easting_m, double northing_m);
 
 }  // namespace sonard::render

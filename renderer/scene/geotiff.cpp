@@ -21,15 +21,15 @@
 namespace sonard::render {
 namespace {
 
-// Tags and keys by their names and numbers in the standard.
+// Tags and keys, with the names and numbers of the standard.
 constexpr ttag_t model_pixel_scale = 33550, model_tiepoint = 33922, model_transformation = 34264,
                  geo_key_directory = 34735, gdal_nodata = 42113;
 constexpr int gt_raster_type = 1025, geodetic_crs = 2048, projected_crs = 3072, vertical_crs = 4096,
               vertical_units = 4099;
 constexpr int pixel_is_point = 2, metre = 9001;
 
-/// Geographic systems and the first and last zone of UTM on their datums. Other than WGS 84 they are taken
-/// for it: ETRS89 is within 1 m of it, NAD83 within 2 m.
+/// Geographic systems, and the first and last zone of UTM on their datums. All are treated as WGS 84: ETRS89
+/// is within 1 m of it, NAD83 within 2 m.
 constexpr std::array<int, 3> geographic_systems{4326, 4258, 4269};
 struct UtmZones {
   int first_epsg, first_zone, last_zone;
@@ -68,8 +68,8 @@ const UtmZones* utm_of(int epsg) {
 
 using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
-/// The values of a tag that libtiff has no name for. How it hands them out depends on whether
-/// another library of the process has told it of the tag.
+/// The values of a tag without a name in libtiff. How libtiff returns them depends on whether another library
+/// in the process has registered the tag.
 template <typename T>
 std::span<const T> values_of(const Tiff& tiff, ttag_t tag) {
   const TIFFField* const field = TIFFFindField(tiff.get(), tag, TIFF_ANY);
@@ -94,7 +94,7 @@ std::span<const T> values_of(const Tiff& tiff, ttag_t tag) {
                                          : std::span<const T>();
 }
 
-/// Keys whose value is a number of 16 bits.
+/// The keys with a 16-bit number as value.
 std::map<int, int> keys_of(const Tiff& tiff) {
   const auto directory = values_of<std::uint16_t>(tiff, geo_key_directory);
   std::map<int, int> keys;
@@ -106,7 +106,7 @@ std::map<int, int> keys_of(const Tiff& tiff) {
   return keys;
 }
 
-/// @throws std::runtime_error saying what is missing
+/// @throws std::runtime_error with the missing part
 Georeference georeference_of(const Tiff& tiff) {
   const std::map<int, int> keys = keys_of(tiff);
   const auto key = [&](int number) {
@@ -143,8 +143,8 @@ Georeference georeference_of(const Tiff& tiff) {
             : "its rows do not run from west to east (expected a pixel scale and one tie point): "
               "convert it by gdalwarp");
   }
-  // A tie point is where a raster coordinate lies; that of the first pixel's middle is 0.5 where pixels are
-  // areas.
+  // A tie point is the position of a raster coordinate. The middle of the first pixel is at 0.5 if pixels are
+  // areas, else at 0.
   const double middle = key(gt_raster_type) == pixel_is_point ? 0.0 : 0.5;
   place.step = {scale[0], -scale[1]};
   place.first = glm::dvec2(tie[3], tie[4]) + glm::dvec2(middle - tie[0], middle - tie[1]) * place.step;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings that come once for each visual of a world, as one line for each kind.
+// Collects warnings that repeat for each visual of a world into one line per kind.
 #pragma once
 
 #include <map>
@@ -11,9 +11,9 @@ namespace sonard::render {
 
 class GroupedWarnings {
  public:
-  /// @param kind what is wrong and what to do, for all of them: "mesh materials are not acoustic ones: ..."
-  /// @param place "file:line"; the line has that of the first
-  /// @param name what it is wrong of: "'RedPaint' (m::l::v)"; each is listed once
+  /// @param kind the problem and its remedy, for all of them: "mesh materials are not acoustic ones: ..."
+  /// @param place "file:line"; the line shows the first place
+  /// @param name the affected element: "'RedPaint' (m::l::v)"; each is listed once
   void add(const std::string& kind, const std::string& place, const std::string& name);
 
   /// "file:line: KIND (12): NAME, NAME, ..." for each kind.

@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 10> image_extensions{"png", "jpg", "jpeg"
                                                             "bmp", "tga", "pgm",  "ppm", "pnm"};
 constexpr int max_side_px = 16384;
 
-/// All channels as 16 bit, row 0 at the bottom.
+/// All channels as 16 bits, row 0 at the bottom.
 struct Pixels {
   int width_px = 0;
   int height_px = 0;
@@ -101,7 +101,7 @@ std::string decode_elevations(const std::filesystem::path& file) {
   return writer.take();
 }
 
-/// What `decoder` makes of the file, with `unpack` to take it apart.
+/// Runs `decoder` on the file in a child process, and returns the result of `unpack`.
 template <typename Unpack>
 auto read_isolated(const std::filesystem::path& file, std::string (*decoder)(const std::filesystem::path&),
                    const Unpack& unpack) {
@@ -136,7 +136,7 @@ Pixels load_pixels(const std::filesystem::path& file) {
   });
 }
 
-/// Elevations as 16 bit, and what is not known.
+/// Converts elevations to 16 bits, and marks unknown ones as holes.
 void set_elevations(ElevationMap& map, const std::vector<float>& elevation_m) {
   float low = INFINITY, high = -INFINITY;
   for (const float h : elevation_m) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of worlds: height maps and normal maps. Local PNG, JPEG, BMP, TGA or PNM files, through
-// osgDB, and TIFF files.
+// Images of worlds: height maps and normal maps. Local PNG, JPEG, BMP, TGA or PNM files, through osgDB, and
+// TIFF files.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ namespace sonard::render {
 struct GreyImage {
   int width_px = 0;
   int height_px = 0;
-  std::vector<std::uint16_t> value;  ///< 0 to 65535; 8-bit files are spread over the whole range
-  std::vector<bool> hole{};          ///< where nothing is known; empty: there are none
+  std::vector<std::uint16_t> value;  ///< 0 to 65535; 8-bit files use the whole range
+  std::vector<bool> hole{};          ///< pixels without a value; empty: no holes
 
   bool is_hole(std::size_t pixel) const { return !hole.empty() && hole[pixel]; }
   bool is_hole(int x, int y) const {
@@ -39,17 +39,17 @@ struct ElevationMap {
   std::string no_georeference_because;
 };
 
-/// The first channel of an 8 or 16-bit image.
-/// @throws WorldError naming the file when it is missing, damaged or of another kind.
+/// Loads the first channel of an 8 or 16-bit image.
+/// @throws WorldError with the file name if the file is missing, damaged or of another kind.
 GreyImage load_grey_image(const std::filesystem::path& file);
 
 bool is_elevation_map(const std::filesystem::path& file);
 
-/// @throws WorldError naming the file
+/// @throws WorldError with the file name
 ElevationMap load_elevation_map(const std::filesystem::path& file);
 
-/// A tangent-space normal map from an 8 or 16-bit RGB image.
-/// @throws WorldError naming the file.
+/// Loads a tangent-space normal map from an 8 or 16-bit RGB image.
+/// @throws WorldError with the file name.
 NormalMap load_normal_map(const std::filesystem::path& file);
 
 }  // namespace sonard::render

@@ -27,7 +27,7 @@ namespace {
 
 enum class Outcome : char { returned = 'R', threw = 'T' };
 
-/// @throws IsolatedFailure; std::system_error where it is a limit of the process, and not the file
+/// @throws IsolatedFailure; std::system_error if a limit of the process is the cause, not the file
 [[noreturn]] void throw_failed(const std::string& call) {
   const int error = errno;
   if (error == EMFILE || error == ENFILE || error == ENOMEM || error == EAGAIN) {

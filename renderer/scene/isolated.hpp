@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs foreign file readers where their faults cannot hurt: in a child process.
+// Runs third-party file readers in a child process, which contains their faults.
 #pragma once
 
 #include <functional>
@@ -10,20 +10,20 @@
 
 namespace sonard::render {
 
-/// The reader crashed, ran too long or gave up; what() says which.
+/// The reader crashed, ran too long or failed; what() has the reason.
 struct IsolatedFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 struct IsolatedResult {
-  std::string bytes;  ///< what the work returned
-  std::string log;    ///< what it printed meanwhile
+  std::string bytes;  ///< the return value of the work
+  std::string log;    ///< its output to stdout and stderr
 };
 
-/// Calls `work` in a forked child, confined by `jail`, and hands back the bytes it returns. The mesh and
-/// image libraries crash or loop on some damaged files, print to the terminal and keep global state; none of
-/// that reaches this process. A child that uses more than its processor time, or takes a minute and 20 times
-/// as long by the wall clock, is stopped. Called at start-up, before other threads use the libraries that
+/// Calls `work` in a forked child, confined by `jail`, and returns its bytes. The mesh and image libraries
+/// crash or loop on some damaged files, print to the terminal and keep global state; none of these effects
+/// reach this process. A child is killed if it exceeds its processor time, or a wall-clock limit of one
+/// minute plus 20 times the processor time. Call it at start-up, before other threads use the libraries that
 /// `work` uses.
 /// @param prepare runs in the child before it is confined, to load libraries; may be empty
 /// @throws IsolatedFailure; also with the message of an exception that `work` threw.

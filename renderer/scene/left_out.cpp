@@ -19,7 +19,7 @@ struct ElementKind {
   bool audible = false;
 };
 
-// Elements of the SDF specification. What stands inside one of these is not looked at.
+// Elements of the SDF specification. Elements inside them are not read.
 constexpr std::array<ElementKind, 18> element_kinds{{
     {"actor", "actors", true},
     {"road", "roads", true},

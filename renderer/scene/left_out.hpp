@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an SDF file has and a world has not: one line for each kind of it.
+// Collects the elements of an SDF file that are not in the world: one line for each kind.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ namespace sonard::render {
 
 class LeftOut {
  public:
-  /// Lights, plugins, joints, actors, other sensors, ...: all elements that no part of a world is made of.
+  /// Lights, plugins, joints, actors, other sensors, ...: all elements that do not become part of a world.
   void add_elements_of(const SdfElement& root);
-  /// A shape of a kind that is not drawn, "polyline".
+  /// A shape of a kind that is not supported, "polyline".
   void add_geometry(const std::string& kind, const std::string& path);
-  /// Something that no element of those above is, in the form of silent(): "models without shapes", "marks".
+  /// Something else without an echo, for silent(): "models without shapes", "marks".
   void add_silent(std::string_view what, std::string name) { add(what, false, std::move(name)); }
 
-  /// "lights (2): sun, lamp": nothing that echoes.
+  /// The elements without an echo, "lights (2): sun, lamp".
   std::vector<std::string> silent() const { return lines(false); }
-  /// What has a surface, or might have one, in the same form.
+  /// The elements that have a surface, or might have one, in this form.
   std::vector<std::string> audible() const { return lines(true); }
 
  private:
@@ -36,7 +36,7 @@ class LeftOut {
   void add_children_of(const SdfElement& element, const std::string& path);
   std::vector<std::string> lines(bool audible) const;
 
-  std::vector<Kind> kinds_;  // in the order in which they came
+  std::vector<Kind> kinds_;  // in the order of their first element
 };
 
 }  // namespace sonard::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What may be handed to a foreign file reader: an existing local file of a known kind, nothing else.
+// Checks that a third-party file reader gets only existing local files of a known kind.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,26 @@
 namespace sonard::render {
 
 /// @param what "mesh" or "image", for the message.
-/// @throws WorldError naming the file when it is no absolute path of an existing regular file or its
+/// @throws WorldError with the file name if it is not an absolute path of an existing regular file, or if its
 /// extension (letter case ignored) is not one of `extensions`, which the message then lists.
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
                         std::string_view what);
 
-/// @throws WorldError naming the file and the system's reason, if this process may not read it.
+/// @throws WorldError with the file name and the system's reason, if this process may not read it.
 void require_readable(const std::filesystem::path& file);
 
-/// The jail for reading a file: the libraries need about 0.05 s and 20 bytes of memory for each megabyte and
-/// byte of a mesh, and on some damaged files they never end.
-/// @param readable the file, or all that it may name
+/// The jail for reading a file. The libraries need about 0.05 s per megabyte and 20 bytes of memory per byte
+/// of a mesh, and on some damaged files they never end.
+/// @param readable the file, or all files that it may name
 ReaderJail reader_jail(const std::filesystem::path& file, std::vector<std::filesystem::path> readable);
 
-/// All bytes of a file; none if it cannot be read.
+/// All bytes of a file; empty if it cannot be read.
 std::string content_of(const std::filesystem::path& file);
 
 /// Up to `limit` bytes from the start of a file.
 std::string head_of(const std::filesystem::path& file, std::size_t limit);
 
-/// Whether `path` is `folder` or below it, by their names alone. Both absolute.
+/// Whether `path` is `folder` or below it, by their names alone. Both must be absolute.
 bool lies_below(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 /// Extension in lower case without the dot.

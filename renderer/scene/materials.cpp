@@ -24,9 +24,9 @@ struct TableRow {
 };
 
 /// R, mu, m and sigma: docs/physics.md 2.4 (typical values; 720 kHz is an extrapolation). rho: |R|, scaled so
-/// that clean steel is the brightest example of the paper, 2.12. Of the two that depend on the weather `air`
-/// is a surface at rest and `sea_surface` one under 5 m/s of wind (slopes by Cox & Munk 1954, heights by
-/// Pierson & Moskowitz 1964). Nothing is known of `default`, so it has no facets.
+/// that clean steel is the brightest example of the paper, 2.12. Two materials depend on the weather: `air`
+/// is a surface at rest, and `sea_surface` one in 5 m/s of wind (slopes by Cox & Munk 1954, heights by
+/// Pierson & Moskowitz 1964). `default` is an unknown material, so it has no facets.
 constexpr std::array<TableRow, 14> table{{
     {"default", 1.00, -22.0, 0.0, 0.2, 2.0},
     {"steel", 2.12, -25.0, 0.94, 0.05, 0.1},
@@ -57,7 +57,7 @@ constexpr double huge_reflectance = 10.0;
 constexpr double retro_reference_rho = 0.35;
 constexpr double retro_reference_mu_db = -22.0;
 constexpr double least_rms_slope = 0.01;  // 0.6 degrees
-constexpr double most_rms_slope = 0.5;    // steeper, the law of facets grows away from normal incidence
+constexpr double most_rms_slope = 0.5;    // if steeper, the law of facets grows away from normal incidence
 constexpr double most_rms_height_mm = 1000.0;
 
 double linear(double level_db) {
@@ -71,7 +71,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// "Steel.001", "steel_clean" and "steel" name the same thing.
+/// "Steel.001", "steel_clean" and "steel" are the same material.
 std::string canonical(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot != std::string_view::npos && dot + 1 < name.size() &&
@@ -140,7 +140,7 @@ double checked(double value, double least, double most, std::string_view what) {
   return value;
 }
 
-/// The numbers that stand for themselves, in place of those of the material.
+/// Replaces values of the material by the numbers in the request.
 void replace_facets(const MaterialRequest& request, AcousticMaterial& material) {
   if (request.pressure_reflection) {
     material.pressure_reflection = checked(*request.pressure_reflection, -1.0, 1.0, "pressure_reflection");

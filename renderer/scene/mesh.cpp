@@ -15,9 +15,9 @@ namespace sonard::render {
 namespace {
 
 constexpr double coordinate_limit_m = 1e12;
-/// Twice the area of a triangle of 0.1 um sides; below it a float cross product is no direction any more.
+/// Twice the area of a triangle with 0.1 um sides; below it a float cross product has no reliable direction.
 constexpr double min_cross_m2 = 1e-14;
-/// Height over longest edge below which three float positions count as collinear.
+/// Height over longest edge; below it three float positions count as collinear.
 constexpr double min_relative_height = 1e-7;
 constexpr float min_normal_length = 1e-6F;
 
@@ -25,10 +25,10 @@ enum class Verdict { good, degenerate, non_finite };
 
 bool usable(const glm::vec3& p) {
   return std::abs(p.x) <= coordinate_limit_m && std::abs(p.y) <= coordinate_limit_m &&
-         std::abs(p.z) <= coordinate_limit_m;  // false for NaN too
+         std::abs(p.z) <= coordinate_limit_m;  // also false for NaN
 }
 
-/// Normal of the triangle, its length twice the area.
+/// Normal of the triangle; its length is twice the area.
 glm::dvec3 area_normal(const std::vector<glm::vec3>& positions, const std::uint32_t* corner) {
   const glm::dvec3 a(positions[corner[0]]);
   return glm::cross(glm::dvec3(positions[corner[1]]) - a, glm::dvec3(positions[corner[2]]) - a);
@@ -100,7 +100,7 @@ void keep_only(std::vector<T>& values, const std::vector<std::uint32_t>& old_of_
   values = std::move(kept);
 }
 
-/// Unused vertices may be NaN; after this every position belongs to a good triangle.
+/// Unused vertices may be NaN. After this, every position belongs to a valid triangle.
 void drop_unused_vertices(TriangleMesh& mesh) {
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> new_of_old(mesh.positions.size(), unused);
@@ -136,7 +136,7 @@ glm::vec3 any_perpendicular(const glm::vec3& unit) {
 }
 
 void repair_normals(TriangleMesh& mesh, MeshDiagnostics& diagnostics) {
-  std::vector<glm::dvec3> geometric;  // made when the first bad one is met
+  std::vector<glm::dvec3> geometric;  // computed at the first bad normal
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
     const glm::dvec3 given(mesh.normals[i]);
     const double length = glm::length(given);
@@ -148,7 +148,7 @@ void repair_normals(TriangleMesh& mesh, MeshDiagnostics& diagnostics) {
     if (geometric.empty()) {
       geometric = area_weighted_normals(mesh);
     }
-    // Opposite triangles on one vertex cancel: any direction is as wrong as another there.
+    // Opposite triangles at one vertex cancel; any direction is equally wrong there.
     const double geometric_length = glm::length(geometric[i]);
     mesh.normals[i] =
         geometric_length > 0.0 ? glm::vec3(geometric[i] / geometric_length) : glm::vec3(0.0F, 0.0F, 1.0F);
@@ -186,7 +186,7 @@ double texture_cross(const TriangleMesh& mesh, const std::uint32_t* corner) {
   return e1.x * e2.y - e2.x * e1.y;
 }
 
-/// Gives triangles of mirrored texture their own copies of the vertices they share with the others.
+/// Gives triangles with mirrored texture their own copies of vertices that they share with others.
 /// @return +1 or -1 per vertex.
 std::vector<float> split_by_handedness(TriangleMesh& mesh) {
   std::vector<float> handedness(mesh.positions.size(), 0.0F);
@@ -259,7 +259,7 @@ void add_tangents(TriangleMesh& mesh) {
     const glm::dvec3 normal(mesh.normals[i]);
     const glm::dvec3 along = sums[i] - normal * glm::dot(normal, sums[i]);
     const double length = glm::length(along);
-    // The part left along the surface must stand out of the rounding of the sum.
+    // The component along the surface must exceed the rounding error of the sum.
     const bool clear = length > 1e-6 * glm::length(sums[i]) && length > 0.0;
     const glm::vec3 tangent = clear ? glm::vec3(along / length) : any_perpendicular(mesh.normals[i]);
     mesh.tangents[i] = glm::vec4(tangent, handedness[i] < 0.0F ? -1.0F : 1.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was built of meshes that come and go.
+// Cache of data that an engine builds from meshes.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace sonard::render {
 
-/// Sonars that share a renderer draw a terrain in different detail, in turn: what was built for one is still
-/// there when its turn comes again. Keeps so many triangles' worth, the last used.
+/// Sonars that share a renderer draw a terrain in turn, in different detail. The cache keeps the data of one
+/// sonar until its next turn. Beyond `most_triangles`, it drops the data with the oldest use.
 template <class Built>
 class MeshCache {
  public:
   static constexpr std::size_t most_triangles = 4'000'000;
 
-  /// Null when there is none.
+  /// nullptr if there is no entry. The entry counts as used.
   Built* find(const TriangleMesh* mesh) {
     const auto known = places_.find(mesh);
     if (known == places_.end()) {
@@ -29,7 +29,7 @@ class MeshCache {
     return &known->second->second;
   }
 
-  /// Nothing happens where there is one.
+  /// Does nothing if there is an entry for the mesh.
   void keep(const std::shared_ptr<const TriangleMesh>& mesh, Built built) {
     if (places_.count(mesh.get()) != 0) {
       return;
@@ -46,7 +46,7 @@ class MeshCache {
 
  private:
   using Entry = std::pair<std::shared_ptr<const TriangleMesh>, Built>;
-  std::list<Entry> entries_;  ///< the last used first
+  std::list<Entry> entries_;  ///< most recent use first
   std::unordered_map<const TriangleMesh*, typename std::list<Entry>::iterator> places_;
   std::size_t triangles_ = 0;
 };

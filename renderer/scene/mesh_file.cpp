@@ -23,10 +23,10 @@ namespace {
 
 constexpr std::size_t many_triangles = 2'000'000;
 constexpr std::size_t max_triangles = 50'000'000;
-/// Beyond this a float coordinate is coarser than 4 mm: half a range cell of a high-frequency sonar.
+/// Beyond this, float coordinates are coarser than 4 mm: half a range cell of a high-frequency sonar.
 constexpr double far_from_origin_m = 32768.0;
 
-/// Middle of the box around all vertices that triangles use and that are numbers.
+/// Middle of the bounding box of all vertices that triangles use and that are finite.
 glm::dvec3 box_centre(const RawMesh& raw) {
   glm::dvec3 low(std::numeric_limits<double>::infinity());
   glm::dvec3 high(-std::numeric_limits<double>::infinity());
@@ -67,7 +67,7 @@ bool is_far(const TriangleMesh& mesh) {
   });
 }
 
-/// Each name once, in the order of the file, without the file's own, which Assimp gives to the root.
+/// Each name once, in the order of the file, without the file's own name, which Assimp gives to the root.
 std::vector<std::string> names_in(const RawMesh& raw, const std::filesystem::path& file) {
   std::vector<std::string> names;
   for (const std::string& name : raw.names) {
@@ -95,7 +95,7 @@ void require_parts(const RawMesh& raw, const MeshFileRequest& request) {
 MeshFile load_checked(const MeshFileRequest& request) {
   MeshFile loaded;
   const std::string extension = lower_extension(request.file);
-  // As in Gazebo, the unit is applied and the axes are not.
+  // As in Gazebo, the unit is applied, but not the axes.
   const ColladaAsset asset = extension == "dae" ? read_collada_asset(request.file) : ColladaAsset();
   loaded.up_axis = asset.up_axis == "Z_UP" ? "" : asset.up_axis;
   RawMesh raw = read_mesh(mesh_readers(request.file), {request.file, request.submesh, request.folders},

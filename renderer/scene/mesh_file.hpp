@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files, under one strict policy: an existing local file of a known format, its axes kept, its unit
-// applied, normals only where the file has them, and never silently nothing. See docs/worlds.md.
+// Loads mesh files under strict rules: existing local files of known formats; axes kept, unit applied;
+// normals only if the file has them; an error if the result is empty. See docs/worlds.md.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,17 @@ namespace sonard::render {
 
 struct MeshFileRequest {
   std::filesystem::path file;   ///< absolute
-  std::string submesh;          ///< only the parts of this name; empty = all
+  std::string submesh;          ///< only the parts with this name; empty = all
   bool center_submesh = false;  ///< moves the centre of the bounding box to the origin, before scaling
   glm::dvec3 scale{1.0};        ///< negative values mirror
-  bool tangents = false;        ///< for a normal map, where the mesh has texture coordinates
-  std::vector<std::filesystem::path> folders{};  ///< where files that it names may lie, beside its own folder
+  bool tangents = false;        ///< for a normal map, if the mesh has texture coordinates
+  std::vector<std::filesystem::path> folders{};  ///< for files that it names, besides its own folder
 
   bool operator==(const MeshFileRequest&) const = default;
 };
 
 struct MeshFilePart {
-  std::string material_name;  ///< as the file names it, may be empty
+  std::string material_name;  ///< as in the file, may be empty
   std::shared_ptr<const TriangleMesh> mesh;
   glm::dvec3 scale{1.0};  ///< MeshFileRequest::scale
 };
@@ -34,12 +34,13 @@ struct MeshFilePart {
 struct MeshFile {
   std::vector<MeshFilePart> parts;  ///< one per material, each with at least one triangle
   MeshDiagnostics diagnostics;
-  std::vector<std::string> warnings;  ///< each names the file
-  std::string up_axis{};  ///< "X_UP" or "Y_UP" of a COLLADA file, which is not applied; else empty
+  std::vector<std::string> warnings;  ///< each has the file name
+  std::string up_axis{};              ///< "X_UP" or "Y_UP" if a COLLADA file has it, not applied; else empty
 };
 
-/// @throws MissingFile naming the file: no triangles, no such submesh. WorldError, likewise: not found, not
-/// local, unknown format, damaged, more than 50 million triangles.
+/// @throws MissingFile with the file name if there are no triangles, or no such submesh; WorldError with the
+/// file name if the file is not found, not local, damaged, of unknown format, or has more than 50 million
+/// triangles.
 MeshFile load_mesh_file(const MeshFileRequest& request);
 
 }  // namespace sonard::render

@@ -38,7 +38,7 @@ struct Format {
   const MeshReader* second = nullptr;
 };
 
-/// Assimp reads every OBJ that OpenSceneGraph does, and OpenSceneGraph opens whatever its mtllib names.
+/// Assimp alone reads OBJ: it reads as many files, and OpenSceneGraph opens any file that mtllib names.
 constexpr std::array<Format, 11> formats{{{"obj", &assimp},
                                           {"stl", &stl},
                                           {"ply", &ply},
@@ -68,7 +68,7 @@ RawMesh read_isolated(const MeshReader& reader, const MeshSource& source) {
   return raw_mesh_of(result.bytes);
 }
 
-/// Whether a triangle has an area: a reader that mistakes the file may find corners that are all alike.
+/// Whether any triangle has an area. A reader that misinterprets the file may return identical corners.
 bool has_surface(const RawPart& part) {
   for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
     const auto corner = [&](std::size_t k) { return part.positions[part.indices[i + k]]; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which readers take which mesh format, in what order. The order is by measurement: docs/worlds.md.
+// The readers of each mesh format, in their order. The order is measured: docs/worlds.md.
 #pragma once
 
 #include <filesystem>
@@ -15,20 +15,20 @@ namespace sonard::render {
 struct MeshReader {
   std::string_view name;
   RawMesh (*read)(const MeshSource& source);
-  void (*prepare)(const std::filesystem::path& file) = nullptr;  ///< before the process is confined
+  void (*prepare)(const std::filesystem::path& file) = nullptr;  ///< runs before the process is confined
 };
 
-/// Extensions of the formats that can be read, in lower case without the dot.
+/// Extensions of the supported formats, in lower case without the dot.
 std::span<const std::string_view> mesh_extensions();
 
-/// The readers of the file's format, the best one first; at least one if its extension is known.
+/// The readers for the file's format, the best one first; at least one if the extension is known.
 std::vector<MeshReader> mesh_readers(const std::filesystem::path& file);
 
-/// The triangles of the first of `readers` that finds one with an area, in the unit and the axes of the file
-/// (an FBX: in metres, z up). Each reader runs in a separate process.
+/// Returns the triangles of the first reader that finds one with an area, in the unit and the axes of the
+/// file (an FBX: in metres, z up). Each reader runs in a separate process.
 /// If no reader finds one, this returns the result of the first that can read the file. If a reader fails and
-/// a later one reads the file, that is a warning.
-/// @throws std::runtime_error with what each reader said, if none can read the file.
+/// a later one reads the file, that adds a warning.
+/// @throws std::runtime_error with the message of each reader, if none can read the file.
 RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
                   std::vector<std::string>& warnings);
 

@@ -19,8 +19,8 @@
 namespace sonard::render {
 namespace {
 
-/// Lets osgDB read the one file that was asked for. Plugins follow references of their own accord: an OBJ
-/// material with an http texture makes osgDB fetch it.
+/// Lets osgDB read only the requested file. Its plugins follow references by themselves: an OBJ material with
+/// an http texture makes osgDB download it.
 class OneFileOnly : public osgDB::ReadFileCallback {
   using Result = osgDB::ReaderWriter::ReadResult;
 
@@ -53,7 +53,7 @@ struct IndexCollector {
   }
 };
 
-/// Elements of an osg array of 2 to 4 floats or doubles, as `Out`; empty when the array is of another kind.
+/// Elements of an osg array of 2 to 4 floats or doubles, as `Out`; empty if the array is of another kind.
 template <typename Out, typename OsgArray>
 std::vector<Out> convert(const OsgArray& array) {
   std::vector<Out> values;
@@ -87,10 +87,10 @@ std::vector<Out> elements(const osg::Array* array) {
   return {};
 }
 
-/// What a submesh takes of the nodes below the one of its name.
+/// How a submesh treats the nodes below the node of its name.
 enum class Below {
-  own,     ///< as in Gazebo, a node that has another name is a submesh of its own
-  subtree  ///< all of them
+  own,     ///< as in Gazebo, a node with another name is a separate submesh
+  subtree  ///< includes all of them
 };
 
 class TriangleCollector : public osg::NodeVisitor {
@@ -138,7 +138,7 @@ class TriangleCollector : public osg::NodeVisitor {
 
   bool is_submesh(const osg::Node& node) const { return !submesh_.empty() && node.getName() == submesh_; }
 
-  /// OBJ puts the name on the material attribute, DAE on the state set.
+  /// OBJ stores the name in the material attribute, DAE in the state set.
   static std::string material_of(const osg::StateSet* state, const std::string& inherited) {
     if (state == nullptr) {
       return inherited;
@@ -166,7 +166,7 @@ class TriangleCollector : public osg::NodeVisitor {
     osg::TriangleIndexFunctor<IndexCollector> collector;
     geometry.accept(collector);
     triangles.indices = std::move(collector.indices);
-    // Rows of osg's matrix, which are multiplied from the left, are columns of glm's.
+    // osg multiplies its matrices from the left, so its rows are the columns of glm.
     mesh_.add(triangles, glm::make_mat4(matrix_.ptr()));
   }
 
@@ -182,8 +182,7 @@ class TriangleCollector : public osg::NodeVisitor {
 
 RawMesh read_with_osg(const std::filesystem::path& file, const std::string& submesh) {
   osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
-  // Without these the OBJ plugin turns the model to its own idea of "up" and smooths edges that have no
-  // normals.
+  // Without these, the OBJ plugin turns the model to its own "up" axis and smooths edges without normals.
   options->setOptionString("noRotation generateFacetNormals");
   options->setPrecisionHint(osgDB::Options::DOUBLE_PRECISION_VERTEX);
   osg::ref_ptr<OneFileOnly> guard = new OneFileOnly(file.string());
@@ -200,7 +199,7 @@ RawMesh read_with_osg(const std::filesystem::path& file, const std::string& subm
   for (const Below below : {Below::own, Below::subtree}) {
     TriangleCollector collector(mesh, submesh, below);
     if (lower_extension(file) == "dae" && node->asGroup() != nullptr) {
-      node->asGroup()->traverse(collector);  // the root is the plugin's own and turns <up_axis> to z
+      node->asGroup()->traverse(collector);  // the plugin adds the root, which turns <up_axis> to z
     } else {
       node->accept(collector);
     }

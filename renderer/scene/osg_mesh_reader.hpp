@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles out of whatever osgDB can read. Runs inside run_isolated(): nothing here is safe against bad
-// files.
+// Triangles of all files that osgDB can read. Runs inside run_isolated(), because damaged files can crash it.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +9,10 @@
 
 namespace sonard::render {
 
-/// Reads `file` (and no other: textures, material images and references to further files or servers are
-/// refused), keeps its axes and its unit, applies all transforms inside it. With a `submesh` only the nodes
-/// of that name are taken.
-/// @throws std::runtime_error when osgDB has no node for it.
+/// Reads only `file`: textures, material images and references to further files or servers are refused. Axes
+/// and unit stay as in the file; all transforms inside it are applied. With a `submesh`, only the nodes of
+/// that name are read.
+/// @throws std::runtime_error if osgDB returns no node.
 RawMesh read_with_osg(const std::filesystem::path& file, const std::string& submesh);
 
 }  // namespace sonard::render

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenSceneGraph's libraries for single formats.
+// OpenSceneGraph's plugins for file formats.
 #pragma once
 
 #include <filesystem>
 
 namespace sonard::render {
 
-/// Loads what OpenSceneGraph needs for files of this extension, before the process is confined and can load
-/// no library any more.
+/// Loads OpenSceneGraph's libraries for this extension. Call it before the process is confined, which
+/// prevents loading libraries.
 void load_osg_plugin(const std::filesystem::path& file);
 
 }  // namespace sonard::render

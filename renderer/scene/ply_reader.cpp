@@ -41,14 +41,14 @@ constexpr std::array<Type, 8> types{{{"char", "int8", Kind::signed_integer, 1},
                                      {"float", "float32", Kind::real, 4},
                                      {"double", "float64", Kind::real, 8}}};
 
-/// Programs differ in how they call them.
+/// Names differ between programs.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> texture_names{
     {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}};
 
 struct Property {
   std::string name;
   const Type* type;
-  const Type* count_type;  ///< of a list; null: it is one value
+  const Type* count_type;  ///< of a list; null: a single value
 };
 
 struct Element {
@@ -97,7 +97,7 @@ Property property_of(std::istringstream& words) {
   return {name, &type_of(type), is_list ? &type_of(count_type) : nullptr};
 }
 
-/// @return whether it was the last line
+/// @return whether it was the last line of the header
 bool add_line(const std::string& line, PlyHeader& header) {
   std::istringstream words(line);
   std::string keyword;
@@ -146,7 +146,7 @@ PlyHeader header_of(std::string_view bytes) {
   return header;
 }
 
-/// One value after the other; nullopt at the end of the file.
+/// Reads one value after another; nullopt at the end of the file.
 class BinaryValues {
  public:
   BinaryValues(std::string_view bytes, bool is_big_endian) : bytes_(bytes), is_big_endian_(is_big_endian) {}
@@ -182,10 +182,10 @@ class TextValues {
   TextValues(std::string_view bytes, std::size_t lines_before)
       : begin_of_line_(bytes), rest_(bytes), line_(lines_before + 1) {}
 
-  /// A value and the blank behind it take two bytes.
+  /// A value and the blank after it take at least two bytes.
   std::uint64_t most_values(const Type&) const { return (rest_.size() + 1) / 2; }
 
-  /// @throws std::runtime_error naming the line of what is no finite number
+  /// @throws std::runtime_error with the line, if a word is not a finite number
   std::optional<double> next(const Type&) {
     while (!rest_.empty() && is_blank(rest_.front())) {
       if (rest_.front() == '\n') {
@@ -292,7 +292,7 @@ class PlyBody {
     return true;
   }
 
-  /// Null if the vertices have no such property.
+  /// nullptr if the vertices have no such property.
   const double* value(const Element& element, std::string_view name) const {
     const auto found = std::ranges::find(element.properties, name, &Property::name);
     return found == element.properties.end()
@@ -322,7 +322,7 @@ class PlyBody {
   const PlyHeader& header_;
   Values values_;
   RawPart part_;
-  std::vector<double> scalars_, list_;  ///< of the instance being read
+  std::vector<double> scalars_, list_;  ///< of the current instance
 };
 
 }  // namespace

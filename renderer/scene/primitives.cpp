@@ -14,7 +14,7 @@
 namespace sonard::render {
 namespace {
 
-/// A cylinder errs by one sagitta; a sphere patch by one in each direction, so each gets half of the 2 mm.
+/// A cylinder is off by one sagitta. A sphere patch adds one per direction, so each gets half of the 2 mm.
 constexpr double sagitta_m = 1e-3;
 constexpr int min_segments = 48;
 constexpr int max_segments = 512;
@@ -44,7 +44,7 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   mesh.indices.insert(mesh.indices.end(), {a, b, c});
 }
 
-/// Rectangle with centre, half sides and normal `across_u` x `across_v`.
+/// Rectangle by centre and half sides; its normal is `half_u` x `half_v`.
 void add_rectangle(TriangleMesh& mesh, const glm::dvec3& centre, const glm::dvec3& half_u,
                    const glm::dvec3& half_v) {
   const glm::dvec3 normal = glm::normalize(glm::cross(half_u, half_v));
@@ -56,7 +56,7 @@ void add_rectangle(TriangleMesh& mesh, const glm::dvec3& centre, const glm::dvec
   add_triangle(mesh, a, c, d);
 }
 
-/// cos and sin of step i of n; exact at the axes, so that mirrored shapes are mirrored to the bit.
+/// cos and sin of step i of n; exact at the axes, so that mirrored shapes have mirrored bits.
 glm::dvec2 on_circle(int i, int n) {
   const int quarter = n / 4;
   const int rest = i % quarter;
@@ -79,11 +79,11 @@ glm::dvec2 on_circle(int i, int n) {
 struct Ring {
   double radius;
   double z;
-  glm::dvec2 normal;  ///< outward and z components, unit
+  glm::dvec2 normal;  ///< outward and z components, unit length
   double v;
 };
 
-/// Joins rings from bottom to top. The seam is doubled for the sake of the texture; rings of radius 0 are
+/// Joins rings from bottom to top. The seam is doubled for the texture coordinates; rings of radius 0 are
 /// poles.
 void add_revolution(TriangleMesh& mesh, const std::vector<Ring>& rings, int n) {
   std::uint32_t below = 0;
@@ -123,7 +123,7 @@ void add_disc(TriangleMesh& mesh, double radius, double z, int n) {
   }
 }
 
-/// A cylinder or a cone without a length.
+/// A cylinder or a cone of length 0.
 TriangleMesh make_disc(double radius_m) {
   TriangleMesh mesh;
   add_disc(mesh, radius_m, 0.0, segments_around(radius_m));
@@ -139,7 +139,7 @@ void add_latitudes(std::vector<Ring>& rings, double radius, double centre_z, int
   }
 }
 
-/// v grows with the length along the profile.
+/// Sets v proportional to the length along the profile.
 void spread_texture(std::vector<Ring>& rings) {
   double length = 0.0;
   for (std::size_t i = 1; i < rings.size(); ++i) {
@@ -267,7 +267,7 @@ TriangleMesh make_plane(const glm::dvec2& size_m, const glm::dvec3& normal) {
     throw WorldError("plane normal has no direction");
   }
   const glm::dvec3 up = normal / length;
-  // Shortest turn from z; straight down there are many, and the one about x is taken.
+  // Shortest turn from z. Straight down it is ambiguous, so the code turns about x.
   const glm::dquat turn = up.z < -1.0 + 1e-12 ? glm::dquat(0.0, 1.0, 0.0, 0.0)
                                               : glm::normalize(glm::dquat(1.0 + up.z, -up.y, up.x, 0.0));
   TriangleMesh mesh;

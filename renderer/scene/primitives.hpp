@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes of SDF as triangles, centred on the origin as SDF has them. Normals point outward and are smooth
-// on curved parts; texture coordinates run over [0, 1]. Vertices lie on the true surface; curved surfaces are
-// divided so finely that no triangle is farther than 2 mm from it up to a radius of about 50 m, at least 48
-// times around. All lengths in metres.
+// The shapes of SDF as triangles, centred on the origin as in SDF. Normals point outward and are smooth on
+// curved parts; texture coordinates run over [0, 1]. Vertices lie on the true surface. Curved surfaces have
+// at least 48 segments around; up to a radius of about 50 m, no triangle is farther than 2 mm from the true
+// surface. All lengths in metres.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -12,29 +12,30 @@
 
 namespace sonard::render {
 
-/// Segments around a circle of this radius, > 0 and finite, so that radius (1 - cos(pi / n)) stays below the
-/// sagitta; a multiple of 4, so that the extremes of the axes are vertices.
+/// Segments around a circle of this radius, > 0 and finite: radius (1 - cos(pi / n)) is below the sagitta. A
+/// multiple of 4, so that vertices lie on the axes.
 int segments_around(double radius_m);
 
-/// A shape without a surface, because sizes are 0.
+/// The shape has no surface, because sizes are 0.
 struct ShapeOfNothing : WorldError {
   using WorldError::WorldError;
 };
 
 // Every function below throws WorldError if a size is not finite or below 0, and ShapeOfNothing if no surface
-// is left. A box with one side of 0 is a plate; a cylinder or cone of length 0 is a disc, a capsule a sphere.
+// is left. A box with one side of 0 is a plate, a cylinder or cone of length 0 a disc, a capsule of length 0
+// a sphere.
 
 TriangleMesh make_box(const glm::dvec3& size_m);
 TriangleMesh make_sphere(double radius_m);
 TriangleMesh make_ellipsoid(const glm::dvec3& radii_m);
 /// Axis z, with caps.
 TriangleMesh make_cylinder(double radius_m, double length_m);
-/// Axis z, the tip up, with a cap; the origin is half way up.
+/// Axis z, tip up, with a cap; the origin is at half the height.
 TriangleMesh make_cone(double radius_m, double length_m);
-/// Axis z; `length_m` is that of the cylindrical part, as in SDF.
+/// Axis z; `length_m` is the length of the cylindrical part, as in SDF.
 TriangleMesh make_capsule(double radius_m, double length_m);
-/// A rectangle through the origin; seen along `normal` (any length above 0) from its tip. The sides turn with
-/// the normal by the shortest way from z.
+/// A rectangle through the origin, visible from the side to which `normal` points (any length above 0). The
+/// sides turn with the normal by the shortest way from z.
 TriangleMesh make_plane(const glm::dvec2& size_m, const glm::dvec3& normal);
 
 }  // namespace sonard::render

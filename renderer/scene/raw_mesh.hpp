@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles as a foreign reader found them, unchecked, and as bytes on their way out of its process.
+// Unchecked triangles from a third-party reader, and their bytes for the transfer out of its process.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace sonard::render {
 
-/// What a reader is to read.
+/// Input of a mesh reader.
 struct MeshSource {
   std::filesystem::path file;
-  std::string submesh{};  ///< only the parts of this name; empty: all
-  /// The files that `file` names must lie below one of these, or in its own folder or below.
+  std::string submesh{};  ///< only the parts with this name; empty: all
+  /// Files named by `file` must lie below one of these folders, or below its own folder.
   std::vector<std::filesystem::path> folders{};
 };
 
 /// The triangles of one material; attribute arrays are empty or as long as `positions`.
 struct RawPart {
-  std::string material_name;  ///< as the file has it, may be empty
+  std::string material_name;  ///< as in the file, may be empty
   std::vector<glm::dvec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texcoords;
@@ -34,14 +34,14 @@ struct RawMesh {
   std::vector<RawPart> parts;
   std::vector<std::string> names;  ///< of nodes, meshes or solids, for error messages; may repeat
 
-  /// Adds triangles to those of the same material and attributes, moved by `T_mesh_part`. A mirroring
-  /// transform keeps the outside of the triangles outside.
+  /// Adds triangles, moved by `T_mesh_part`, to the part of the same material and attributes. Under a
+  /// mirroring transform, the outside of the triangles stays outside.
   void add(const RawPart& triangles, const glm::dmat4& T_mesh_part);
 };
 
 std::string to_bytes(const RawMesh& mesh);
-/// Names are made printable().
-/// @throws std::runtime_error when the bytes are damaged.
+/// Makes the names printable().
+/// @throws std::runtime_error if the bytes are damaged.
 RawMesh raw_mesh_of(const std::string& bytes);
 
 }  // namespace sonard::render

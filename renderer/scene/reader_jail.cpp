@@ -26,7 +26,7 @@
 namespace sonard::render {
 namespace {
 
-/// Calls that open a way to a network, to another process or to a change of the file system.
+/// Calls that open a network connection, reach another process or change the file system.
 constexpr std::array<const char*, 60> forbidden_calls{"socket",
                                                       "socketpair",
                                                       "connect",
@@ -102,7 +102,7 @@ void lower(decltype(RLIMIT_CPU) resource, rlim_t limit) {
   }
 }
 
-/// Bytes of address space that this process has.
+/// Size of this process's address space in bytes.
 std::uint64_t address_space_bytes() {
   std::uint64_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -112,11 +112,11 @@ std::uint64_t address_space_bytes() {
 void limit_resources(const ReaderJail& jail) {
   lower(RLIMIT_CORE, 0);
   lower(RLIMIT_CPU, jail.processor_limit_s);
-  lower(RLIMIT_FSIZE, jail.memory_limit_bytes);  // the files in memory through which the result goes
+  lower(RLIMIT_FSIZE, jail.memory_limit_bytes);  // the memory files that carry the result
   if (reader_memory_is_limited) {
     lower(RLIMIT_AS, address_space_bytes() + jail.memory_limit_bytes);
   }
-  // Work that waits for something uses no processor time; a busy machine gives a share of one.
+  // A wall-clock limit: a waiting process uses no processor time, and on a busy machine it gets only a share.
   ::alarm(60 + 20 * jail.processor_limit_s);
 }
 
@@ -136,7 +136,7 @@ void close_all_but(std::span<const int> kept) {
   ::syscall(SYS_close_range, first, ~0U, 0);
 }
 
-// glibc has no functions for Landlock.
+// glibc has no wrappers for Landlock.
 int landlock_version() {
   return static_cast<int>(
       ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION));
@@ -145,7 +145,7 @@ int landlock_version() {
 void allow_reading(int rules, const std::filesystem::path& path) {
   const int fd = ::open(path.c_str(), O_PATH | O_CLOEXEC);
   if (fd < 0) {
-    return;  // what is not there cannot be read
+    return;  // a file that does not exist cannot be read
   }
   struct stat status {};
   ::fstat(fd, &status);
@@ -197,7 +197,7 @@ void restrict_calls() {
   const auto forbid = [&](const char* name, std::span<const scmp_arg_cmp> arguments) {
     const int call = ::seccomp_syscall_resolve_name(name);
     const int error =
-        call == __NR_SCMP_ERROR  // newer than libseccomp
+        call == __NR_SCMP_ERROR  // unknown to this libseccomp
             ? 0
             : ::seccomp_rule_add_array(filter.get(), SCMP_ACT_ERRNO(EACCES), call,
                                        static_cast<unsigned int>(arguments.size()), arguments.data());

@@ -16,7 +16,7 @@ namespace sonard::render {
 namespace {
 
 constexpr double most_sag_m = 2.5e-4;
-// Halved until no edge is longer than L, facets are right-angled ones of L^2 / 16 to L^2 / 4.
+// Facets halved until no edge exceeds L are right-angled and have an area of L^2 / 16 to L^2 / 4.
 constexpr double facets_per_square = 16.0;
 constexpr double most_facets = 2e6;
 
@@ -45,7 +45,7 @@ float refractable_edge_m(const World& world, double ray_curvature_per_m) {
 
 namespace {
 
-/// @param T_sonar_part with the axes of the world
+/// @param T_sonar_part in a sonar frame with the axes of the world
 TriangleMesh refracted_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, const Refraction& bend) {
   TriangleMesh bent = mesh;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -55,7 +55,7 @@ TriangleMesh refracted_mesh(const TriangleMesh& mesh, const Pose& T_sonar_part, 
       const glm::vec3 n(T_sonar_part.orientation * glm::dvec3(mesh.normals[i]));
       bent.normals[i] = glm::normalize(bend.normal(n, p));
     }
-    if (!mesh.tangents.empty()) {  // shading makes it square to the normal again
+    if (!mesh.tangents.empty()) {  // shading makes it perpendicular to the normal again
       const glm::vec3 t(T_sonar_part.orientation * glm::dvec3(glm::vec3(mesh.tangents[i])));
       bent.tangents[i] = glm::vec4(t, mesh.tangents[i].w);
     }

@@ -24,11 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Ten thousand models of a hundred elements; they take some 300 MB for as long as the world is read.
+// Ten thousand models of a hundred elements; they take about 300 MB while the world is read.
 constexpr std::size_t most_elements = 1'000'000;
 constexpr std::uintmax_t most_bytes = 256U << 20U;  // of one file
 
-/// "1.10" comes after "1.9": major and minor apart.
+/// Compares major and minor separately: "1.10" is newer than "1.9".
 std::pair<int, int> version_of(std::string_view text) {
   std::pair<int, int> version{0, 0};
   const std::size_t dot = text.find('.');
@@ -39,8 +39,8 @@ std::pair<int, int> version_of(std::string_view text) {
   return version;
 }
 
-/// A name of the file with the prefix "sonard:" if the file binds its prefix to our namespace, as XML allows.
-/// @param default_namespace whether `name` is an element's, to which xmlns="..." applies
+/// Returns the name with the prefix "sonard:" if the file binds its prefix to our namespace, as XML allows.
+/// @param default_namespace whether `name` belongs to an element, to which xmlns="..." applies
 std::string with_own_prefix(const char* name, const tinyxml2::XMLElement& element, bool default_namespace) {
   const std::string_view given = name;
   const std::size_t colon = given.find(':');
@@ -59,14 +59,14 @@ std::string with_own_prefix(const char* name, const tinyxml2::XMLElement& elemen
   return std::string(given);
 }
 
-/// A break of a line means no more than a blank in SDF.
+/// In SDF, a line break is the same as a blank.
 std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
   return printable(text);
 }
 
-/// The last part of a URI that names a model: "post" of "model://post/model.sdf".
+/// The model name in a URI: "post" of "model://post/model.sdf".
 std::string model_name_in(std::string_view uri) {
   if (const auto fuel = parse_fuel_uri(uri)) {
     return fuel->name;
@@ -80,7 +80,7 @@ std::string model_name_in(std::string_view uri) {
   return std::string(uri.substr(uri.find_last_of('/') + 1));
 }
 
-/// Whether a model, by its name, holds nothing but a light or a sky.
+/// Whether the name of a model is one of a light or a sky.
 bool is_light(std::string_view model_name) {
   constexpr std::array<std::string_view, 12> lights{
       "sun", "sunlight", "sun_light",         "moon",        "light",      "lights",
@@ -91,7 +91,7 @@ bool is_light(std::string_view model_name) {
   return std::ranges::find(lights, name) != lights.end();
 }
 
-/// Reads each file once, and copies it as often as it is included.
+/// Reads each file once, and copies it for each include.
 class SdfReader {
  public:
   SdfReader(UriResolver& resolver, MissingFiles missing, std::vector<std::string>& warnings,
@@ -128,7 +128,7 @@ class SdfReader {
   const MissingFiles missing_;
   std::vector<std::string>& warnings_;
   WorldProblems& problems_;
-  GroupedWarnings skipped_;  ///< includes
+  GroupedWarnings skipped_;  ///< skipped includes
   std::map<fs::path, Document> documents_;
   std::vector<fs::path> around_;  ///< files that are being copied, from the world's to the innermost
   std::size_t elements_ = 0;
@@ -216,7 +216,7 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
   return element;
 }
 
-/// What libsdformat looks for: model.config, else the manifest.xml of old models.
+/// The manifest, as in libsdformat: model.config, or manifest.xml in old models.
 fs::path manifest_in(const fs::path& folder) {
   std::error_code error;
   const fs::path old = folder / "manifest.xml";
@@ -224,7 +224,7 @@ fs::path manifest_in(const fs::path& folder) {
                                                                                : folder / "model.config";
 }
 
-/// The newest file that a model's manifest names, or its model.sdf.
+/// The newest file that the model's manifest names, or model.sdf.
 fs::path model_file_in(const fs::path& folder) {
   tinyxml2::XMLDocument manifest;
   fs::path newest = folder / "model.sdf";
@@ -248,7 +248,7 @@ fs::path model_file_in(const fs::path& folder) {
   return newest;
 }
 
-/// @throws WorldError without a place
+/// @throws WorldError without a position in the file
 fs::path SdfReader::included_file(const SdfElement& include) {
   const SdfElement* const uri = include.child("uri");
   const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
@@ -284,7 +284,7 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   return canonical;
 }
 
-/// The first element that is worth including; null where there is none.
+/// The first element that can be included; nullptr if there is none.
 const tinyxml2::XMLElement* content_of(const tinyxml2::XMLElement& sdf) {
   for (const auto* child = sdf.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
     const std::string_view name = child->Name();
@@ -333,7 +333,7 @@ void SdfReader::include(const SdfElement& include, SdfElement& into) {
   }
 }
 
-/// Leaves a light or a frame in the place of a model that is not there.
+/// Puts a light or a frame in place of a missing model.
 void SdfReader::do_without(const SdfElement& include, SdfElement& into, const std::string& why) {
   const SdfElement* const uri = include.child("uri");
   const SdfElement* const name = include.child("name");
@@ -366,7 +366,7 @@ void SdfReader::do_without(const SdfElement& include, SdfElement& into, const st
   }
 }
 
-/// What an include says of the model takes the place of what the model says itself.
+/// Values of the include replace values of the model.
 void SdfReader::override_with(const SdfElement& include, SdfElement& model) {
   if (const SdfElement* const name = include.child("name")) {
     model.set_attribute("name", name->text);
@@ -387,7 +387,7 @@ void SdfReader::override_with(const SdfElement& include, SdfElement& model) {
   }
 }
 
-/// What had its place by its model's frame has it by another.
+/// Makes the frame `frame` the reference of a part that refers to its model's frame.
 void place_by(const std::string& frame, SdfElement& part) {
   if (part.child("pose") == nullptr) {
     part.add_child("pose", part);
@@ -405,7 +405,7 @@ void place_by(const std::string& frame, SdfElement& part) {
   }
 }
 
-/// The model's frame in its placement_frame; none without one.
+/// The model's frame in its placement_frame; identity without a placement_frame.
 Pose T_placement(const SdfElement& model) {
   const std::string* const frame = model.attribute("placement_frame");
   if (model.name != "model" || frame == nullptr || frame->empty()) {
@@ -423,8 +423,8 @@ void write_pose(const Pose& T, const std::string& relative_to, SdfElement& eleme
   pose.text = fmt::format("{} {} {} {} {} {} {}", p.x, p.y, p.z, q.x, q.y, q.z, q.w);
 }
 
-/// The parts of a model become parts of the one around it, and keep their places by a frame that stands for
-/// it (SDF 1.9, <include merge="true">). Parts of a world become parts of the world around it.
+/// The parts of a model become parts of the model or world around it. Their poses refer to a frame in place
+/// of the model (SDF 1.9, <include merge="true">). Parts of a world become parts of the world around it.
 void SdfReader::merge(SdfElement& model, SdfElement& into, const SdfElement& include) {
   const auto inclusion = std::make_shared<const Inclusion>(
       Inclusion{include.place(), fmt::format("rename it at {}, or include without merge", model.place())});

@@ -14,8 +14,8 @@ namespace {
 
 using Names = std::set<std::string_view>;
 
-/// Children of the elements that are read, by the specification (sdformat.org/spec) from 1.3 to 1.12. What
-/// stands in others is not looked at.
+/// Children of the elements that sonard reads, by the specification (sdformat.org/spec) from 1.3 to 1.12.
+/// Contents of other elements are not checked.
 const std::map<std::string_view, Names>& known_children() {
   static const std::map<std::string_view, Names> children{
       {"sdf", {"world", "model", "actor", "light", "include"}},
@@ -60,10 +60,10 @@ const std::map<std::string_view, Names>& known_children() {
 }
 
 struct Unknown {
-  std::string place;  ///< of the first
+  std::string place;  ///< of the first one
   std::size_t count = 0;
 };
-using UnknownByKind = std::map<std::pair<std::string, std::string>, Unknown>;  ///< parent, name
+using UnknownByKind = std::map<std::pair<std::string, std::string>, Unknown>;  ///< key: parent, name
 
 void find_unknown(const SdfElement& element, UnknownByKind& found) {
   const auto known = known_children().find(element.name);

@@ -17,12 +17,12 @@
 namespace sonard::render {
 namespace {
 
-/// Thrown by SdfFrames::find() with the name of the model.
+/// Thrown by SdfFrames::find(); what() names the model.
 struct MissingModel : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `relative_to`, which was `frame` up to SDF 1.6; "" where it is left to the rules.
+/// `relative_to`, which was `frame` up to SDF 1.6; "" if not given.
 std::string_view relative_to(const SdfElement* pose) {
   for (const char* key : {"relative_to", "frame"}) {
     if (const std::string* const given = pose == nullptr ? nullptr : pose->attribute(key)) {
@@ -88,7 +88,7 @@ Pose SdfFrames::worked_out(const SdfElement& element) {
   std::string_view base = relative_to(pose);
   const SdfElement* named_by = pose;
   if (base.empty()) {
-    // What a frame is attached to, and the child of a joint, are where these are, unless they say otherwise.
+    // By default, the base is the element that a frame is attached to, or the child of a joint.
     const std::string* const attached = element.name == "frame" ? element.attribute("attached_to") : nullptr;
     const SdfElement* const child = element.name == "joint" ? element.child("child") : nullptr;
     base = attached != nullptr ? std::string_view(*attached)
@@ -125,7 +125,7 @@ Pose SdfFrames::of_frame(const SdfElement& scope, std::string_view name, const S
                                scope.name, scope.given_name()));
 }
 
-/// A name may hold "::" itself, so that of all its beginnings the longest comes first.
+/// Names may contain "::", so the longest prefix is tried first.
 std::optional<Pose> SdfFrames::find(const SdfElement& scope, std::string_view name) {
   if (name == "__model__" || (name == "world" && scope.name == "world")) {
     return Pose{};

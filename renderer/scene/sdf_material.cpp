@@ -54,7 +54,7 @@ void check_own_element(const SdfElement& element, WorldProblems& problems) {
     if (parent.name != "world") {
       complain(fmt::format("<{}> inside <{}>: it belongs in <world>", element.name, parent.name));
     }
-    check_attributes(element, {}, problems);  // the height is its text
+    check_attributes(element, {}, problems);  // its text is the height
   } else {
     const std::string own = lower_case(element.name);
     complain(own == material_element || own == water_surface_element
@@ -82,9 +82,9 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
   }
 }
 
-/// The name of ours, with its prefix, that a name may be meant for: "sonard:material" for "sonar:Material" or
-/// "x:material"; "sonard:x" for "sonar:x"; empty: it is another program's.
-/// @param element that has the name as an attribute; empty: the name is an element's
+/// The name of ours that a name is probably meant to be: "sonard:material" for "sonar:Material" and "x:material",
+/// "sonard:x" for "sonar:x". Empty if the name belongs to another program.
+/// @param element that has the name as an attribute; empty if the name is an element's
 std::string meant_name(std::string_view prefix, std::string_view local, std::string_view element) {
   const std::string own = "sonard:" + lower_case(local);
   if (element.empty() ? own == material_element || own == water_surface_element
@@ -95,11 +95,11 @@ std::string meant_name(std::string_view prefix, std::string_view local, std::str
 }
 
 struct LookAlike {
-  std::string line;  ///< of the first
+  std::string line;  ///< about the first one
   std::size_t count = 0;
 };
 
-/// @param element that `name` is, or has as an attribute
+/// @param element the element called `name`, or the element with the attribute `name`
 void note_look_alike(std::string_view name, const SdfElement& element, bool is_attribute,
                      std::map<std::string, LookAlike>& found) {
   const std::size_t colon = name.find(':');

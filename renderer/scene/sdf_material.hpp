@@ -12,20 +12,20 @@
 
 namespace sonard::render {
 
-/// Refuses elements and attributes of the sonard namespace that are unknown, misplaced or there twice, so
-/// that a typing error does not become a default. Each goes to `problems`, with its place.
+/// Adds elements and attributes of the sonard namespace to `problems`, with their place, if they are unknown,
+/// misplaced or repeated. A typing error then does not silently give a default.
 void check_own_elements(const SdfElement& root, WorldProblems& problems);
 
 /// "file:line: <sonar:material> is left out: ..." for each kind of element or attribute that looks like ours
-/// and has a prefix that is not bound to our namespace, at its first place, with how often it comes.
+/// but has a prefix without our namespace, with its first place and its count.
 std::vector<std::string> look_alikes(const SdfElement& root);
 
-/// <sonard:material> directly inside `element`.
-/// @throws WorldError without a place: the caller knows what the element is called
+/// Reads a <sonard:material> directly inside `element`.
+/// @throws WorldError without a place: the caller adds it
 std::optional<AcousticMaterial> own_material(const SdfElement& element, std::vector<std::string>& warnings);
 
-/// <sonard:material> of the nearest link or model around `element`.
-/// @throws WorldError naming that link or model
+/// Reads the <sonard:material> of the nearest link or model around `element`.
+/// @throws WorldError with the name of that link or model
 std::optional<AcousticMaterial> inherited_material(const SdfElement& element,
                                                    std::vector<std::string>& warnings);
 

@@ -19,7 +19,7 @@ SdfElement* part_named(SdfElement& around, std::string_view kind, std::string_vi
   return found == around.children.end() ? nullptr : found->get();
 }
 
-/// Multiplies the numbers of a child, which are 1 if it is not given.
+/// Multiplies the numbers of a child; if it is not given, they are 1.
 void multiply(SdfElement& shape, const char* name, const std::vector<double>& factors) {
   std::vector<double> numbers = numbers_of(shape.child(name), std::vector<double>(factors.size(), 1.0));
   for (std::size_t i = 0; i < factors.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The <state> of a world that Gazebo Classic saved: where its models were then.
+// The <state> that Gazebo Classic saves in a world: the poses of its models at that time.
 #pragma once
 
 #include <string>
@@ -11,19 +11,18 @@
 
 namespace sonard::render {
 
-/// Follows what Gazebo Classic 11 does when it loads a world (its World::SetState, Model::SetState and
-/// Link::SetScale): insertions become models of the world; poses of models, links and nested models are in
-/// the world frame; a link that is not listed moves with its model; a scale multiplies the sizes of boxes,
-/// spheres, cylinders and meshes of the links, and no distance between them; deletions come last. Of several
-/// <state>, the first counts. A model or link that is listed without a pose stands in the origin of the
-/// world.
+/// Follows Gazebo Classic 11's loading of a world (World::SetState, Model::SetState and Link::SetScale).
+/// Insertions become models of the world. Poses of models, links and nested models are in the world frame. A
+/// link that is not listed moves with its model. A scale multiplies the sizes of boxes, spheres, cylinders
+/// and meshes in the links, but no distances between them. Deletions come last. The first <state> counts. A
+/// model or link that is listed without a pose is at the origin of the world.
 class SavedState {
  public:
-  /// Changes `world`: adds, scales and removes models. Names that the world does not have go to `warnings`.
-  /// @throws WorldError "file:line: ..." for numbers that are none
+  /// Adds, scales and removes models of `world`. Names that the world does not have add to `warnings`.
+  /// @throws WorldError "file:line: ..." for invalid numbers
   void apply(SdfElement& world, std::vector<std::string>& warnings);
 
-  /// Null: the state does not say where this model or link is.
+  /// nullptr if the state has no pose for this model or link.
   const Pose* T_world(const SdfElement& model_or_link) const;
 
  private:

@@ -38,7 +38,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A visual, or a collision that stands in for one.
+/// A visual, or a collision in its place.
 struct Shape {
   std::string path;  ///< "model::link::visual"
   const SdfElement& element;
@@ -46,12 +46,12 @@ struct Shape {
   Pose T_body_shape;
 };
 
-/// The world is given up: no shape may be added any more.
+/// Loading stops: no further shape may be added.
 struct TooManyTriangles : WorldError {
   using WorldError::WorldError;
 };
 
-/// Of <spherical_coordinates>; nullopt, with a warning, where it means nothing that is known here.
+/// Reads <spherical_coordinates>; nullopt, with a warning, if they are not supported.
 std::optional<GeographicOrigin> origin_of(const SdfElement& place, std::vector<std::string>& warnings) {
   const auto ignored = [&](const std::string& why) {
     warnings.push_back(fmt::format("{}: <spherical_coordinates> is not used: {}", place.place(), why));
@@ -125,7 +125,7 @@ class WorldBuilder {
     return *only;
   }
 
-  /// Making the triangles of so many shapes would take minutes and all memory.
+  /// Stops before triangles are made: so many would take minutes and all memory.
   /// @throws TooManyTriangles
   void require_few_triangles(const SdfElement& top) {
     std::size_t count = 0;
@@ -180,13 +180,13 @@ class WorldBuilder {
     }
   }
 
-  /// A material that a model hands down is looked at once per visual.
+  /// A material that a model passes down is read, with its warnings, once per visual.
   void drop_repeated_warnings() {
     std::set<std::string> seen;
     std::erase_if(world_.warnings, [&](const std::string& line) { return !seen.insert(line).second; });
   }
 
-  /// Gazebo takes the axes of COLLADA as they are.
+  /// As in Gazebo, the axes of COLLADA are not applied.
   void tell_what_may_lie() {
     for (const auto& [up_axis, files] : up_axis_files_) {
       world_.warnings.push_back(fmt::format(
@@ -205,8 +205,8 @@ class WorldBuilder {
     }
   }
 
-  /// What `work` throws is told of with the rest; it leaves out only itself.
-  /// @return false if it hangs on a model that is not there
+  /// Runs `work`. If it throws, it is left out, and the error is reported with the others.
+  /// @return false if it depends on a missing model
   template <class Work>
   bool attempt(const Work& work) {
     try {
@@ -215,7 +215,7 @@ class WorldBuilder {
       if (missing_ == MissingFiles::skip) {
         world_.warnings.emplace_back(error.what());
       }
-      return false;  // the include is a problem already, if it must be there
+      return false;  // if it is required, its include has reported the problem
     } catch (const TooManyTriangles&) {
       throw;
     } catch (const WorldError& error) {
@@ -224,7 +224,7 @@ class WorldBuilder {
     return true;
   }
 
-  /// The same, with place and path before what has none.
+  /// Runs `work`, and adds place and path to its errors.
   template <class Work>
   void attempt(const SdfElement& element, const std::string& path, const Work& work) {
     try {
@@ -246,7 +246,7 @@ class WorldBuilder {
     }
   }
 
-  /// Its name; a problem where it has none, or that of another.
+  /// The name; a problem if it is missing or taken.
   std::string name_of(const SdfElement& element, const std::string& path, std::set<std::string>& taken) {
     const std::string name = element.given_name();
     if (name.empty()) {
@@ -276,14 +276,14 @@ class WorldBuilder {
     world_.bodies.push_back(std::move(body));
   }
 
-  /// Where <state> has it, else where its own <pose> does.
+  /// The pose in <state>, else the model's own <pose>.
   Pose T_world_of(const SdfElement& model, const std::string& name) {
     const Pose& T_world_model = frames_.T_scope(model);
     const Pose* const saved = state_.T_world(model);
     if (saved == nullptr) {
       return T_world_model;
     }
-    constexpr double same = 1e-6;  // metres, and half of radians
+    constexpr double same = 1e-6;  // metres, and half of an angle in radians
     if (glm::distance(saved->position_m, T_world_model.position_m) > same ||
         std::abs(glm::dot(saved->orientation, T_world_model.orientation)) < 1.0 - same * same) {
       left_out_.add_silent("poses of models for which <state> has others", name);
@@ -307,8 +307,7 @@ class WorldBuilder {
           add_model(body, *child, T_body_child, child_path, visible);
           return;
         }
-        // The model frame as the link has it: what is in a link keeps its place there if <state> has moved
-        // it.
+        // The model frame as seen from the link: if <state> has moved the link, its shapes move with it.
         const Pose T_body_frame = T_world_child == nullptr ? T_body_model
                                                            : inverse(body.T_world_body) * *T_world_child *
                                                                  inverse(frames_.T_scope(*child));
@@ -374,7 +373,7 @@ class WorldBuilder {
     }
   }
 
-  /// The geometry as one or more meshes (a file has one per material); nullopt: it is none that is drawn.
+  /// The geometry as one or more meshes (a file has one per material); nullopt if the kind is not supported.
   /// Equal shapes share a mesh.
   std::optional<std::vector<MeshFilePart>> meshes_of(const SdfElement& geometry, bool tangents) {
     if (geometry.name == "mesh") {
@@ -403,13 +402,13 @@ class WorldBuilder {
     return {{"", std::make_shared<const TriangleMesh>(std::move(mesh))}};
   }
 
-  /// The file that a <uri> names.
+  /// The file in a <uri>.
   fs::path file_of(const SdfElement& geometry) const {
     return resolver_.resolve(text_of(geometry, "uri"), geometry.folder());
   }
 
-  /// Its `pos` becomes part of the pose, which is in double precision: it may hold UTM coordinates. A map of
-  /// elevations without a `size` lies where its georeference says, moved by the poses.
+  /// Adds `pos` to the pose, which is in double precision, because `pos` may hold UTM coordinates. An
+  /// elevation map without a `size` lies at its georeference, moved by the poses.
   void add_heightmap_shape(Body& body, const Shape& shape, std::shared_ptr<const NormalMap> normal_map) {
     const fs::path file = file_of(*shape.geometry);
     Pose T_shape_map{vec3_of(*shape.geometry, "pos", {0, 0, 0}), {1, 0, 0, 0}};
@@ -431,7 +430,7 @@ class WorldBuilder {
                   world_, world_.bodies.size(), body.parts);
   }
 
-  /// In a world without a place on Earth, its middle is the origin, at altitude 0.
+  /// If the world has no position on Earth, the map's middle is the origin, at altitude 0.
   MapPlacement placement_of(const ElevationMap& map, const fs::path& file) {
     if (!map.georeference) {
       throw WorldError(fmt::format("{}: {}; give the <size> of the heightmap to place it by hand",
@@ -443,12 +442,12 @@ class WorldBuilder {
     return placement;
   }
 
-  /// Each file is read once for all its uses with the same scale, and complained of once.
+  /// Each file is read, and reported, once for all uses with the same scale.
   std::vector<MeshFilePart> mesh_file(const SdfElement& mesh, bool tangents) {
     const SdfElement* const submesh = mesh.child("submesh");
     const std::string centre = submesh == nullptr ? "" : text_of(*submesh, "center");
     std::string name = submesh == nullptr ? "" : text_of(*submesh, "name");
-    const bool is_whole = name == "__default__";  // as Gazebo Classic writes it
+    const bool is_whole = name == "__default__";  // written by Gazebo Classic
     const glm::dvec3 scale = vec3_of(mesh, "scale", {1, 1, 1});
     if (scale.x * scale.y * scale.z == 0.0) {
       throw ShapeOfNothing("a number of the <scale> of its mesh is 0");
@@ -477,7 +476,7 @@ class WorldBuilder {
     return loaded.parts;
   }
 
-  /// The order is the one of docs/worlds.md.
+  /// In the order of docs/worlds.md.
   AcousticMaterial material_of(const Shape& shape, const std::string& mesh_material) {
     if (auto own = own_material(shape.element, world_.warnings)) {
       return *own;
@@ -502,7 +501,7 @@ class WorldBuilder {
     return {};
   }
 
-  /// Nullopt, with a warning, if it is no number >= 0: it is meant for a laser.
+  /// nullopt, with a warning, if the value is not a number >= 0, because it is meant for lasers.
   std::optional<AcousticMaterial> material_by_laser_retro(const Shape& shape) {
     const std::string name = fmt::format("{} ({})", text_of(shape.element, "laser_retro"), shape.path);
     try {
@@ -524,7 +523,7 @@ class WorldBuilder {
     }
   }
 
-  /// A map only refines a surface: one that cannot be used is left out with a warning.
+  /// A normal map only refines a surface: a map that cannot be used is left out, with a warning.
   std::shared_ptr<const NormalMap> normal_map_of(const Shape& shape) {
     const SdfElement* const material =
         shape.element.name == "visual" ? shape.element.child("material") : nullptr;
@@ -541,7 +540,7 @@ class WorldBuilder {
     }
   }
 
-  /// Each file is read once.
+  /// Reads each file once.
   std::shared_ptr<const NormalMap> normal_map_file(const fs::path& file) {
     auto& known = normal_maps_[file];
     if (!known) {
@@ -568,7 +567,7 @@ class WorldBuilder {
         break;
       }
     }
-    // A shader without a map of its own names "__default__" where a program wrote the file.
+    // Programs write "__default__" for a shader without its own map.
     uri = uri == "__default__" ? "" : uri;
     if (!uri.empty() && in_object_space) {
       throw WorldError("object-space normal maps are not supported: use one in tangent space");

@@ -19,14 +19,14 @@ namespace {
 
 constexpr std::size_t header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
-/// More than this in a header means that it is no header.
+/// A larger count shows that the bytes are not a header.
 constexpr std::uint32_t plausible_triangles = 50'000'000;
 
 bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The rest of the line means nothing, as in Gazebo.
+/// The rest of the line is a comment, as in Gazebo.
 bool begins_comment(char c) {
   return c == '#' || c == '!' || c == '$';
 }
@@ -40,14 +40,14 @@ bool is_word(std::string_view text, std::string_view word) {
   return std::ranges::equal(text, word, [](char a, char b) { return lower(a) == b; });
 }
 
-/// Words of a text, with the number of the line that the last one is in.
+/// Splits a text into words, and counts lines up to the last word.
 class Words {
  public:
   explicit Words(std::string_view text) : text_(text) {}
 
   std::size_t line() const { return line_; }
 
-  /// Empty at the end.
+  /// The next word; empty at the end.
   std::string_view next() {
     while (!text_.empty() && (is_blank(text_.front()) || begins_comment(text_.front()))) {
       line_ += text_.front() == '\n' ? 1 : 0;
@@ -57,7 +57,7 @@ class Words {
     return take(static_cast<std::size_t>(std::ranges::find_if(text_, is_blank) - text_.begin()));
   }
 
-  /// The rest of the line, without blanks around it and without a facet that begins there.
+  /// The rest of the line, without surrounding blanks and without a facet that begins there.
   std::string_view name() {
     std::string_view rest = text_.substr(0, text_.find_first_of("\r\n"));
     const std::string_view facet = " facet";
@@ -166,7 +166,7 @@ RawMesh read_binary(std::string_view bytes, std::uint32_t count, const std::stri
   RawMesh mesh;
   RawPart part;
   for (std::uint32_t i = 0; submesh.empty() && i < 3 * count; ++i) {
-    // A triangle is a normal, three corners of three floats, and two bytes that mean nothing.
+    // A triangle is a normal, three corners of three floats, and two unused bytes.
     const std::size_t corner = header_bytes + triangle_bytes * (i / 3) + 12 + 12 * (i % 3);
     part.positions.emplace_back(float_at(bytes, corner), float_at(bytes, corner + 4),
                                 float_at(bytes, corner + 8));
@@ -176,8 +176,8 @@ RawMesh read_binary(std::string_view bytes, std::uint32_t count, const std::stri
   return mesh;
 }
 
-/// Begins with "solid" (or with a facet, if that line is missing) and has no byte that no text has: headers
-/// of binary files begin with "solid", too.
+/// Whether the bytes begin with "solid" (or with a facet, if that line is missing) and have no bytes that
+/// text never has. Headers of binary files may begin with "solid", too.
 bool is_text(std::string_view bytes) {
   const std::string_view head = bytes.substr(bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0, 1024);
   const std::string_view first = Words(head).next();

@@ -53,8 +53,8 @@ glm::vec3 Terrain::position(int x, int y) const {
   return p;
 }
 
-/// The normal of the mean slope over a step to either side, to one at the rim of the map: detail that a
-/// coarse level leaves out does not turn it.
+/// The normal of the mean slope over `step_px` to either side (one side at the rim of the map), so that
+/// detail left out by a coarse level does not turn it.
 glm::vec3 Terrain::normal(int x, int y, int step_px) const {
   int west = std::max(x - step_px, 0), east = std::min(x + step_px, picture_.width_px - 1);
   int south = std::max(y - step_px, 0), north = std::min(y + step_px, picture_.height_px - 1);
@@ -79,8 +79,8 @@ std::vector<int> Terrain::stops(int tile, int pixels, int level) {
 }
 
 /// Largest vertical distance between the pixels and the two triangles over them. Triangles of finer levels
-/// lie within those of coarser ones, so that it is largest at a pixel. A hole makes it so large that no
-/// coarser level is ever fine enough.
+/// lie within the coarser ones, so it is largest at a pixel. A hole makes it so large that a coarser level is
+/// never chosen.
 double Terrain::error_of_cell_m(int west, int east, int south, int north) const {
   const double a = height_m(west, south), b = height_m(east, south);
   const double c = height_m(west, north), d = height_m(east, north);
@@ -111,7 +111,7 @@ void Terrain::measure(Tile& tile, int column, int row) const {
                                    static_cast<float>(error_of_cell_m(xs[i], xs[i + 1], ys[j], ys[j + 1])));
       }
     }
-    if (level > 0) {  // no level is better than a finer one
+    if (level > 0) {  // a level never counts as more accurate than a finer one
       tile.error_m[l] = std::max(tile.error_m[l], tile.error_m[l - 1]);
       continue;
     }
@@ -143,7 +143,8 @@ TriangleMesh Terrain::mesh(std::size_t tile, const TileDetail& detail) const {
       }
     }
   }
-  // A vertex that a side does not keep moves back to the last one that it does; what loses its area goes.
+  // A vertex that a side leaves out moves back to the last one that it keeps. Triangles without area are
+  // dropped.
   const auto kept = [&](std::size_t i, std::size_t last, TileDetail::Side side) {
     const std::size_t every = std::size_t{1} << (detail.sides[side] - detail.level);
     return i == last ? i : i - i % every;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A large heightmap in tiles, each of which becomes triangles at the level of detail that is asked for.
+// A large heightmap in tiles, which become triangles at a requested level of detail.
 #pragma once
 
 #include <array>
@@ -14,18 +14,18 @@
 
 namespace sonard::render {
 
-/// At level l a tile has a vertex every 2^l pixels, and at its rim. Along each side it may keep only those of
-/// a coarser level, its neighbour's: tiles that agree on the sides they share leave no gap between them.
+/// At level l, a tile has a vertex every 2^l pixels, and at its rim. A side may have the coarser level of its
+/// neighbour: tiles with the same level on a shared side leave no gap.
 struct TileDetail {
   enum Side : std::size_t { west, east, south, north };
   int level = 0;
-  std::array<int, 4> sides{};  ///< levels by Side, none below `level`
+  std::array<int, 4> sides{};  ///< levels by Side, each >= `level`
 
   bool operator==(const TileDetail&) const = default;
 };
 
-/// Coordinates are those of make_heightfield() with the centre at the origin, in single precision. Reading it
-/// from several threads is safe.
+/// Coordinates are as in make_heightfield() with the centre at the origin, in single precision. Several
+/// threads may read it.
 class Terrain {
  public:
   static constexpr int tile_px = 128;  ///< cells a side; fewer in the last tile of a row or column
@@ -33,12 +33,12 @@ class Terrain {
 
   struct Tile {
     glm::vec3 low_m, high_m;
-    /// By level: how far its surface, or that of a finer level, is above or below that of level 0 at most.
+    /// By level: largest vertical distance of its surface, or of a finer level's, from level 0.
     std::array<float, coarsest_level + 1> error_m{};
     std::array<std::uint32_t, coarsest_level + 1> triangles{};
   };
 
-  /// @param mapped meshes carry what a normal map needs.
+  /// @param mapped meshes carry the attributes for a normal map.
   /// @throws WorldError as make_heightfield()
   Terrain(GreyImage picture, const glm::dvec3& size_m, bool mapped);
 
@@ -67,8 +67,8 @@ class Terrain {
   std::vector<Tile> tiles_;
 };
 
-/// Adds a heightmap to a body that is or will be number `body` of the world: as one mesh, or as a terrain
-/// where it has more than 2 x 2 tiles.
+/// Adds a heightmap to a body that is or will be number `body` of the world: as one mesh, or as a terrain if
+/// it has more than 2 x 2 tiles.
 /// @param part all but its mesh; `T_body_part` is the pose of the middle of the map at the height of black.
 /// @throws WorldError as make_heightfield()
 void add_heightmap(GreyImage picture, const glm::dvec3& size_m, BodyPart part, World& world, std::size_t body,

@@ -12,12 +12,12 @@ namespace sonard::render {
 
 namespace {
 
-// How far a tile may lie above or below the map. The share of the distance is a 27th of a beam of 0.47
-// degrees.
+// Largest vertical error of a tile: range lines plus a share of the distance, which is a 27th of a beam of
+// 0.47 degrees.
 constexpr double error_lines = 0.03;
 constexpr double error_rad = 3e-4;
 constexpr std::size_t most_known_meshes = 20'000;
-constexpr std::size_t most_triangles = 2'000'000;  // in range; else errors are doubled until they are fewer
+constexpr std::size_t most_triangles = 2'000'000;  // in range; else errors are doubled until there are fewer
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void TerrainLevels::measure(Ground& ground, const TerrainView& view, const Pose&
   }
 }
 
-/// Levels of all tiles, the neighbours of those in range too. @return the triangles of those in range.
+/// Chooses levels for all tiles, including neighbours of the tiles in range. @return the triangles in range.
 std::size_t TerrainLevels::choose(const TerrainView& view, double coarseness) {
   std::size_t triangles = 0;
   for (Ground& ground : grounds_) {
@@ -118,7 +118,7 @@ std::vector<PartMesh> TerrainLevels::refine(const TerrainView& view, const World
   return meshes;
 }
 
-/// Notes what is drawn from now on. Meshes that are not known are yet to be made.
+/// Stores the new detail of each tile. Meshes that are not cached stay null, to be made later.
 std::vector<TerrainLevels::Change> TerrainLevels::find_changes(double range_m) {
   if (made_.size() > most_known_meshes) {
     std::erase_if(made_, [](const auto& entry) { return entry.second.expired(); });

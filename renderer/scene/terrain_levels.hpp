@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which detail each tile of a terrain is drawn with in a ping: as much as the sonar can tell.
+// Chooses the detail of each terrain tile for a ping: as much as the sonar can resolve.
 #pragma once
 
 #include <array>
@@ -18,40 +18,40 @@
 
 namespace sonard::render {
 
-/// What a ping asks of terrains.
+/// The values of a ping that set the detail of terrains.
 struct TerrainView {
   glm::dvec3 sonar_position_m{0.0};
-  double range_m = 0.0;  ///< tiles beyond are not drawn
+  double range_m = 0.0;  ///< farther tiles are not drawn
   double line_m = 0.0;
 };
 
-/// Keeps the mesh of every tile. The choice depends on the view alone, not on earlier ones.
+/// Caches the meshes of tiles. The choice depends only on the view, not on earlier views.
 class TerrainLevels {
  public:
-  /// @param longest_edge_m of any triangle, where rays bend; 0: as they are.
+  /// @param longest_edge_m limit for all triangles if rays bend; 0: no limit.
   TerrainLevels(const World& world, const SkipSwitches& skip, float longest_edge_m);
 
-  /// Whether the world has ground in levels: what is drawn of it then goes with the ping.
+  /// Whether the world has terrain; its meshes then depend on the ping.
   bool any() const { return !grounds_.empty(); }
 
-  /// @param world the one it was made of, with its bodies where they are now.
-  /// @return what has changed since the last call. SkipRule::terrain_detail counts triangles.
+  /// @param world the world of the constructor, with the present poses of its bodies.
+  /// @return the changes since the last call. SkipRule::terrain_detail counts triangles.
   std::vector<PartMesh> refine(const TerrainView& view, const World& world, WorkerPool& workers,
                                SkipCounts& skipped);
 
  private:
-  using Drawn = std::optional<TileDetail>;  ///< nullopt: not at all
+  using Drawn = std::optional<TileDetail>;  ///< nullopt: not drawn
   struct Ground {
     std::shared_ptr<const Terrain> terrain;
     std::size_t body;
-    std::size_t first_part;  ///< counted through all bodies
+    std::size_t first_part;  ///< counted over all bodies
     Pose T_body_map;
     std::vector<Drawn> drawn;
-    std::vector<float> distance_m;  ///< of every tile, and its level; of this ping
+    std::vector<float> distance_m;  ///< by tile, and its level; of this ping
     std::vector<int> level;
   };
   using MeshKey = std::tuple<std::size_t, std::size_t, int, std::array<int, 4>>;  ///< terrain, tile, detail
-  /// Meshes made so far, as long as a sampler keeps them.
+  /// Meshes made so far, as long as an engine keeps them.
   using Made = std::map<MeshKey, std::weak_ptr<const TriangleMesh>>;
   struct Change {
     std::size_t ground;

@@ -18,7 +18,7 @@ class EdgeHalver {
   EdgeHalver(TriangleMesh& mesh, float longest_edge_m)
       : mesh_(mesh), longest_squared_(longest_edge_m * longest_edge_m) {}
 
-  /// @return false when no edge was too long.
+  /// @return false if no edge was too long.
   bool run() {
     const std::vector<std::uint32_t> before = std::exchange(mesh_.indices, {});
     for (std::size_t i = 0; i + 2 < before.size(); i += 3) {
@@ -40,7 +40,7 @@ class EdgeHalver {
       add(t[0], t[1], t[2]);
       return;
     }
-    // One edge or all: begin with one that is split. Two: begin with the one after that which is not.
+    // If one edge or all are split, begin with a split edge. If two are split, begin after the whole edge.
     while (count == 2 ? split[2] : !split[0]) {
       std::rotate(t.begin(), t.begin() + 1, t.end());
       std::rotate(split.begin(), split.begin() + 1, split.end());
@@ -73,7 +73,7 @@ class EdgeHalver {
     mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
   }
 
-  /// The vertex halfway between two.
+  /// The vertex halfway between two vertices.
   std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
     const auto [low, high] = std::minmax(a, b);
     const auto [entry, is_new] = middles_.try_emplace(std::uint64_t{low} << 32 | high,

@@ -129,7 +129,7 @@ class Raster {
   }
 
  private:
-  /// @return false if a sparse file leaves the block out
+  /// @return false if a sparse file lacks the block
   /// @throws std::runtime_error
   bool load(std::uint32_t block, std::uint32_t rows) {
     const std::uint64_t offset = TIFFGetStrileOffset(tiff_.get(), block);

@@ -38,7 +38,7 @@ std::string list(const std::vector<fs::path>& folders) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Not by a link that leads out of `folder`: an archive may hold some.
+/// Refuses links that lead out of `folder`, because an archive may contain some.
 std::optional<fs::path> existing_below(const fs::path& path, const fs::path& folder) {
   const auto found = existing(path);
   const auto around = existing(folder);
@@ -71,7 +71,7 @@ std::vector<fs::path> model_folders_from_environment() {
       }
     }
   }
-  // Gazebo Classic keeps the models that it downloads here.
+  // Gazebo Classic stores downloaded models here.
   if (const char* home = std::getenv("HOME")) {  // NOLINT(concurrency-mt-unsafe): at start-up
     if (const fs::path models = fs::path(home) / ".gazebo/models"; existing(models)) {
       folders.push_back(models);
@@ -116,7 +116,7 @@ void UriResolver::name_model(const std::string& name, const fs::path& folder) {
 
 fs::path UriResolver::resolve_model(const std::string& uri, std::string_view rest) const {
   const std::size_t end = std::min(rest.find('/'), rest.size());
-  // A model may name its neighbours: "model://NAME/../OTHER/mesh.stl".
+  // A model may refer to its neighbours: "model://NAME/../OTHER/mesh.stl".
   if (const auto named = named_.find(lower_case(rest.substr(0, end))); named != named_.end()) {
     const fs::path path = named->second / rest.substr(std::min(end + 1, rest.size()));
     if (existing(path)) {
@@ -147,7 +147,7 @@ fs::path UriResolver::search(const std::string& uri, std::string_view rest,
                                 absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
 }
 
-/// An existing path, canonical, if neither its name nor its links lead out of the folders.
+/// Returns an existing path, canonical, if neither its name nor its links lead out of the folders.
 fs::path UriResolver::allowed(const std::string& uri, const fs::path& path,
                               const fs::path& naming_folder) const {
   check_place(uri, path, naming_folder);

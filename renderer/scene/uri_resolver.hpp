@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a URI in a world file to a local path.
+// Resolves a URI in a world file to a local path.
 #pragma once
 
 #include <filesystem>
@@ -12,17 +12,17 @@
 
 namespace sonard::render {
 
-/// What to do about a MissingFile that ends the world.
+/// Advice for a MissingFile that ends the loading.
 inline constexpr std::string_view how_to_skip =
     "; correct it, or go on without it by `world: {missing: skip}`";
 
-/// A file that a world names is not there, or has nothing of what the world wants of it.
+/// A file named in a world is missing, or lacks the requested part.
 struct MissingFile : WorldError {
   using WorldError::WorldError;
 };
 
-/// Where the files that a world names are looked for. Never touches a network, and never a file that lies
-/// outside of the folders it was given: a world may come from anywhere.
+/// Searches the files that a world names. Never accesses a network, nor files outside the given folders,
+/// because worlds can be untrusted.
 class UriResolver {
  public:
   /// The search list is the folder of `world_file`, `models/` in it, `models/` beside it, then
@@ -30,27 +30,26 @@ class UriResolver {
   UriResolver(const std::filesystem::path& world_file,
               const std::vector<std::filesystem::path>& model_folders);
 
-  /// Appends a folder that holds models, found while loading, to the search list, if it lies below the
-  /// folders that were given.
+  /// Appends a folder of models, found while loading, to the search list, if it lies below the given folders.
   void add_model_folder(const std::filesystem::path& folder);
 
-  /// `model://NAME/...` is looked for in this folder of a model, before all others.
+  /// `model://NAME/...` is first searched in this folder of a model.
   void name_model(const std::string& name, const std::filesystem::path& folder);
 
-  /// @param uri `model://NAME/REST` or `package://NAME/REST`, which are sought in the search list; a bare
-  /// name, a relative path or `file://` with one, which are sought in `naming_folder` (the folder of the file
-  /// that names it) and then in the search list; an absolute path; or a model of Fuel
-  /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), which is sought in Gazebo's local cache.
+  /// @param uri `model://NAME/REST` or `package://NAME/REST`, searched in the search list; a bare name, a
+  /// relative path or `file://` with one, searched in `naming_folder` (the folder of the file with the URI)
+  /// and then in the search list; an absolute path; or a model of Fuel
+  /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), searched in Gazebo's local cache.
   /// @return an existing file or folder, canonical.
-  /// @throws MissingFile saying where it was looked for; WorldError for a URI that is none, or that leads out
-  /// of `naming_folder` and all folders of models. Links are followed, and where they lead counts.
+  /// @throws MissingFile with the folders searched; WorldError if the URI is invalid or leads out of
+  /// `naming_folder` and all folders of models. Links are followed: their targets count.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
   /// Folders below which files of the world and its models may lie; canonical.
   const std::vector<std::filesystem::path>& folders() const { return roots_; }
 
-  /// @throws WorldError where `path`, which `uri` has led to, is outside of `naming_folder` and all folders
-  /// of models
+  /// @throws WorldError if `path`, the result for `uri`, is outside of `naming_folder` and all folders of
+  /// models
   void check_place(const std::string& uri, const std::filesystem::path& path,
                    const std::filesystem::path& naming_folder) const;
 
@@ -63,8 +62,8 @@ class UriResolver {
 
   std::vector<std::filesystem::path> roots_;  ///< files may lie below these
   std::vector<std::filesystem::path> search_list_;
-  std::vector<std::filesystem::path> absent_;  ///< folders that the caller named and that do not exist
-  std::map<std::string, std::filesystem::path, std::less<>> named_;  ///< in lower case
+  std::vector<std::filesystem::path> absent_;  ///< folders that the caller gave but that do not exist
+  std::map<std::string, std::filesystem::path, std::less<>> named_;  ///< key in lower case
 };
 
 }  // namespace sonard::render
