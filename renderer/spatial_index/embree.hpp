@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree 3 (Debian 12, Ubuntu 22.04) or 4 (Debian 13, Ubuntu 24.04), which ask the same in other words.
+// Embree 3 (Debian 12, Ubuntu 22.04) or 4 (Debian 13, Ubuntu 24.04) under one interface.
 #pragma once
 
 #if SONARD_EMBREE >= 4
@@ -12,12 +12,12 @@ namespace sonard::render::embree {
 
 #if SONARD_EMBREE >= 4
 
-/// How rays are traced; one for each call.
+/// How rays are traced. Make a new one for each call.
 struct Query {
   RTCIntersectArguments arguments;
 
   Query() { rtcInitIntersectArguments(&arguments); }
-  /// Rays that lie close together. @param filter drops hits; null: none
+  /// For rays that lie close together. @param filter drops hits; may be null
   void coherent(RTCFilterFunctionN filter) {
     arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
     if (filter != nullptr) {
@@ -28,7 +28,7 @@ struct Query {
   }
 };
 
-/// Of a scene whose rays bring a filter.
+/// Flag of a scene whose queries have a filter.
 inline constexpr RTCSceneFlags filter_of_query = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 
 inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
@@ -49,19 +49,19 @@ inline void occluded(RTCScene scene, RTCRay& ray) {
 
 #else
 
-/// How rays are traced; one for each call.
+/// How rays are traced. Make a new one for each call.
 struct Query {
   RTCIntersectContext context;
 
   Query() { rtcInitIntersectContext(&context); }
-  /// Rays that lie close together. @param filter drops hits; null: none
+  /// For rays that lie close together. @param filter drops hits; may be null
   void coherent(RTCFilterFunctionN filter) {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     context.filter = filter;
   }
 };
 
-/// Of a scene whose rays bring a filter.
+/// Flag of a scene whose queries have a filter.
 inline constexpr RTCSceneFlags filter_of_query = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
 inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {

@@ -31,8 +31,8 @@ using Handle = std::unique_ptr<std::remove_pointer_t<T>, Release>;
 
 using IntersectPacket = void (*)(const RayPacket&, RTCScene, embree::Query&, float max_depth, RayHits&);
 
-/// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays. Inlined, so that it
-/// becomes part of each version of its caller.
+/// Traces a packet as packet_size / N packets of Embree's type `RayHit` for N rays. Always inlined, to be
+/// compiled for each version of its caller (renderer/simd.hpp).
 template <class RayHit, int N>
 [[gnu::always_inline]] inline void intersect_by(const RayPacket& rays, RTCScene scene, embree::Query& by,
                                                 float max_depth, RayHits& hits) {
@@ -95,7 +95,7 @@ RTCRay ray_of(const glm::vec3& origin_m, const glm::vec3& direction, float farth
   return ray;
 }
 
-/// Lets rays pass through triangles that they meet from behind.
+/// Filter that drops hits on the back of triangles.
 void pass_back_faces(const RTCFilterFunctionNArguments* arguments) {
   for (unsigned i = 0; i < arguments->N; ++i) {
     const float facing =
@@ -139,15 +139,14 @@ struct SpatialIndex::Impl {
 
   Impl(World the_world, WorkerPool& pool, const std::string& settings)
       : world(std::move(the_world)), workers(pool) {
-    // Meshes are built side by side, each by one thread: the tree, and with it which of two triangles that
-    // share an edge a ray on it meets, is then the same every time.
+    // Meshes are built in parallel, each by one thread. The tree is then the same every time, and so is the
+    // result for rays that hit an edge between two triangles.
     device.reset(rtcNewDevice(("threads=1,ignore_config_files=1," + settings).c_str()));
     check("set up");
     choose_packets();
   }
 
-  /// @throws RendererError when Embree has met an error since the last call; std::bad_alloc where that is
-  /// memory
+  /// @throws RendererError if Embree had an error since the last call; std::bad_alloc if it ran out of memory
   void check(const char* action) const {
     const RTCError error = rtcGetDeviceError(device.get());
     if (error == RTC_ERROR_OUT_OF_MEMORY) {
@@ -186,7 +185,7 @@ struct SpatialIndex::Impl {
     add_instances();
   }
 
-  /// @return the meshes, each of which is yet to be built.
+  /// @return the meshes, none of them built yet.
   std::vector<std::shared_ptr<const Mesh>> add_parts() {
     std::vector<std::shared_ptr<const Mesh>> meshes;
     std::map<const TriangleMesh*, std::size_t> mesh_index;
@@ -204,7 +203,7 @@ struct SpatialIndex::Impl {
     return meshes;
   }
 
-  /// Replaces the meshes that set_part_meshes() was given.
+  /// Applies the meshes passed to set_part_meshes().
   void replace_awaited() {
     std::vector<std::shared_ptr<const Mesh>> unknown;
     for (const auto& [number, triangles] : awaited) {
@@ -240,7 +239,7 @@ struct SpatialIndex::Impl {
         rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                 sizeof(glm::vec3), std::max<std::size_t>(1, triangles.positions.size()));
     if (vertices == nullptr) {
-      return;  // check() tells
+      return;  // check() reports it
     }
     std::memcpy(vertices, triangles.positions.data(), triangles.positions.size() * sizeof(glm::vec3));
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
@@ -367,7 +366,7 @@ bool SpatialIndex::trace_one(const glm::vec3& origin_m, const glm::vec3& directi
 bool SpatialIndex::is_free(const glm::vec3& origin_m, const glm::vec3& direction, float distance_m) const {
   RTCRay ray = ray_of(origin_m, direction, distance_m);
   embree::occluded(impl_->scene.get(), ray);
-  return ray.tfar >= 0;  // minus infinity where something was met
+  return ray.tfar >= 0;  // minus infinity if the ray hit something
 }
 
 const std::string& SpatialIndex::description() const {
