@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a material answers in mode `physical`: Lambert's law and facets (docs/physics.md 2.4).
+// How a material reflects in mode `physical`: Lambert's law and facets (docs/physics.md 2.4).
 #pragma once
 
 #include <algorithm>
@@ -10,23 +10,23 @@
 
 namespace sonard::render {
 
-/// What becomes of the facets of materials that have some.
+/// How the facets of materials are rendered.
 enum class Facets {
   none,         ///< plain Lambert surfaces
-  near_normal,  ///< left out where they echo less than 0.1 % of the Lambert part (SkipRule::facet_kernel)
-  everywhere,   ///< worked out at every incidence, and for materials without facets too
+  near_normal,  ///< left out if they echo less than 0.1 % of the Lambert part (SkipRule::facet_kernel)
+  everywhere,   ///< at every incidence, and for materials without facets too
 };
 
 /// Facets echo s_b = |R|^2 / (8 pi m^2 cos^4 phi) exp(-tan^2 phi / (2 m^2)): high-frequency Kirchhoff theory,
-/// for a surface whose slopes are Gaussian with rms m along each axis. All of it integrates to |R|^2 a^2 / 4
-/// over a sphere of radius a.
+/// for a surface with Gaussian slopes of rms m along each axis. Over a sphere of radius a, it integrates to
+/// |R|^2 a^2 / 4.
 struct Backscatter {
-  static constexpr float widest_variance = 0.25F;  // m = 0.5: the law does not hold beyond
+  static constexpr float widest_variance = 0.25F;  // m = 0.5: the law is invalid beyond
 
   float lambert_mu = 0.0F;
   float facet_strength = 0.0F;   ///< |R|^2 / (8 pi); 0: no facets
   float slope_variance = 0.04F;  ///< m^2
-  float least_cosine = 2.0F;     ///< cos phi below which Facets::near_normal leaves them out; 2: everywhere
+  float least_cosine = 2.0F;     ///< cos phi below which Facets::near_normal omits facets; 2: always
 
   Backscatter() = default;
   explicit Backscatter(const AcousticMaterial& material)
@@ -39,10 +39,10 @@ struct Backscatter {
   /// Echo per solid angle at unit range, s_b / cos phi, of the Lambert part.
   float lambert(float cosine) const { return lambert_mu * cosine; }
 
-  /// The response of the facets.
-  /// @param added_variance of the slopes of a normal map, to be added to m^2
+  /// Echo per solid angle at unit range, s_b / cos phi, of the facets.
+  /// @param added_variance variance of the slopes of a normal map, added to m^2
   float facets(float cosine, float added_variance = 0.0F) const {
-    constexpr float as_good_as_none = 80.0F;  // exp(-80); keeps 0 / 0 out at grazing incidence
+    constexpr float as_good_as_none = 80.0F;  // exp(-80) counts as 0; avoids 0 / 0 at grazing incidence
     const float variance = std::min(slope_variance + added_variance, widest_variance);
     const float c2 = cosine * cosine;
     const float exponent = (1.0F - c2) / (2.0F * variance * c2);
@@ -54,19 +54,19 @@ struct Backscatter {
     return which == Facets::everywhere || (which == Facets::near_normal && cosine > least_cosine);
   }
 
-  /// Both, at one incidence.
+  /// The sum of both parts.
   float at(float cosine, Facets which) const {
     return lambert(cosine) + (has_facets(which, cosine) ? facets(cosine) : 0.0F);
   }
 
-  /// No response is above this.
+  /// Upper limit of at() over all incidences.
   float largest_response() const {
-    // For m up to 0.5 facets echo at most 6 % more than at normal incidence.
+    // For m up to 0.5, facets echo at most 6 % more than at normal incidence.
     return lambert_mu + 1.06F * facet_strength / slope_variance;
   }
 
  private:
-  /// Facets fade steadily against Lambert's law for any m up to 0.5 once they are this much weaker.
+  /// Below this cosine facets are negligible: for any m up to 0.5, their share then decreases steadily.
   float cosine_of_negligible_facets() const {
     constexpr float negligible = 1e-3F;
     float least = 0.0F, most = 1.0F;
@@ -78,9 +78,9 @@ struct Backscatter {
   }
 };
 
-/// Variance along each axis of the slopes that were averaged into a mean normal of this length: of Gaussian
-/// slopes with variance v it is 1 / (1 + v) in first order (Toksvig 2005, "Mipmapping normal maps", equation
-/// 2).
+/// Variance along each axis of slopes that were averaged into a mean normal of this length. For Gaussian
+/// slopes of variance v, the length is 1 / (1 + v) in first order (Toksvig 2005, "Mipmapping normal maps",
+/// equation 2).
 inline float variance_of_mean_normal(float length) {
   return length < 1.0F ? (1.0F - length) / std::max(length, 0.1F) : 0.0F;
 }

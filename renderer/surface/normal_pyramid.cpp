@@ -19,8 +19,8 @@ glm::vec3 unit_normal(const std::uint8_t* rgb) {
   return length > 0.1F ? n / length : glm::vec3(0.0F, 0.0F, 1.0F);
 }
 
-/// Which of `from` cells make up cell `i` of `to` cells, and how much of each. Half the size, rounded down,
-/// is not always half: three cells become one.
+/// Which of `from` cells make up cell `i` of `to` cells, and their weights. An odd number of cells is not
+/// divisible by two, so three cells can become one.
 struct Share {
   int first = 0, count = 0;
   std::array<float, 3> weight{};
@@ -119,7 +119,7 @@ glm::vec3 NormalPyramid::bilinear(const Level& level, const glm::vec2& uv) const
 
 glm::vec3 NormalPyramid::mean_normal(const glm::vec2& uv, float level) const {
   const glm::vec2 inside = uv - glm::floor(uv);
-  // Written so that a level that is not a number becomes 0.
+  // In this form, a NaN level becomes 0.
   const float held = level > 0.0F ? std::min(level, static_cast<float>(levels.size() - 1)) : 0.0F;
   const auto low = static_cast<std::size_t>(held);
   const float part = held - static_cast<float>(low);
