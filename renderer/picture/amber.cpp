@@ -14,7 +14,7 @@ struct Stop {
   cv::Vec3d bgr;
 };
 
-// From nearly black over copper and amber to a warm white.
+// From nearly black through copper and amber to a warm white.
 constexpr std::size_t stop_count = 6;
 const std::array<Stop, stop_count>& stops() {
   static const std::array<Stop, stop_count> all{{{0.0, {10, 6, 4}},

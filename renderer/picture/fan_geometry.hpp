@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a range and a beam lie in a fan picture.
+// The position of a range and a beam in a fan picture.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sonard::picture {
 
-/// What the samples of a ping stand for.
+/// Bearings and ranges of the samples of a ping.
 struct FanShape {
   std::vector<double> bearings_rad;  ///< centre of each beam, port (negative) to starboard, strictly rising
   int lines = 0;                     ///< > 0
@@ -19,15 +19,15 @@ struct FanShape {
   bool operator==(const FanShape&) const = default;
 };
 
-/// The fan seen from above. Its edges are those of the first and last beam, half a beam beyond their centres.
+/// The fan seen from above. Its edges are half a beam beyond the centres of the first and the last beam.
 class FanGeometry : public SectorGeometry {
  public:
   /// Requires at least two beams, bearings within +-90 degrees, radius_px > 0.
   FanGeometry(FanShape shape, int radius_px, int margin_px);
 
   const FanShape& shape() const { return shape_; }
-  /// Fractional beam at a bearing: i at the centre of beam i, linear in between and for half a beam beyond
-  /// the outer centres; NaN outside.
+  /// Fractional beam at a bearing: i at the centre of beam i, linear between centres and for half a beam
+  /// beyond the outer ones; NaN outside.
   double beam_at(double bearing_rad) const;
 
  private:

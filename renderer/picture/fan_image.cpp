@@ -13,7 +13,7 @@
 namespace sonard::picture {
 namespace {
 
-/// The ends of a fan of 120 degrees are named too, where its last beams lie a little inside of them.
+/// A fan of 120 degrees has lines at +-60 degrees, although its outer beams end slightly before.
 std::vector<int> bearing_lines_deg(const SectorGeometry& geometry) {
   constexpr double wide_rad = 110.0 * std::numbers::pi / 180.0;
   return geometry.starboard_edge_rad() - geometry.port_edge_rad() > wide_rad

@@ -39,7 +39,7 @@ void append(png_structp png, png_bytep bytes, std::size_t size) {
   static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(bytes), size);
 }
 
-/// Owns nothing but `file`, which is the caller's, for libpng leaves it by longjmp().
+/// Owns no object with a destructor, because libpng leaves it by longjmp(); `file` is the caller's.
 bool write_png(const cv::Mat& picture, int colour_type, int level, std::string& file) {
   png_structp png = png_create_write_struct(
       PNG_LIBPNG_VER_STRING, nullptr, [](png_structp failed, png_const_charp) { png_longjmp(failed, 1); },

@@ -17,7 +17,7 @@ constexpr int font = cv::FONT_HERSHEY_DUPLEX;
 constexpr double font_scale = 0.5;
 constexpr int label_gap_px = 8;
 constexpr double most_rings = 8.0;
-/// A range that was meant to be round is cut to whole lines; its ring is drawn anyway.
+/// A round range may end slightly short, cut to whole lines; its ring is drawn anyway.
 constexpr double whole_range_slack = 1.003;
 
 double degrees(double radians) {
@@ -37,8 +37,8 @@ std::string metres_text(double metres) {
   return text.data();
 }
 
-/// `anchor` is the left (0), centre (0.5) or right (1) end of the text, at half its height. The font knows no
-/// degree sign; a ring is drawn in its place.
+/// `anchor` is the left (0), centre (0.5) or right (1) end of the text, at half its height. The font has no
+/// degree sign, so a ring is drawn instead.
 void put_label(cv::Mat& image, const std::string& text, cv::Point2d at, double anchor,
                bool in_degrees = false) {
   const cv::Size size = cv::getTextSize(text, font, font_scale, 1, nullptr);
@@ -50,7 +50,7 @@ void put_label(cv::Mat& image, const std::string& text, cv::Point2d at, double a
   }
 }
 
-/// Outside the starboard edge; in a full circle, which has no outside, to the right of the line ahead.
+/// Outside the starboard edge; in a full circle, to the right of the line ahead.
 void put_ring_label(cv::Mat& grid, const SectorGeometry& geometry, double radius_m) {
   if (geometry.full_circle()) {
     const cv::Point2d end = geometry.pixel(radius_m, 0.0);
@@ -59,7 +59,7 @@ void put_ring_label(cv::Mat& grid, const SectorGeometry& geometry, double radius
   }
   const double edge_rad = geometry.starboard_edge_rad();
   const cv::Point2d end = geometry.pixel(radius_m, edge_rad);
-  // Across the edge, 8 pixels right and 12 down of one at 60 degrees.
+  // Perpendicular to the edge; at 60 degrees, 8 pixels right and 12 down.
   const double right = std::cos(edge_rad);
   const double anchor = right > 0.3 ? 0.0 : right < -0.3 ? 1.0 : 0.5;
   put_label(grid, metres_text(radius_m),

@@ -22,7 +22,7 @@ SectorGeometry::SectorGeometry(double range_m, double port_edge_rad, double star
       radius_px_(radius_px) {
   assert(range_m > 0.0 && radius_px > 0 && starboard_edge_rad > port_edge_rad &&
          starboard_edge_rad - port_edge_rad <= turn_rad + rounding_rad);
-  // A sector reaches farthest at its edges, or where it passes one of the four main bearings.
+  // The extreme points of a sector are at its edges, or at one of the four main bearings if it contains them.
   double left = 0.0;
   double right = 0.0;
   double up = 0.0;

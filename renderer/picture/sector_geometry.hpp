@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a range and a bearing lie in a picture of a sector seen from above.
+// The position of a range and a bearing in a picture of a sector seen from above.
 #pragma once
 
 #include <opencv2/core/types.hpp>
 
 namespace sonard::picture {
 
-/// A sector, up to the full circle. Ahead is up, port is on the left, and range grows away from the apex. The
-/// picture is as wide and high as the sector needs, plus a margin for labels. Pixel coordinates name pixel
-/// centres, as in OpenCV. Bearings are radians, 0 straight up, positive to the right.
+/// A sector, up to the full circle. Ahead is up, port is on the left, and range increases away from the apex.
+/// The picture has the size of the sector plus a margin for labels. Pixel coordinates are at pixel centres,
+/// as in OpenCV. Bearings are in radians, 0 straight up, positive to the right.
 class SectorGeometry {
  public:
   /// `radius_px`: pixels from the apex to the full range. Requires range_m > 0, radius_px > 0, port_edge_rad
@@ -24,7 +24,7 @@ class SectorGeometry {
   double port_edge_rad() const { return port_edge_rad_; }
   double starboard_edge_rad() const { return starboard_edge_rad_; }
   bool full_circle() const;
-  /// Whether the sector has this bearing, of any number of turns.
+  /// Whether the sector contains this bearing, modulo 2 pi.
   bool contains(double bearing_rad) const;
 
   cv::Point2d pixel(double range_m, double bearing_rad) const;

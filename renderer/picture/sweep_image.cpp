@@ -14,7 +14,7 @@ namespace sonard::picture {
 namespace {
 
 constexpr int bearing_ahead = 3200;
-/// Halves of a unit: the edges of a step lie on them, also where it is odd.
+/// Half units: the edges of a step are multiples of it, even if the step is odd.
 constexpr int slots_per_turn = 2 * units_per_turn;
 constexpr double slot_rad = 2.0 * std::numbers::pi / slots_per_turn;
 
@@ -29,14 +29,14 @@ SectorGeometry geometry_of(const SweepShape& shape, const FanStyle& style) {
     return {shape.range_m(), -std::numbers::pi, std::numbers::pi, style.radius_px, margin_px};
   }
   const int port_slot = 2 * (shape.left - bearing_ahead) - shape.step;
-  // A sector that begins within half a step of astern begins on its other side.
+  // Port edges beyond astern wrap around by a full turn.
   const double port_rad =
       (port_slot < -slots_per_turn / 2 ? port_slot + slots_per_turn : port_slot) * slot_rad;
   return {shape.range_m(), port_rad, port_rad + 2 * (shape.width + shape.step) * slot_rad, style.radius_px,
           margin_px};
 }
 
-/// Which line is seen in each slot; -1: none.
+/// Index of the visible line in each slot; -1: no line.
 std::vector<int> lines_in_slots(const std::vector<SweepLine>& lines, int step) {
   std::vector<int> seen(slots_per_turn, -1);
   for (std::size_t line = 0; line < lines.size(); ++line) {
@@ -47,7 +47,7 @@ std::vector<int> lines_in_slots(const std::vector<SweepLine>& lines, int step) {
   return seen;
 }
 
-/// A row for each line, a column for each bin. A line of another length is cut or filled up with 0.
+/// One row per line, one column per bin. Lines of another length are cut or padded with 0.
 cv::Mat matrix_of(const std::vector<SweepLine>& lines, int bins) {
   cv::Mat rows = cv::Mat::zeros(static_cast<int>(lines.size()), bins, CV_8UC1);
   for (std::size_t line = 0; line < lines.size(); ++line) {
