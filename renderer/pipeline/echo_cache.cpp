@@ -5,7 +5,7 @@ namespace sonard::render {
 
 namespace {
 
-/// Without what only the receiver looks at.
+/// Resets the values that only the receiver uses.
 PaperModel echo_part(PaperModel model) {
   const PaperModel any;
   model.gain = any.gain;
@@ -16,7 +16,7 @@ PaperModel echo_part(PaperModel model) {
   return model;
 }
 
-/// Without what only the receiver looks at.
+/// Resets the values that only the receiver uses.
 PhysicalModel echo_part(const PhysicalModel& model) {
   PhysicalModel part;
   part.absorption_db_per_m = model.absorption_db_per_m;
@@ -32,7 +32,7 @@ PhysicalModel echo_part(const PhysicalModel& model) {
   return part;
 }
 
-/// Whether all that the mean echo depends on is the same in both.
+/// Whether both settings give the same mean echo.
 bool same_echo(const SonarSettings& a, const SonarSettings& b) {
   if (a.transmit != b.transmit || a.model != b.model || a.range.count != b.range.count ||
       a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
@@ -42,7 +42,7 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
                                     : echo_part(a.paper) == echo_part(b.paper);
 }
 
-/// Whether the echo depends on the seed of the ping, as errors of elements without a seed of their own do.
+/// Whether the echo depends on the seed of the ping: if elements have errors without their own seed.
 bool has_random_array(const SonarSettings& settings) {
   const Aperture& aperture = settings.aperture;
   return has_array_beams(settings) && !aperture.element_seed &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last mean echo of a sonar, and whether it is still the one that is asked for.
+// Stores the last mean echo of a sonar, and checks whether a new request would give the same.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace sonard::render {
 
-/// The last mean echo of a stream, and what it was made of (SkipRule::unchanged_scene).
+/// The last mean echo of a stream, and its inputs (SkipRule::unchanged_scene).
 struct CachedEcho {
   EchoImage image;
   SonarSettings settings;
   std::uint64_t seed = 0;
   SonarMotion motion;
-  std::uint64_t world_revision = 0;  ///< 0: there is none yet
+  std::uint64_t world_revision = 0;  ///< 0: empty
   bool sees_surface = true;          ///< PingStatistics::sees_surface
 
-  /// Whether all that the mean echo depends on is what it was made of.
+  /// Whether all inputs of the mean echo are the stored ones.
   bool fits(const PingRequest& wanted, const SonarMotion& motion_wanted, std::uint64_t revision) const;
 };
 

@@ -19,12 +19,12 @@ namespace sonard::render {
 namespace {
 
 constexpr int most_rounds = 6;
-constexpr double longest_trial_s = 0.25;  // of an engine; a round that has begun is finished
+constexpr double longest_trial_s = 0.25;  // per engine; a started round is finished
 constexpr double step_m = 1e-3;           // from round to round, so that no round can reuse another
 constexpr int fewest_beams_of_fan = 32;
-constexpr double kept_share = 0.99;  // of the bins; a few at edges differ more
+constexpr double kept_share = 0.99;  // of the bins; a few bins at edges differ more
 
-/// Twice what docs/accuracy.md promises of the bins: either image may be off by that.
+/// Twice the error of docs/accuracy.md for the bins, because either image may have this error.
 double most_difference(const SonarSettings& settings) {
   const Sampling::Preset preset = settings.sampling.preset;
   return preset == Sampling::Preset::normal || preset == Sampling::Preset::reference ? 0.02 : 0.10;
@@ -36,7 +36,7 @@ struct Rounds {
   bool all_drawn = true;          ///< by the GPU
 };
 
-/// @param away from where the first round stands, in steps
+/// @param away distance from the position of the first round, in steps
 Rounds render_rounds(SonarRenderer& renderer, std::span<const StreamPing> pings, int most, int away = 0) {
   Rounds rounds;
   double taken_s = 0.0;
@@ -57,7 +57,7 @@ Rounds render_rounds(SonarRenderer& renderer, std::span<const StreamPing> pings,
   return rounds;
 }
 
-/// The beams in the middle of each fan, a sixteenth of them. What they take is less than what all take.
+/// The middle sixteenth of the beams of each fan. They take less time than all beams.
 std::vector<StreamPing> middle_beams(std::span<const StreamPing> pings) {
   std::vector<StreamPing> few(pings.begin(), pings.end());
   for (StreamPing& ping : few) {
@@ -70,7 +70,7 @@ std::vector<StreamPing> middle_beams(std::span<const StreamPing> pings) {
   return few;
 }
 
-/// Fills in what is known of the GPU once it has been tried.
+/// Times the GPU and fills in the results.
 void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const Rounds& by_cpu,
              EngineTrial& trial) {
   renderer.use_engine(EngineKind::gpu);
@@ -84,8 +84,8 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
     return made;
   };
   const std::vector<StreamPing> few = middle_beams(pings);
-  // A driver builds shaders, and the world is uploaded, when they are first drawn with: half a second that no
-  // later ping takes.
+  // At the first draw, the driver builds shaders and the world is uploaded, which takes half a second. Later
+  // pings do not need this, so the first round does not count.
   rounds(few, 1, most_rounds);
   if (pings.front().request.settings.aperture.beam_count() >= fewest_beams_of_fan) {
     rounds(few, 2);

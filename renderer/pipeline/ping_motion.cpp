@@ -21,7 +21,7 @@ double turn_between_rad(const Pose& a, const Pose& b) {
 std::vector<RangeSpan> range_spans(const Pose& at_transmission, const Pose& at_end, int lines,
                                    double receive_beamwidth_rad) {
   const double halves = turn_between_rad(at_transmission, at_end) / (receive_beamwidth_rad / 2);
-  // Not more spans than lines: a span holds one at least.
+  // At most one span per line, because a span holds at least one line.
   const int wanted = halves < most_spans ? static_cast<int>(std::ceil(halves)) : most_spans;
   const int count = std::min(std::max(wanted, fewest_spans), lines);
   std::vector<RangeSpan> spans;

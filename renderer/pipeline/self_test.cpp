@@ -37,9 +37,9 @@ double cos4_integral(double u) {
   return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
 }
 
-/// Adds the echo of one azimuth to the lines of its beam (docs/physics.md 3.2, T2). Along it a perpendicular
-/// wall is at wall / (cos psi cos theta), so each range bounds an elevation; the lines before and behind what
-/// lies within `elevation_limit` hold nothing.
+/// Adds the echo of one azimuth to the lines of its beam (docs/physics.md 3.2, T2). At this azimuth a
+/// perpendicular wall is at range wall / (cos psi cos theta), so each range bounds an elevation. Lines nearer
+/// or farther than the wall within `elevation_limit` stay 0.
 void add_wall_echo(double psi, double width_rad, double elevation_limit, const RangeLines& range,
                    std::vector<double>& lines) {
   const double c = std::cos(psi);
@@ -58,7 +58,7 @@ void add_wall_echo(double psi, double width_rad, double elevation_limit, const R
   }
 }
 
-/// Over the width of each beam by the midpoint rule.
+/// Integrates over the width of each beam by the midpoint rule.
 EchoImage closed_form(const SonarSettings& settings) {
   constexpr int steps = 400;
   EchoImage image{settings.aperture.beam_count(), settings.range.count, {}};
@@ -93,7 +93,7 @@ SelfTestResult run_self_test(RendererOptions options) {
   request.settings = wall_settings(16, 1200);
   const EchoImage truth = closed_form(request.settings);
   SelfTestResult result;
-  // Fixed grids go another way than presets, with `gpu` through shaders of their own.
+  // Fixed grids use other code than presets, and on the GPU other shaders.
   for (const Sampling& sampling : {Sampling{}, Sampling::of_grid(3, 64, 256)}) {
     request.settings.sampling = sampling;
     const double error = bin_rms(renderer.render_echo(request), truth);

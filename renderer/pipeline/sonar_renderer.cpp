@@ -29,7 +29,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int most_range_bins = 65535;  // multibeam heads count them in 16 bits
+constexpr int most_range_bins = 65535;  // multibeam sonars count them in 16 bits
 constexpr int most_beams = 4096;
 constexpr double shortest_line_m = 1e-6;
 constexpr double longest_range_m = 1e5;
@@ -60,7 +60,7 @@ void check(const SonarSettings& settings) {
   }
 }
 
-/// The pose with a unit quaternion.
+/// The pose with a normalised quaternion. @throws RequestError
 Pose checked(const Pose& pose) {
   const double norm = glm::length(pose.orientation);
   const glm::dvec3& p = pose.position_m;
@@ -73,7 +73,7 @@ Pose checked(const Pose& pose) {
 }  // namespace
 
 struct SonarRenderer::Impl {
-  /// A ping of which the engine has made the mean echo before its turn.
+  /// A ping whose mean echo the engine has computed in advance.
   struct Begun {
     CachedEcho made_of;  // without an image
     SonarSettings sampled;
@@ -83,8 +83,8 @@ struct SonarRenderer::Impl {
 
   const SkipSwitches skip;
   const double ray_curvature_per_m;
-  WorkerPool workers;  // outlives its users
-  SpatialIndex index;  // the world, and where it is moved
+  WorkerPool workers;  // must outlive its users
+  SpatialIndex index;  // the world with the present poses
   EngineSwitch engine;
   Multipath multipath;
   TerrainLevels terrain;
@@ -115,7 +115,7 @@ struct SonarRenderer::Impl {
 
   void set_body_pose(std::size_t body, const Pose& T_world_body) {
     if (index.world().bodies[body].T_world_body == T_world_body) {
-      return;  // publishers repeat the poses of bodies that rest
+      return;  // publishers repeat the poses of bodies at rest
     }
     index.set_body_pose(body, T_world_body);
     engine.set_body_pose(body, T_world_body);
@@ -143,7 +143,7 @@ struct SonarRenderer::Impl {
     return motion;
   }
 
-  /// SkipRule::straight_rays.
+  /// Sets the refraction of the engine (SkipRule::straight_rays).
   void bend_rays(const SonarSettings& settings) {
     double bend_per_m = settings.model == Model::physical ? ray_curvature_per_m / 2 : 0.0;
     if (bend_per_m != 0.0 && skip.on(SkipRule::straight_rays) &&
@@ -155,7 +155,7 @@ struct SonarRenderer::Impl {
     engine.set_refraction(bend_per_m);
   }
 
-  /// @param settings_and_seed of which the pose is not looked at
+  /// @param settings_and_seed its poses are not used
   void render_echo(const PingRequest& settings_and_seed, int stream, const SonarMotion& motion,
                    EchoImage& image) {
     const SonarSettings& settings = settings_and_seed.settings;
@@ -184,7 +184,7 @@ struct SonarRenderer::Impl {
     statistics.pulse_s = watch.lap();
   }
 
-  /// What is asked of the engine; it refers to the settings and to what is kept of the stream.
+  /// The request to the engine; it refers to the settings and to stored data of the stream.
   EchoRequest engine_request(const SonarSettings& settings, int stream, const SonarMotion& motion) {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
@@ -192,7 +192,7 @@ struct SonarRenderer::Impl {
     return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings)};
   }
 
-  /// The echo as it comes to the sonar.
+  /// The echo as it arrives at the sonar.
   void sample_echo(const SonarSettings& settings, std::uint64_t seed, int stream, const SonarMotion& motion,
                    EchoImage& image) {
     const EchoRequest request = engine_request(settings, stream, motion);
@@ -244,14 +244,14 @@ struct SonarRenderer::Impl {
     return strongest;
   }
 
-  /// The part of a whole in each place; 0 where there is nothing.
+  /// Divides `part` by `whole`; 0 if the whole is 0.
   static void divide(std::vector<float>& part, const std::vector<float>& whole) {
     for (std::size_t i = 0; i < part.size(); ++i) {
       part[i] = whole[i] > 0 ? part[i] / whole[i] : 0.0F;
     }
   }
 
-  /// SkipRule::terrain_detail. Motion within a ping changes no detail, but it reaches further.
+  /// SkipRule::terrain_detail. Motion within a ping extends the range, but does not change the detail.
   void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
     Stopwatch watch;
     const glm::dvec3& start_m = motion.T_world_sonar.position_m;
@@ -266,7 +266,7 @@ struct SonarRenderer::Impl {
     statistics.visibility_s += watch.lap();
   }
 
-  /// Every line from the pose of its span. Nothing is blended: each line comes whole, from one span.
+  /// Renders each line from the pose of its span. Nothing is blended: a line comes from one span only.
   void image_in_spans(const EchoRequest& request, const Pose& at_end, MeanEcho& joined) {
     SonarSettings up_to_end = request.settings;
     const int beams = up_to_end.aperture.beam_count();
@@ -286,7 +286,7 @@ struct SonarRenderer::Impl {
     }
   }
 
-  /// From an image that ends with the span.
+  /// Copies the lines of a span from an image that ends with the span.
   static void copy_lines(const std::vector<float>& from, const RangeSpan& span, int beams,
                          std::vector<float>& to) {
     const std::size_t lines_from = from.size() / static_cast<std::size_t>(beams);
@@ -308,7 +308,7 @@ struct SonarRenderer::Impl {
     return loss;
   }
 
-  /// Whether the engine has made this ping already. What it has made of another that was to come is given up.
+  /// Whether the engine has rendered this ping in advance. An advance result for another ping is dropped.
   bool is_begun(int stream, const PingRequest& request, const SonarMotion& motion) {
     const auto made = begun.find(stream);
     if (made != begun.end() && !made->second.made_of.fits(request, motion, world_revision)) {
@@ -318,7 +318,7 @@ struct SonarRenderer::Impl {
     return made != begun.end();
   }
 
-  /// Of a ping that the engine can make with those of others; nullptr: it is to be made alone, or not at all.
+  /// Entry for a ping that the engine can render with others; nullptr: to be rendered alone, or not at all.
   /// @throws RequestError
   Begun* may_begin(const StreamPing& ping) {
     const auto& [stream, request] = ping;
@@ -339,7 +339,7 @@ struct SonarRenderer::Impl {
   }
 
   void begin(std::span<const StreamPing> pings) {
-    // Terrain is drawn as one ping needs it, and rays bend as one does: such pings are made one by one.
+    // Terrain detail and bent rays depend on the ping, so such pings are rendered one by one.
     if (engine.kind() != EngineKind::gpu || pings.size() < 2 || terrain.any() || ray_curvature_per_m != 0.0) {
       return;
     }
@@ -350,7 +350,7 @@ struct SonarRenderer::Impl {
     for (const StreamPing& ping : pings) {
       try {
         if (&ping == &pings.front() && is_begun(ping.stream, ping.request, motion_of(ping.request))) {
-          return;  // it is to be handed out first; the next ones begin together when all of these are
+          return;  // render it first; the next pings start together when all of these are done
         }
         if (Begun* made = may_begin(ping)) {
           streams.push_back(ping.stream);
@@ -358,7 +358,7 @@ struct SonarRenderer::Impl {
           jobs.push_back({requests.back(), made->echo, made->statistics});
         }
       } catch (const RequestError&) {
-        continue;  // it is told when it is its turn
+        continue;  // reported when the ping is rendered
       }
     }
     try {
@@ -385,7 +385,7 @@ const std::string& SonarRenderer::engine_description() const {
 
 void SonarRenderer::use_engine(EngineKind engine) {
   impl_->engine.use(engine);
-  ++impl_->world_revision;  // the other's images are not this one's
+  ++impl_->world_revision;  // images of the other engine are no longer valid
 }
 
 bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_world_body) {
@@ -406,14 +406,14 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
-  impl_->is_begun(stream, request, motion);  // or it is not of this ping, and is given up
+  impl_->is_begun(stream, request, motion);  // drops an advance result for another ping
   CachedEcho& cached = impl_->cached_echoes[stream];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
     impl_->statistics.sees_surface = cached.sees_surface;
     return cached.image;
   }
-  cached.world_revision = 0;  // until all of it is there
+  cached.world_revision = 0;  // until the image is complete
   impl_->render_echo(request, stream, motion, cached.image);
   cached.settings = request.settings;
   cached.seed = request.seed;

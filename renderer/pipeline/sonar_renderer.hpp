@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entrance of the renderer: a world and a ping request go in, an echo image and the device's samples
-// come out.
+// Entry point of the renderer: it turns a world and a ping request into an echo image and the device's
+// samples.
 #pragma once
 
 #include <memory>
@@ -14,53 +14,54 @@
 
 namespace sonard::render {
 
-/// Renders pings of one world. Every call, construction and destruction included, comes from one thread,
-/// which owns the GL context if there is one. Several sonars may share one renderer; each gives its own
-/// `stream` number, which keeps their speckle apart.
+/// Renders pings of one world. All calls, including construction and destruction, must come from one thread,
+/// which owns the GL context if there is one. Several sonars may share one renderer; each uses its own
+/// `stream` number, which separates their speckle.
 class SonarRenderer {
  public:
-  /// @throws RendererError when `gpu` is asked for and cannot be had.
+  /// @throws RendererError if `gpu` is requested but unavailable.
   explicit SonarRenderer(const World& world, const RendererOptions& options = {});
   ~SonarRenderer();
   SonarRenderer(const SonarRenderer&) = delete;
   SonarRenderer& operator=(const SonarRenderer&) = delete;
 
-  /// The engine of the next ping: `gpu` or `cpu`. It changes when the GPU fails: the ping at which it does
-  /// already comes from the CPU.
+  /// The engine of the next ping: `gpu` or `cpu`. It changes when the GPU fails; the CPU then renders the
+  /// failed ping, too.
   EngineKind engine() const;
-  /// That engine and what it runs on, in one line.
+  /// The present engine and its hardware, in one line.
   const std::string& engine_description() const;
-  /// Takes this engine from the next ping on, and gives the GPU up when it is `cpu`.
+  /// Uses this engine from the next ping on; `cpu` releases the GPU.
   /// @param engine not `automatic`; choose_engine() finds the faster one.
-  /// @throws RendererError when it cannot be had; the one in use stays.
+  /// @throws RendererError if it is unavailable; the present engine stays in use.
   void use_engine(EngineKind engine);
 
-  /// Moves a body of the world. @return false when the world has no body of that name.
+  /// Moves a body of the world. @return false if the world has no body of this name.
   bool set_body_pose(const std::string& body_name, const Pose& T_world_body);
 
-  /// Has the mean echoes of these pings made at the same time, for their turn to be rendered; the results are
-  /// the same without. Does nothing where that gains nothing: on the CPU, and where a ping changes what the
-  /// engine draws, as with motion within a ping, terrain in levels and bent rays.
+  /// Renders the mean echoes of these pings in parallel, in advance; the later results are the same as
+  /// without. Does nothing if there is no gain: on the CPU, and if a ping changes what the engine draws
+  /// (motion within a ping, terrain in levels, bent rays).
   /// @param pings of different streams
   /// @throws RendererError
   void begin_pings(std::span<const StreamPing> pings);
 
-  /// Mean echo only: no speckle, noise or gain. The image stays valid until the next call for this stream; as
-  /// long as nothing that it depends on changes (SkipRule::unchanged_scene), the same one is handed out.
+  /// Renders the mean echo only: no speckle, noise or gain. The image stays valid until the next call for
+  /// this stream. If nothing it depends on has changed (SkipRule::unchanged_scene), the call returns the same
+  /// image.
   /// @throws RequestError, RendererError
   const EchoImage& render_echo(const PingRequest& request, int stream = 0);
 
-  /// Renders the samples of a ping. The bytes depend on the history of requests of this stream; with speckle
-  /// `frozen` or `per_ping` on this request alone.
-  /// @throws RequestError, RendererError; std::bad_alloc, and the stream is to be forgotten
+  /// Renders the samples of a ping. The bytes depend on the earlier requests of this stream; with speckle
+  /// `frozen` or `per_ping`, only on this request.
+  /// @throws RequestError, RendererError; std::bad_alloc, after which the caller must forget() the stream
   PingSamples render_ping(const PingRequest& request, int stream = 0);
 
-  /// Gives back what is kept of this stream; its next ping is as its first one.
+  /// Drops the history of this stream; its next ping is rendered like its first one.
   void forget(int stream);
 
-  /// Advances all that this stream keeps from ping to ping as render_ping() would, in a fraction of its time:
-  /// rendering every n-th ping of a run gives the bytes of the whole run.
-  /// @return false, and does nothing, when that depends on the echo: where pulses are shorter than a line,
+  /// Advances the history of this stream like render_ping(), in a fraction of its time: rendering every n-th
+  /// ping of a run gives the same bytes as the whole run.
+  /// @return false, without any change, if this depends on the echo: if pulses are shorter than a line,
   /// speckle `ou` evolves only in lines with an echo. Use render_ping() then.
   /// @throws RequestError
   bool pass_ping(const PingRequest& request, int stream = 0);
