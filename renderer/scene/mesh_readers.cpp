@@ -38,7 +38,7 @@ struct Format {
   const MeshReader* second = nullptr;
 };
 
-/// Assimp alone reads OBJ: it reads as many files, and OpenSceneGraph opens any file that mtllib names.
+/// Only Assimp for OBJ: OpenSceneGraph reads no OBJ that Assimp cannot, and opens any file that mtllib names.
 constexpr std::array<Format, 11> formats{{{"obj", &assimp},
                                           {"stl", &stl},
                                           {"ply", &ply},
