@@ -289,26 +289,46 @@ double shadow_db() {
   return 2 * decibels(std::min(median(-24, -14), median(12, 22)) / median(-12, 4));
 }
 
-/// By how much bounces make it brighter in mid-fan, from `from_m` on, in steps of half a metre.
-std::vector<double> bounces_db(const GeminiImage& with, const GeminiImage& without, double from_m,
-                               double to_m, double half_deg) {
-  std::vector<double> brighter;
+/// Mean codes in mid-fan, each half metre from `from_m` on.
+std::vector<double> mid_fan_codes(const GeminiImage& image, double from_m, double to_m, double half_deg) {
+  std::vector<double> codes;
   for (double at_m = from_m; at_m < to_m; at_m += 0.5) {
-    brighter.push_back(2 * decibels(mean_code(with, at_m, at_m + 0.5, -half_deg, half_deg) /
-                                    mean_code(without, at_m, at_m + 0.5, -half_deg, half_deg)));
+    codes.push_back(mean_code(image, at_m, at_m + 0.5, -half_deg, half_deg));
   }
-  return brighter;
+  return codes;
 }
 
-/// How far behind the docking station, whose last wall is at 15.2 m, bounces show by 1 dB and more.
+/// The mid-fan without and with bounces, in dB of the ratio for each half metre.
+std::vector<double> bounces_db(const render::World& world, const std::vector<render::Pose>& T_world_sonar,
+                               double range_m, double from_m, double to_m, double half_deg) {
+  std::vector<double> with, without;
+  for (const render::Pose& pose : T_world_sonar) {
+    for (const bool no_bounces : {false, true}) {
+      const GeminiImage image =
+          images_of(world, pose, {.range_m = range_m, .sixteen_bit = true, .no_bounces = no_bounces}).front();
+      const std::vector<double> codes = mid_fan_codes(image, from_m, to_m, half_deg);
+      std::vector<double>& sums = no_bounces ? without : with;
+      sums.resize(codes.size());
+      std::ranges::transform(codes, sums, sums.begin(), std::plus());
+    }
+  }
+  std::vector<double> brighter_db(with.size());
+  std::ranges::transform(with, without, brighter_db.begin(),
+                         [](double a, double b) { return 2 * decibels(a / b); });
+  return brighter_db;
+}
+
+/// How far behind the docking station, whose last wall is at 15.2 m, bounces show by 1 dB and more. The paths
+/// are drawn at random, so that one place is one draw: the mean of nine, each turned by its part of a cell.
 double halo_m() {
   const pictures::View view = pictures::configured_view("demo.yaml", 30);
-  const auto image = [&](bool no_bounces) {
-    return images_of(view.world, view.T_world_sonar,
-                     {.range_m = 30, .sixteen_bit = true, .no_bounces = no_bounces})
-        .front();
-  };
-  const std::vector<double> brighter = bounces_db(image(false), image(true), 15.5, 25, 5);
+  std::vector<render::Pose> places;
+  for (int k = 0; k < 9; ++k) {
+    const glm::dquat turn = glm::angleAxis((k - 4) * 0.3 * degree, glm::dvec3(0, 0, 1));
+    places.push_back({view.T_world_sonar.position_m + glm::dvec3(0.3 * (k % 3 - 1), 0.3 * (k / 3 - 1), 0),
+                      turn * view.T_world_sonar.orientation});
+  }
+  const std::vector<double> brighter = bounces_db(view.world, places, 30, 15.5, 25, 5);
   const auto end = std::ranges::find_if(brighter, [](double level_db) { return level_db < 1; });
   return 0.3 + 0.5 * static_cast<double>(end - brighter.begin());
 }
@@ -316,12 +336,7 @@ double halo_m() {
 /// In the tank, whose farthest corner is 12 m away: what comes from there to 24 m.
 double tail_db() {
   const render::World tank = render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf");
-  const render::Pose T_world_sonar{{-1, -0.5, -4}, {1, 0, 0, 0}};
-  const auto image = [&](bool no_bounces) {
-    return images_of(tank, T_world_sonar, {.range_m = 25, .sixteen_bit = true, .no_bounces = no_bounces})
-        .front();
-  };
-  return quantile_of(bounces_db(image(false), image(true), 13, 24, 55), 0.5);
+  return quantile_of(bounces_db(tank, {{{-1, -0.5, -4}, {1, 0, 0, 0}}}, 25, 13, 24, 55), 0.5);
 }
 
 double highlights_db() {
