@@ -13,11 +13,11 @@ namespace sonard::render {
 namespace {
 
 constexpr double faintest_in_band = 1e-4;  // of the axis
-constexpr int lines_per_tile = 32;         // that are even, or not, together
+constexpr int lines_per_tile = 32;         // a tile is even or not as a whole
 constexpr float linearity = 0.01F;
 constexpr int rows_per_pass = 4;
 
-/// sum, and the least and most per angle, of the rows so far and this one.
+/// Adds a row to the sum and updates the least and the most echo per angle.
 SONARD_SIMD_CLONES
 void gather_row(const float* __restrict in, float inverse_width, int count, float* __restrict sum,
                 float* __restrict least, float* __restrict most) {
@@ -61,7 +61,7 @@ void set_row(const float* __restrict in, float weight, int count, float* __restr
 
 }  // namespace
 
-/// The pattern of one array against sine, looked up.
+/// Look-up table of the pattern of one array against sine.
 class PatternTable {
  public:
   PatternTable(const Aperture& aperture, RandomKey key)
@@ -77,8 +77,8 @@ class PatternTable {
   /// Farthest direction in the band, in sine.
   double reach() const { return reach_; }
   double floor() const { return floor_; }
-  /// Mean power over the floor in a fine beam between two offsets in sine, the smaller first; exactly 0
-  /// outside of the band.
+  /// Mean power above the floor in a fine beam between two offsets in sine (from < to); exactly 0 outside the
+  /// band.
   double excess(double from, double to) const {
     const int points = std::max(1, static_cast<int>(std::ceil((to - from) / spacing_ - 1e-9)));
     double sum = 0;
@@ -89,7 +89,7 @@ class PatternTable {
   }
 
  private:
-  static constexpr int steps_per_spacing = 64;  // a straight line between them is true to 0.2 %
+  static constexpr int steps_per_spacing = 64;  // linear interpolation is accurate to 0.2 %
 
   double steps_per_sine() const { return steps_per_spacing / spacing_; }
 
@@ -104,7 +104,7 @@ class PatternTable {
     return power_[i] * (1 - part) + power_[i + 1] * part - floor_;
   }
 
-  /// Long arrays have the pattern of shorter ones, scaled.
+  /// Computed with a shorter array: the pattern of a long array is that pattern, scaled.
   static double reach(Aperture aperture) {
     constexpr int enough_elements = 256;
     const double scale = std::max(1.0, static_cast<double>(element_count(aperture)) / enough_elements);
@@ -114,7 +114,7 @@ class PatternTable {
 
   static double reach(const LineArray& array) {
     const double step = 0.125 / array.elements();
-    double offset = 1.0;  // a line of half-wave elements is symmetric and repeats itself after 2
+    double offset = 1.0;  // the pattern of half-wave elements is symmetric, with period 2
     while (offset > step && array.power(offset) <= faintest_in_band) {
       offset -= step;
     }
@@ -128,10 +128,10 @@ class PatternTable {
 };
 
 struct BeamPattern::LineSums {
-  std::vector<float> sum, least, most;  ///< per line; the latter two per angle
+  std::vector<float> sum, least, most;  ///< per line; least and most are echo per angle
 };
 
-/// Lines [begin, end) that are alike in being even or not.
+/// Lines [begin, end), all even or all not.
 struct BeamPattern::Span {
   int begin = 0, end = 0;
   bool even = false;
@@ -203,7 +203,7 @@ void BeamPattern::add_band(const Aperture& aperture, int beam, const std::vector
   const double starboard_rad = aperture.beam_edges_rad[b + 1];
   const double axis = (std::sin(port_rad) + std::sin(starboard_rad)) / 2;
   const auto fine_beams = static_cast<std::size_t>(this->fine_beams());
-  // This beam receives `received` times c_b of an echo that is even in angle.
+  // This beam receives c_b * `received` of an echo that is even in angle.
   double received = 0;
   std::vector<double> over_floor(fine_beams);
   std::size_t first = fine_beams;

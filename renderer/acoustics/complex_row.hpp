@@ -10,7 +10,7 @@
 
 namespace sonard::render {
 
-/// Complex numbers of one line, owned elsewhere.
+/// Complex numbers of one line; not owned.
 struct Phasors {
   const float* real;
   const float* imaginary;
@@ -22,7 +22,7 @@ class ComplexRow {
   explicit ComplexRow(int width)
       : stride_(aligned_stride(width)), parts_(2 * static_cast<std::size_t>(stride_)) {}
 
-  /// Makes room; what the row held is lost where it had too little.
+  /// Makes room for `width` numbers; the contents are lost if the row grows.
   void ensure_width(int width) {
     if (width > stride_) {
       *this = ComplexRow(width);
@@ -34,11 +34,11 @@ class ComplexRow {
   const float* real() const { return parts_.data(); }
   const float* imaginary() const { return parts_.data() + stride_; }
 
-  /// CN(0, 1) all along, the padding at the end included: whole vectors are faster than exact counts.
+  /// Fills the row with CN(0, 1), padding included: whole vectors are faster than exact counts.
   void draw(RandomKey key, int line) {
     fill_complex_gaussian(key, static_cast<std::uint32_t>(line), stride_, real(), imaginary());
   }
-  /// The filtered `white`.
+  /// Sets this row to the filtered `white`.
   void filter(const BeamFilter& filter, const ComplexRow& white) {
     filter.apply(white.real(), real());
     filter.apply(white.imaginary(), imaginary());

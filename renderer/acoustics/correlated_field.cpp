@@ -94,7 +94,7 @@ void FieldReader::evolve(int bin) {
   }
 }
 
-/// Counts too: to be asked only where the criterion of the rule is met.
+/// Also counts the skip: call it only if the criterion of the rule is met.
 bool FieldReader::skips(SkipRule rule) {
   const bool on = skip_.on(rule);
   skipped_.add(rule, on ? 1 : 0);

@@ -23,34 +23,35 @@ struct RandomFieldOfPing {
   Phasors beam{nullptr, nullptr};
 };
 
-/// Draws the field of a single beam: `lines` numbers correlated along the range. `white` and `out` are made
-/// as long as they need to be.
+/// Draws the field of a single beam: `lines` numbers correlated along the range. `white` and `out` grow as
+/// needed.
 Phasors draw_along_range(RandomKey key, int lines, const PulseCorrelation& along_range, ComplexRow& white,
                          ComplexRow& out);
 /// out[i] = sum_j c_j white[i + reach + j].
 Phasors correlate_along_range(const ComplexRow& white, int lines, const PulseCorrelation& along_range,
                               ComplexRow& out);
 
-/// Reads one field. Each thread has one of its own. Where lines share a pulse a kept field has to be evolved
-/// before any of its lines is read.
+/// Reads one field; one reader per thread. If lines share a pulse, all lines of a kept field must be evolved
+/// before any is read.
 class FieldReader {
  public:
-  /// All arguments outlive the reader. @param along_range correlation from line to line. @param skipped gets
-  /// what is left out.
+  /// All arguments must outlive the reader. @param along_range correlation from line to line. @param skipped
+  /// counts the work left out.
   FieldReader(const BeamFilter& filter, const PulseCorrelation& along_range, const RandomFieldOfPing& field,
               const SkipSwitches& skip, SkipCounts& skipped);
 
   /// The field in one line; valid until the next call.
   Phasors line(int bin);
-  /// Its real part alone, for half of the work.
+  /// The real part alone, for half the work.
   const float* real_line(int bin);
-  /// Brings a kept field up to date, from -reach of the pulse to as much beyond the last
-  /// line.
+  /// Brings one line of a kept field up to date; lines run from -reach of the pulse to `reach` beyond the
+  /// last line.
   void evolve(int bin);
 
  private:
   bool skips(SkipRule rule);
-  /// A line that is not joined of several; nullopt: it is, of those that `real_` and `imaginary_` now hold.
+  /// The line if it is not a sum of several rows; nullopt: it is the sum of the rows now in `real_` and
+  /// `imaginary_`.
   std::optional<Phasors> unjoined(int bin);
   /// A line of the field correlated across beams alone.
   Phasors row(int bin);
@@ -63,16 +64,16 @@ class FieldReader {
   const SkipSwitches& skip_;
   SkipCounts& skipped_;
   int beams_;
-  bool copies_;  ///< beams share nothing: rows are as they are drawn
+  bool copies_;  ///< beams share nothing: rows are not filtered
   ComplexRow white_;
-  /// A row drawn for one line serves its neighbours too.
+  /// A drawn row, kept because neighbouring lines use it too.
   struct Drawn {
     ComplexRow row;
     int bin;
     Phasors phasors;
   };
   std::vector<Drawn> drawn_;
-  std::vector<const float*> real_, imaginary_;  ///< rows that a line is joined of
+  std::vector<const float*> real_, imaginary_;  ///< the rows whose weighted sum is a line
   ComplexRow joined_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace sonard::render {
 
-/// The intensity of a level of 10 log10.
+/// Intensity of a level in dB (10 log10).
 inline double decibels_to_power(double decibels) {
   return std::pow(10.0, decibels / 10);
 }

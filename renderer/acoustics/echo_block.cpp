@@ -12,8 +12,8 @@ namespace sonard::render {
 
 namespace {
 
-/// The largest of numbers >= 0. Their bit patterns are ordered as they are, and integers have no NaN that
-/// would keep the loop from being vectorised.
+/// The largest of numbers >= 0. Their bit patterns have the same order; as integers they have no NaN, which
+/// would prevent vectorisation of the loop.
 SONARD_SIMD_CLONES
 float largest(const float* values, int count) {
   std::int32_t bits = 0;
@@ -28,7 +28,7 @@ constexpr int tile = 8;
 using Row __attribute__((vector_size(tile * sizeof(float)))) = float;
 
 /// Transposes one tile: three rounds of exchanging halves, quarters and single numbers between pairs of rows.
-/// Unrolled, for rows in a loop are kept on the stack and not in registers.
+/// Unrolled, because in a loop the rows would be on the stack instead of in registers.
 [[gnu::always_inline]] inline void turn_tile(const float* in, std::size_t in_stride, float* out,
                                              std::size_t out_stride) {
   Row r[tile];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A few range bins of an echo image, turned so that the beams of a line lie side by side.
+// A few range bins of an echo image, transposed so that the beams of a line are contiguous.
 #pragma once
 
 #include "renderer/aligned_vector.hpp"
@@ -18,13 +18,13 @@ class EchoBlock {
   void load(int first, int count);
 
   int beams() const { return echo_.beams; }
-  /// Intensity of one of the loaded lines in each beam; starts on a cache line.
+  /// Intensity per beam of a loaded line; starts on a cache line.
   const float* line(int bin) const {
     return &rows_[static_cast<std::size_t>(bin - first_) * static_cast<std::size_t>(stride_)];
   }
-  /// What points send back in one of these lines; nullptr: nothing.
+  /// Intensity per beam of single points in a line; nullptr if the line has no points.
   const float* steady(int bin) const { return echo_.steady.line(bin, echo_.beams); }
-  /// The strongest beam of the line; 0: there is no echo in any.
+  /// Intensity of the strongest beam of the line; 0 if there is no echo.
   float strongest(int bin) const;
   /// EchoImage::surface_share
   float surface_share(int bin) const {

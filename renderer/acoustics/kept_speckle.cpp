@@ -51,8 +51,8 @@ void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tabl
       normal_number(make_random_key(request.seed, 0, RandomField::bearing_jitter, request.ping_number));
 }
 
-/// Correlation falls with the motion since the last ping, over half the aperture and half a beam. The turns
-/// of a scanning head about its axis are not motion: they look elsewhere.
+/// Squared motion since the last ping, in units of half the aperture and half a beamwidth. Turns of a
+/// scanning head about its axis do not count: they change the bearing, and speckle is kept by bearing.
 double KeptSpeckle::decay(const PingRequest& request) const {
   const Pose& now = request.T_world_sonar;
   const double moved =

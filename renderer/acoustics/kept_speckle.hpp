@@ -13,15 +13,15 @@
 
 namespace sonard::render {
 
-/// Speckle and texture of one stream. Kinds `ou` and `frozen` are kept: a fan's per line and beam, a single
-/// beam's by its bearing, for a scanning head comes back to it. One thread calls it.
+/// Speckle and texture of one stream. Kinds `ou` and `frozen` are kept: per line and beam for a fan, by
+/// bearing for a single beam, because a scanning head returns to each bearing. Only one thread may call it.
 class KeptSpeckle {
  public:
-  /// Brings all to the settings and the pose of a ping: drawn again where they no longer fit, faded by the
-  /// motion since the last ping (docs/physics.md 2.8).
+  /// Adapts the fields to the settings and the pose of a ping: draws them again if they no longer fit, fades
+  /// `ou` by the motion since the last ping (docs/physics.md 2.8).
   void advance(const PingRequest& request, const ReceiverTables& tables);
 
-  /// The fields that a ping reads; valid until the next call. @param skipped gets what is left out.
+  /// The fields that a ping reads; valid until the next call. @param skipped counts the work left out.
   RandomFieldOfPing speckle(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
   RandomFieldOfPing texture(RandomKey key, const SkipSwitches& skip, SkipCounts& skipped);
 

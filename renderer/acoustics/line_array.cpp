@@ -14,8 +14,8 @@ using Taper = Aperture::Taper;
 
 constexpr double kaiser_beta = 2.5;
 
-/// Elements that make a beam of one degree. Those of Hamming are what the correlation of recorded speckle
-/// asks for, 4 % more than its -3 dB width does (docs/physics.md 2.8).
+/// Number of elements that make a beam of one degree. For Hamming it fits the correlation of recorded
+/// speckle, 4 % more than for the -3 dB width (docs/physics.md 2.8).
 double elements_for_one_degree(Taper taper) {
   switch (taper) {
     case Taper::uniform:
@@ -77,11 +77,11 @@ LineArray::LineArray(const Aperture& aperture, RandomKey key) : LineArray(apertu
   double squares = 0;
   for (std::size_t i = 0; i < weights_.size(); ++i) {
     squares += std::norm(weights_[i]);
-    // Each part of a CN(0, 1) has the variance 1/2.
+    // Real and imaginary part of CN(0, 1) have variance 1/2.
     const double gain = 1 + std::numbers::sqrt2 * amplitude_sd * static_cast<double>(amplitude[i]);
     weights_[i] *= gain * std::polar(1.0, std::numbers::sqrt2 * phase_sd * static_cast<double>(phase[i]));
   }
-  // E|g e^(i p)|^2 - |E g e^(i p)|^2 of each element, in all directions alike.
+  // E|g e^(i p)|^2 - |E g e^(i p)|^2 of each element, equal in all directions.
   mean_error_power_ = (1 + amplitude_sd * amplitude_sd - std::exp(-phase_sd * phase_sd)) * squares;
 }
 

@@ -14,26 +14,26 @@ namespace sonard::render {
 /// (docs/physics.md 2.5). @param elements at least 2
 std::vector<double> taper_weights(Aperture::Taper taper, int elements);
 
-/// Elements that an array of the aperture's taper needs for its beamwidth at broadside, within 4 %; at
-/// least 2.
+/// Number of elements that an array with the aperture's taper needs for its beamwidth at broadside, within
+/// 4 %; at least 2.
 int element_count(const Aperture& aperture);
 
-/// Weights of all elements with their errors, divided by their sum without errors: a source on the axis of a
-/// faultless array is received with amplitude 1.
+/// Weights of all elements with their errors, divided by their sum without errors: a faultless array receives
+/// a source on its axis with amplitude 1.
 class LineArray {
  public:
   /// An array without errors.
   explicit LineArray(const Aperture& aperture);
-  /// An array with the errors that the aperture asks for, drawn with `key`.
+  /// An array with the errors that the aperture specifies, drawn with `key`.
   LineArray(const Aperture& aperture, RandomKey key);
 
   int elements() const { return static_cast<int>(weights_.size()); }
-  /// Response to a source whose sine of bearing is `sine_offset` off that of the beam.
+  /// Response to a source. @param sine_offset sine of its bearing minus sine of the beam's bearing
   std::complex<double> amplitude(double sine_offset) const;
   /// The response as power.
   double power(double sine_offset) const { return std::norm(amplitude(sine_offset)); }
-  /// Mean power, re the axis of a faultless array, that the errors of many such arrays leave in all
-  /// directions (docs/physics.md 2.5); 0 without errors.
+  /// Mean power of the errors, over many such arrays, in any direction, re the axis of a faultless array
+  /// (docs/physics.md 2.5); 0 without errors.
   double mean_error_power() const { return mean_error_power_; }
 
  private:

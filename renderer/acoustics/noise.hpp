@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Additive noise: its level, and what the array receives of itself and of others (docs/physics.md 2.9, 2.16).
+// Additive noise: its level, its profiles, and interference (docs/physics.md 2.9, 2.16).
 #pragma once
 
 #include <vector>
@@ -12,12 +12,13 @@ namespace sonard::render {
 /// The terms of the noise level. Levels in dB re 1 uPa.
 struct NoiseBudget {
   double source_level_db = 200.0;  ///< at 1 m
-  double spectral_level_db = 0.0;  ///< of 1 Hz, where the array is
+  double spectral_level_db = 0.0;  ///< in 1 Hz, at the array
   double directivity_db = 30.0;    ///< of the receive array
-  double bandwidth_hz = 94'000.0;  ///< of the receiver: that of the pulse
+  double bandwidth_hz = 94'000.0;  ///< of the receiver: the bandwidth of the pulse
 };
 
-/// Thermal noise of the sea, dB re 1 uPa^2/Hz (Mellen 1952): above some hundred kHz it drowns wind and waves.
+/// Thermal noise of the sea, dB re 1 uPa^2/Hz (Mellen 1952). Above a few hundred kHz it exceeds the noise of
+/// wind and waves.
 double thermal_noise_db(double carrier_hz);
 
 /// PhysicalModel::noise_level_db of the sonar equation: NL - DI + 10 log10 B - SL.
@@ -27,23 +28,23 @@ double noise_level_db(const NoiseBudget& budget);
 /// (docs/physics.md 2.16).
 std::vector<float> noise_profile(const SonarSettings& settings);
 
-/// Amplitude of noise at a bearing of a scanning head, re the mean over all in decibels: levels drawn evenly
-/// within PhysicalModel::noise_by_bearing_db for every 9 degrees, and a straight line between them.
-/// @param bearing_rad as ScanPose has it
+/// Amplitude of noise at a bearing of a scanning head, re the mean level in dB over all bearings. Levels are
+/// uniform within PhysicalModel::noise_by_bearing_db, one every 9 degrees, with linear interpolation in dB.
+/// @param bearing_rad ScanPose::bearing_rad
 float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey key);
 
 /// Interference in the noise of one ping.
 struct InterferenceBurst {
-  int first_line = 0;   ///< range bins from here on are raised
-  int end_line = 0;     ///< up to this one, which is not
-  float factor = 1.0F;  ///< of amplitude; 1: this ping is not hit
+  int first_line = 0;  ///< range bins [first_line, end_line) are raised
+  int end_line = 0;
+  float factor = 1.0F;  ///< of amplitude; 1: no interference in this ping
 
   float factor_at(int line) const { return raises(line) ? factor : 1.0F; }
   bool raises(int line) const { return factor != 1.0F && line >= first_line && line < end_line; }
 };
 
-/// Draws whether a ping is hit, from where, by how much and how far: evenly among all lines and all dB; its
-/// length evenly in its logarithm between half and twice the median.
+/// Draws the interference of one ping. First line and raise in dB are uniform; the logarithm of the length is
+/// uniform between half and twice the median.
 InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range, RandomKey key);
 
 }  // namespace sonard::render

@@ -28,7 +28,7 @@ void clamp_row(float gain, float codes, int beams, float* __restrict value) {
   }
 }
 
-/// Range bins one by one, in a thread of their own.
+/// Makes range bins one by one; one object per thread.
 class PaperBins {
  public:
   PaperBins(const PaperPing& ping, const EchoBlock& block)
@@ -48,8 +48,8 @@ class PaperBins {
     std::copy_n(block_.line(bin), beams_, value_.data());
     if (model.speckle != PaperModel::Speckle::off) {
       random_.draw(ping_.key, bin);
-      // Both parts of a complex number are used, each of variance 1/2: beams in the first half of the row get
-      // real parts, the others imaginary ones.
+      // Both parts of a complex number are used, each of variance 1/2: the first half of the beams gets the
+      // real parts, the second half the imaginary parts.
       speckle_row(random_.real(), static_cast<float>(model.speckle_mean),
                   static_cast<float>(std::sqrt(2.0) * model.speckle_sd),
                   model.speckle == PaperModel::Speckle::folded_gaussian,

@@ -17,7 +17,7 @@ struct PaperPing {
   const SkipSwitches& skip;
 };
 
-/// @param skipped what was left out is added to it.
+/// @param skipped the work left out is added to it
 PingSamples receive_paper(const EchoImage& echo, const PaperPing& ping, const SonarSettings& settings,
                           WorkerPool& workers, SkipCounts& skipped);
 

@@ -15,7 +15,7 @@ namespace sonard::render {
 
 namespace {
 
-/// Envelope of an echo that speckle touches, of an amplitude that it does not, and of noise.
+/// Envelope of the sum of an echo with speckle, a steady amplitude without speckle, and noise.
 SONARD_SIMD_CLONES
 void envelope_row(const float* __restrict echo, const float* __restrict speckle_re,
                   const float* __restrict speckle_im, const float* __restrict steady, float noise,
@@ -40,7 +40,7 @@ void noise_envelope_row(float noise, const float* __restrict profile, const floa
   }
 }
 
-/// Range bins one by one, in a thread of their own.
+/// Makes range bins one by one; one object per thread.
 class PhysicalBins {
  public:
   PhysicalBins(const PhysicalPing& ping, const EchoBlock& block)
@@ -61,7 +61,7 @@ class PhysicalBins {
 
   void add_range_bin(int bin, Quantizer& output) {
     const ReceiverTables& tables = ping_.tables;
-    // The device puts out exactly 0 in its near field.
+    // The device outputs exactly 0 in its near field.
     const bool blanked = range_m(bin) < tables.model.near_field_blank_m;
     if (blanked && skips(SkipRule::blanked_near_field)) {
       return;
@@ -94,7 +94,7 @@ class PhysicalBins {
   }
 
   const SkipCounts& skipped() const { return skipped_; }
-  /// PingStatistics::echo_over_floor, of the bins that were added.
+  /// PingStatistics::echo_over_floor of the bins added so far.
   double echo_over_floor() const { return echo_over_floor_; }
 
  private:
@@ -102,7 +102,7 @@ class PhysicalBins {
     if (!(strongest > 0) || !(gain_ > 0)) {
       return;
     }
-    // Amplitude that becomes the lowest code above 0.
+    // The amplitude that becomes the lowest code above 0.
     const bool decibels = ping_.tables.output_scale == OutputScale::half_decibels;
     const double least = (decibels ? 1e-4 : 0.5) / static_cast<double>(gain_);
     const auto noise = static_cast<double>(noise_level_);
@@ -110,13 +110,13 @@ class PhysicalBins {
     echo_over_floor_ = std::max(echo_over_floor_, surface / (noise * noise + least * least));
   }
 
-  /// @param cell of the fields; a line of several beams is one. A cell beside the line has its own speckle
-  /// and noise, but the mean echo of the line: what the overlap spreads of that is less than a line.
+  /// @param cell of the fields; with several beams a line is one cell. A cell beside the line has its own
+  /// speckle and noise but the mean echo of the line: the overlap spreads that by less than a line.
   void add_cell(int bin, int cell, float weight, Quantizer& output) {
     const bool silent = noise_level_ == 0 && skips(SkipRule::no_noise);
     const Phasors noise = silent ? Phasors{silence_.real(), silence_.imaginary()} : noise_.line(cell);
-    // No echo in any beam: speckle would multiply 0. Later images get other random
-    // numbers of the same distribution, as the field makes up for what it missed (SpeckleField).
+    // If no beam has an echo, speckle would multiply 0. Skipping it gives later images other random numbers
+    // of the same distribution, because SpeckleField makes up for missed steps.
     if (has_echo_) {
       const Phasors phasors = speckle_of(cell);
       envelope_row(echo_of(bin, cell), phasors.real, phasors.imaginary, steady_.data(), noise_level_,
@@ -130,7 +130,7 @@ class PhysicalBins {
     output.add(codes_.data(), weight);
   }
 
-  /// Counts too: to be asked only where the criterion of the rule is met.
+  /// Also counts the skip: call it only if the criterion of the rule is met.
   bool skips(SkipRule rule) {
     const bool on = ping_.skip.on(rule);
     skipped_.add(rule, on ? 1 : 0);
@@ -158,7 +158,7 @@ class PhysicalBins {
     return level * ping_.interference.factor_at(bin);
   }
 
-  /// Of the vehicle, which sends back what a scanning head sends.
+  /// True if the vehicle reflects sound of a scanning head into this bin.
   bool has_reverberation(int bin) const {
     return ping_.tables.rings && ping_.tables.vehicle[static_cast<std::size_t>(bin)] > 0;
   }
@@ -168,7 +168,7 @@ class PhysicalBins {
     return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(cell);
   }
 
-  /// Into what speckle touches and what it does not.
+  /// Splits the echo into `diffuse_`, which gets speckle, and `steady_`, which does not.
   void take_apart(const float* echo, const float* steady) {
     steady_is_.reset();
     for (std::size_t b = 0; b < steady_.size(); ++b) {
@@ -188,7 +188,7 @@ class PhysicalBins {
     return textured_.data();
   }
 
-  /// The echo behind its texture.
+  /// The echo times its texture.
   const float* textured(int bin, int cell) {
     const PhysicalModel& model = ping_.tables.model;
     const float* echo = block_.steady(bin) != nullptr ? diffuse_.data() : block_.line(bin);
@@ -207,7 +207,7 @@ class PhysicalBins {
   const PhysicalPing& ping_;
   const EchoBlock& block_;
   int beams_;
-  // Of the line that is being added:
+  // Of the current line:
   float gain_ = 0, noise_level_ = 0;
   bool has_echo_ = false;
   SkipCounts skipped_;
@@ -217,13 +217,13 @@ class PhysicalBins {
   ComplexRow still_;    ///< speckle that is off: a constant phasor
   TextureRoot root_;
   AlignedVector<float> textured_;
-  std::optional<float> steady_is_ = 0.0F;  ///< in all beams; nullopt: it differs
-  AlignedVector<float> steady_;            ///< amplitude that speckle does not touch: points, ring-down
-  AlignedVector<float> diffuse_;           ///< intensity of the others, where there are points
+  std::optional<float> steady_is_ = 0.0F;  ///< value of steady_ in all beams; nullopt: beams differ
+  AlignedVector<float> steady_;            ///< amplitude without speckle: points, ring-down
+  AlignedVector<float> diffuse_;           ///< intensity without points, for lines with points
   AlignedVector<float> codes_;
 };
 
-/// A line's neighbours may be another thread's.
+/// Runs before any line is read, because another thread may own the neighbours of a line.
 void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
                   SkipCounts& skipped) {
   const int reach = ping.tables.pulse_correlation.reach();

@@ -12,7 +12,7 @@
 
 namespace sonard::render {
 
-/// What one ping brings to the receiver beside its echo.
+/// Input of the receiver for one ping, beside its echo.
 struct PhysicalPing {
   const ReceiverTables& tables;
   RandomFieldOfPing speckle, texture, noise;
@@ -22,12 +22,12 @@ struct PhysicalPing {
   const SkipSwitches& skip;
 };
 
-/// Brings the kept fields up to date, all lines of them, where lines share a pulse: a line needs its
-/// neighbours then. Elsewhere each line is brought up to date when it is read.
+/// Brings all lines of the kept fields up to date if lines share a pulse, because a line then needs its
+/// neighbours. Otherwise each line is brought up to date when it is read.
 void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
 
-/// @param echo mean echo, as the array receives it. @param skipped what was left out is added to it.
-/// @param echo_over_floor PingStatistics::echo_over_floor
+/// @param echo mean echo, behind the array. @param skipped the work left out is added to it.
+/// @param echo_over_floor gets PingStatistics::echo_over_floor
 PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
                              WorkerPool& workers, SkipCounts& skipped, double& echo_over_floor);
 

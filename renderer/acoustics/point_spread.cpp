@@ -31,7 +31,7 @@ void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t s
   if (pattern_ && aperture_ == settings.aperture && seed_ == seed && skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
-    // The elements are those of the sonar: the same in all its pings.
+    // Ping number 0: element errors belong to the sonar and do not change from ping to ping.
     pattern_.emplace(settings.aperture, make_random_key(settings.aperture.element_seed.value_or(seed), stream,
                                                         RandomField::array_elements, 0));
     aperture_ = settings.aperture;
@@ -63,7 +63,7 @@ void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitche
               PulseResponse(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, energy_)};
   }
   uses_pulse_ = true;
-  // A bin loses that share at most, and gets it of the bins around it.
+  // A bin loses at most this share, and gains at most this share of the bins around it.
   if (2 * pulse_->response.share_outside() <= entry_of(SkipRule::short_pulse).bound &&
       skip.on(SkipRule::short_pulse)) {
     skipped.add(SkipRule::short_pulse);
@@ -79,8 +79,8 @@ SonarSettings PointSpread::sampled(const SonarSettings& settings) {
 
 void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams,
                              WorkerPool& workers, const SkipSwitches& skip, SkipCounts& skipped) const {
-  // What comes to less than the noise is not looked at. Before the pattern: the beams, which are wanted next,
-  // stay in the caches.
+  // Echoes below the noise are ignored. Points come before the pattern so that the beams, which are used
+  // next, stay in the caches.
   const PhysicalModel& model = settings.physical;
   const double faintest = model.noise ? decibels_to_power(model.noise_level_db) / energy_ : 0.0;
   const std::vector<PointEcho> points =

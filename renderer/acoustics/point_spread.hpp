@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sonar's array and pulse make of the mean echo, between the sampling of the world and the receiver.
+// Effect of array and pulse on the mean echo, between the sampling of the world and the receiver.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,24 @@
 
 namespace sonard::render {
 
-/// The beam pattern and the pulse of one sonar, with the tables of its last settings. Mode `paper` has
-/// neither.
+/// The beam pattern and the pulse of one sonar, with the tables of its last settings. Mode `paper` uses no
+/// pattern and no pulse.
 class PointSpread {
  public:
-  /// Makes what these settings need.
+  /// Makes the tables for these settings.
   /// @param skipped counts unchanged_settings, separate_beams and short_pulse
   void prepare(const SonarSettings& settings, std::uint64_t seed, int stream, const SkipSwitches& skip,
                SkipCounts& skipped);
 
-  /// Whether the world has to be sampled in fine beams, with sampled(), and turned into beams by
-  /// form_beams().
+  /// True if the world must be sampled in fine beams, with sampled(), and form_beams() must join them.
   bool has_pattern() const { return uses_pattern_; }
-  /// The settings, with the fine beams in place of the beams.
+  /// The settings with fine beams instead of beams.
   static SonarSettings sampled(const SonarSettings& settings);
-  /// From fine beams to beams, with the echoes of single points apart.
+  /// Joins fine beams to beams and stores the echoes of single points separately.
   void form_beams(const EchoImage& fine, const SonarSettings& settings, EchoImage& beams, WorkerPool& workers,
                   const SkipSwitches& skip, SkipCounts& skipped) const;
 
-  /// Spreads the echo in range by the length of the pulse, and gives it the energy of the pulse.
+  /// Spreads the echo in range by the length of the pulse and multiplies it by the pulse's energy.
   void spread(EchoImage& echo, WorkerPool& workers);
 
  private:

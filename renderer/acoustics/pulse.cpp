@@ -17,7 +17,7 @@ namespace {
 
 using Pulse = PhysicalModel::Pulse;
 
-/// sin(pi x) / (pi x): what an even band of frequencies is in time.
+/// sin(pi x) / (pi x): the time signal of an even band of frequencies.
 double sinc_at(double x) {
   const double y = std::numbers::pi * x;
   return y == 0 ? 1.0 : std::sin(y) / y;
@@ -36,8 +36,8 @@ double chirp_response(Pulse pulse, double cells) {
   return amplitude * amplitude;
 }
 
-/// Two points that lie evenly in lines `lines` apart are x apart with a density that falls to 0 a line to
-/// either side of that.
+/// Mean over two points, each uniform in its line, in lines `lines` apart: the density of their distance is a
+/// triangle that falls to 0 one line to either side of `lines`.
 double mean_chirp(Pulse pulse, int lines, double line_cells) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
   double sum = 0;
@@ -48,7 +48,7 @@ double mean_chirp(Pulse pulse, int lines, double line_cells) {
   return sum * 2 / steps;
 }
 
-/// Of an echo that lies evenly in its line, in the middle of the line `lines` away.
+/// Mean over an echo that is uniform in its line, received in the middle of the line `lines` away.
 double mean_rounded(const RoundedTone& tone, int lines, double step_m) {
   constexpr int steps = 64;
   double sum = 0;
@@ -159,8 +159,8 @@ namespace {
 
 constexpr int most_lines_each_side = 32;
 
-/// Amplitude received `lines` away from an echo, of any scale; 0 beyond the main lobe. Of a tone with sharp
-/// ends.
+/// Amplitude received `lines` away from an echo, not normalised; 0 beyond the main lobe. A tone has sharp
+/// ends here.
 double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
   const double cells = lines * line_cells;
   switch (pulse) {

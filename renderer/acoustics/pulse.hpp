@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The length of the pulse along the range: it spreads the mean echo and correlates speckle and noise of
-// neighbouring lines.
+// The length of the pulse in range: it spreads the mean echo and correlates speckle and noise of neighbouring
+// lines.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,14 @@
 
 namespace sonard::render {
 
-/// Energy that a pulse brings, re the usual pulse: of a tone per line, behind the band of the transducer. 1:
-/// the pulse has no length, or none for which levels are stated.
+/// Energy of a pulse re the usual pulse; for a tone per line. It includes the loss in the transducer's band.
+/// A pulse that is not a tone, without length, or without a usual pulse has only that loss.
 /// @param step_m RangeLines::step_m
 double pulse_energy(const PhysicalModel& model, double step_m);
 
-/// Response of a pulse, as PhysicalModel::Pulse has them, where an echo lies anywhere in its line: averaged
-/// over the line, and over that in which it is received; a tone with rounded ends is sampled in the middle of
-/// the latter (docs/physics.md 2.6). Chirps are followed out to 16 cells to either side; all shares of an
-/// echo add up to the energy.
+/// Mean response of a pulse of kind PhysicalModel::Pulse (docs/physics.md 2.6). The mean runs over all places
+/// of the echo in its line, and over the line that receives it; a tone with rounded ends is sampled in the
+/// middle of the receiving line. Chirps reach 16 cells to either side. All shares add up to the energy.
 class PulseResponse {
  public:
   using Pulse = PhysicalModel::Pulse;
@@ -29,18 +28,18 @@ class PulseResponse {
   PulseResponse() = default;
   /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
   /// @param tone_rounding_m PhysicalModel::tone_rounding_m
-  /// @param energy what all shares add up to, pulse_energy()
+  /// @param energy sum of all shares, pulse_energy()
   PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0, double energy = 1);
 
-  /// Shares of an echo in its own line and the lines to one side of it; 0: nothing is spread.
+  /// Number of shares: the echo's line and the lines to one side of it; 0 if nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
   /// Share of an echo that is received `lines` away from it.
   double share(int lines) const { return static_cast<double>(share_[static_cast<std::size_t>(lines)]); }
 
-  /// Share of the energy that is received outside of the line of an echo.
+  /// Share of the energy that is received outside the line of the echo.
   double share_outside() const { return share_.empty() ? 0.0 : 1 - share(0) / energy_; }
 
-  /// What would be received beyond the ends of the image is left out. What `out` holds is used as memory.
+  /// Spreads an image; echoes beyond its ends are dropped. @param out its memory is reused
   void apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const;
 
  private:
@@ -48,19 +47,19 @@ class PulseResponse {
   double energy_ = 1;
 };
 
-/// Lines shorter than the pulse hold echoes of the same scatterers, and noise behind the same matched filter:
-/// their fields are a white one filtered with the amplitude of the pulse, sum of squares 1
+/// Correlation of lines that are shorter than the pulse: they share scatterers, and noise behind one matched
+/// filter. Their field is a white one filtered with the amplitude of the pulse, sum of squares 1
 /// (docs/physics.md 2.8).
 class PulseCorrelation {
  public:
   /// Lines without correlation.
   PulseCorrelation() = default;
-  /// Takes the main lobe of a chirp, and all of a tone.
+  /// Uses the main lobe of a chirp, or the whole tone.
   /// @param cell_m PhysicalModel::range_cell_m; 0: a pulse without length
   /// @param tone_rounding_m PhysicalModel::tone_rounding_m
   PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0);
 
-  /// Lines to either side that one line shares its field with; 0: none.
+  /// Number of lines to either side with which a line is correlated.
   int reach() const { return static_cast<int>(weights_.size()) - 1; }
   /// sum_j c_j rows[reach + j], j = -reach ... reach. @param rows 2 * reach + 1 of at least `width` numbers.
   void apply(const std::vector<const float*>& rows, int width, float* out) const;

@@ -38,7 +38,7 @@ void quantise_row(const float* __restrict codes, int count, std::uint16_t* __res
   }
 }
 
-/// @param full code of full scale, which is not met
+/// @param full code of full scale; codes stay below it
 template <class Code>
 void quantise_power(const float* codes, float exponent, float full, int count, Code* out) {
   for (int b = 0; b < count; ++b) {

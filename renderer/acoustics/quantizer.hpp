@@ -7,25 +7,25 @@
 
 namespace sonard::render {
 
-/// Buffers of the size and kind that `settings` ask for, all zero.
+/// Buffers of the size and sample type given by `settings`, all zero.
 PingSamples make_samples(const SonarSettings& settings);
 
-/// Amplitude 1 (full scale) in codes of the output, or 1 where codes are decibels, shared among the
-/// range bins of a mean: amplitudes come to Quantizer multiplied with this.
+/// Amplitude 1 (full scale) in codes of the output, or 1 if codes are decibels, divided by the number of
+/// range bins of a mean. Multiply amplitudes by it before Quantizer::add().
 float codes_per_amplitude(const SonarSettings& settings);
 
-/// Joins range bins to output lines: amplitudes to their mean or peak, decibels to their mean, for a receiver
-/// of decibels averages behind its logarithm. Each thread has one of its own; they share the samples.
+/// Joins range bins to output lines: amplitudes to their mean or peak, decibels to their mean, because a
+/// receiver of decibels averages behind its logarithm. One per thread; all write to the same samples.
 class Quantizer {
  public:
   Quantizer(const SonarSettings& settings, PingSamples& samples);
 
   void begin();
-  /// @param codes amplitude of one range bin in each beam, times codes_per_amplitude(). A line that is 0
-  /// throughout may be left out.
-  /// @param weight in the mean of decibels, > 0; amplitudes all weigh the same
+  /// @param codes amplitude of one range bin per beam, times codes_per_amplitude(). A range bin that is 0 in
+  /// all beams may be left out.
+  /// @param weight in the mean of decibels, > 0; ignored for amplitudes
   void add(const float* codes, float weight = 1.0F);
-  /// Quantises last, rounding as the scale says, and clamping: nothing wraps.
+  /// Quantises the line: rounds as the output scale requires and clamps, so that no code wraps.
   void end(int output_line);
 
  private:

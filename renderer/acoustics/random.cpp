@@ -25,7 +25,7 @@ std::uint64_t mix(std::uint64_t x) {
   // Shift the mantissa range to [1/sqrt 2, sqrt 2), where the polynomial is shortest.
   const std::int32_t exponent = (bits - 0x3F3504F3) >> 23;
   const float m = std::bit_cast<float>(bits - (exponent << 23)) - 1.0F;
-  // Pairs first: what limits the loop is the length of the chain of operations, not their number.
+  // Pairs first: the length of the chain of operations limits the loop, not their number.
   const float m2 = m * m;
   const float low = (-1.0000010F + 0.50001113F * m) + m2 * (-0.33314509F + 0.24909744F * m);
   const float high = (-0.20496329F + 0.18667858F * m) - m2 * 0.11896110F;
@@ -61,7 +61,7 @@ double normal_number(RandomKey key) {
 SONARD_SIMD_CLONES
 void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* __restrict real,
                            float* __restrict imaginary) {
-  // A row's key is a bijection of its number, so no two rows of a field share one.
+  // mix() is a bijection, so each row of a field has a different key.
   const std::uint64_t row_key = mix(key.value ^ row);
   const auto low = static_cast<std::uint32_t>(row_key);
   const auto high = static_cast<std::uint32_t>(row_key >> 32);
@@ -78,8 +78,8 @@ void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* _
     z ^= z >> 16;
     x += y * z;
     y += z * x;
-    // Box-Muller: |z|^2 is exponential, the phase uniform. 31 bits of x make the first; y makes the second,
-    // as a half circle of 31 bits and a sign.
+    // Box-Muller: |z|^2 is exponential, the phase uniform. 31 bits of x give |z|^2; y gives the phase, as a
+    // half circle of 31 bits and a sign.
     const float u = (static_cast<float>(static_cast<std::int32_t>(x >> 1)) + 0.5F) * 0x1p-31F;
     const float half_turn = static_cast<float>(static_cast<std::int32_t>(y << 1)) * 0x1p-33F;  // [-1/4, 1/4]
     const std::uint32_t sign = y & 0x80000000U;

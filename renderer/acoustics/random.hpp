@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers as a pure function of what they belong to: no state, no order, the same on every thread
-// count.
+// Random numbers as a pure function of key and index: no state, no order, the same for every thread count.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +11,7 @@ struct RandomKey {
   std::uint64_t value = 0;
 };
 
-/// What a field is used for; keeps the fields of one ping apart.
+/// Use of a field; separates the fields of one ping.
 enum class RandomField : std::uint64_t {
   speckle = 1,
   noise = 2,
@@ -36,7 +35,7 @@ void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* r
 /// A normal number of mean 0 and variance 1.
 double normal_number(RandomKey key);
 
-/// Number `index` of a field of even numbers, in [0, 1).
+/// Number `index` of a uniform field, in [0, 1).
 double uniform_number(RandomKey key, std::uint64_t index);
 
 }  // namespace sonard::render

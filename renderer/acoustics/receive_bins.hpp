@@ -13,9 +13,9 @@
 
 namespace sonard::render {
 
-/// Shares blocks of lines among the threads. `Lines` is made once per thread, for its buffers, and takes
-/// range bins one by one.
-/// @param done called with the `Lines` of each thread at its end, by one thread at a time
+/// Distributes blocks of lines over the threads. One `Lines` per thread owns buffers and makes range bins one
+/// by one.
+/// @param done called with the `Lines` of each thread at the end, by one thread at a time
 template <class Lines, class Ping, class Done>
 PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSettings& settings,
                          WorkerPool& workers, const Done& done) {

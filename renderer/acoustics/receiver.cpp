@@ -13,13 +13,13 @@ namespace sonard::render {
 
 namespace {
 
-/// Frozen speckle belongs to the seed alone, so it is the same whenever a line is first drawn.
+/// Frozen speckle depends on the seed alone, so it does not matter when a line is first drawn.
 std::uint64_t speckle_ping(const PingRequest& request) {
   const bool frozen = request.settings.physical.speckle == PhysicalModel::Speckle::frozen;
   return frozen ? 0 : request.ping_number;
 }
 
-/// A single beam has another level at every bearing.
+/// The noise level of a single beam depends on its bearing.
 float noise_factor_of(const PingRequest& request, int stream) {
   const PhysicalModel& model = request.settings.physical;
   if (request.settings.aperture.beam_count() > 1 || model.noise_by_bearing_db == 0) {
@@ -51,7 +51,7 @@ RandomFieldOfPing Receiver::texture_of(Stream& state, const PingRequest& request
       make_random_key(request.seed, stream, RandomField::texture, speckle_ping(request)), skip_, skipped_);
 }
 
-/// A single beam's is drawn at once.
+/// The noise of a single beam is drawn at once for all bins.
 RandomFieldOfPing Receiver::noise_of(Stream& state, RandomKey key) {
   const ReceiverTables& tables = state.tables;
   if (tables.filter.beams() > 1 || !tables.model.noise) {
@@ -93,7 +93,7 @@ bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers)
   skipped_ = {};
   const SonarSettings& settings = request.settings;
   if (settings.model == Model::paper || settings.physical.speckle != PhysicalModel::Speckle::ou) {
-    return true;  // each ping by itself
+    return true;  // no state between pings
   }
   Stream& state = stream_for(settings, stream);
   const bool single_beam = settings.aperture.beam_count() == 1;

@@ -12,24 +12,24 @@
 
 namespace sonard::render {
 
-/// The receiver of all sonars that share a renderer. One thread calls it. Mode `physical` with speckle `ou`
-/// keeps a field per stream, so that speckle survives small motions as it does in the water; everything else
-/// is a pure function of the request.
+/// The receiver of all sonars that share a renderer; only one thread may call it. Mode `physical` with
+/// speckle `ou` keeps a field per stream, so that speckle persists over small motions, as in real water.
+/// Everything else is a pure function of the request.
 class Receiver {
  public:
   explicit Receiver(const SkipSwitches& skip = {}) : skip_(skip) {}
 
-  /// @param echo mean echo intensity as EchoImage states it.
+  /// Samples of one ping. @param echo mean echo intensity
   PingSamples receive(const EchoImage& echo, const PingRequest& request, int stream, WorkerPool& workers);
 
-  /// Leaves the fields of a stream as receive() would. @return false, and nothing has happened, when they
-  /// would go on only where there is an echo.
+  /// Advances the fields of a stream as receive() does. @return false if receive() would advance only lines
+  /// with an echo; the fields are then unchanged
   bool pass(const PingRequest& request, int stream, WorkerPool& workers);
 
-  /// Gives the memory of a stream back; its next ping is as its first one.
+  /// Frees the memory of a stream; its next ping is like its first one.
   void forget(int stream) { streams_.erase(stream); }
 
-  /// What the last receive() left out.
+  /// Work that the last receive() left out.
   const SkipCounts& skipped() const { return skipped_; }
   /// PingStatistics::echo_over_floor of the last receive().
   double echo_over_floor() const { return echo_over_floor_; }
@@ -41,9 +41,9 @@ class Receiver {
     ComplexRow white_noise{0}, noise{0};  ///< of a single beam
   };
 
-  /// With tables for these settings.
+  /// The stream, with tables for these settings.
   Stream& stream_for(const SonarSettings& settings, int stream);
-  /// What the receiver makes of speckle and texture; good until the next call of anything.
+  /// Speckle and texture of a ping; valid until the next call of any function.
   RandomFieldOfPing speckle_of(Stream& state, const PingRequest& request, int stream);
   RandomFieldOfPing texture_of(Stream& state, const PingRequest& request, int stream);
   static RandomFieldOfPing noise_of(Stream& state, RandomKey key);

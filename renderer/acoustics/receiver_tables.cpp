@@ -22,12 +22,12 @@ bool joins_decibels(const SonarSettings& settings) {
   return settings.aperture.beam_count() == 1 && settings.output_scale == OutputScale::half_decibels;
 }
 
-/// A receiver of decibels joins what a single beam has received in a line.
+/// Range cells per line, more than 1 only for a single beam with a receiver of decibels.
 int cells_per_line(const SonarSettings& settings) {
   if (joins_decibels(settings) && settings.physical.bin_overlap > 0) {
-    return 2;  // the receiver's band follows the bins, so that half of one is a cell
+    return 2;  // the receiver's band depends on the bin length, so half a bin is a cell
   }
-  // Under a Hann window its main lobe is twice as wide.
+  // The main lobe of a chirp with a Hann window is twice as wide.
   const bool windowed = settings.physical.pulse == PhysicalModel::Pulse::windowed_chirp;
   const double cell_m = settings.physical.range_cell_m * (windowed ? 2.0 : 1.0);
   if (!joins_decibels(settings) || !(cell_m > 0)) {
@@ -43,8 +43,8 @@ PulseCorrelation noise_correlation_of(const PhysicalModel& model, double step_m)
           matched ? model.range_cell_m : model.noise_cell_m, step_m};
 }
 
-/// Noise before the gain, re that beside the usual pulse: a filter that is matched to a tone lets through
-/// less of it, the longer the tone.
+/// Noise power before the gain, re the noise with the usual pulse: the longer a tone, the less noise passes
+/// its matched filter.
 double matched_noise(const PhysicalModel& model) {
   const UsualPulse& usual = model.usual_pulse;
   if (model.pulse != PhysicalModel::Pulse::tone || model.noise_cell_m > 0 || !(model.range_cell_m > 0) ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the receiver works out once for many pings.
+// Tables that the receiver computes once for many pings.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace sonard::render {
 
-/// What mode `physical` works out from the settings alone; kept for as long as they stay the same.
+/// Tables of mode `physical` that depend on the settings alone; kept until these change.
 struct ReceiverTables {
   Aperture aperture;
   RangeLines range;
@@ -19,14 +19,14 @@ struct ReceiverTables {
   OutputScale output_scale = OutputScale::linear;
   bool rings = false;  ///< there is a ring-down
 
-  /// Range cells in a line of a single beam, each with speckle and noise of its own; 1 for several beams.
+  /// Range cells in a line of a single beam, each with its own speckle and noise; 1 for several beams.
   int cells = 1;
-  float overlap = 0;  ///< weight of the cell before the line and of the one behind it
+  float overlap = 0;  ///< weight of the cell before and of the cell behind the line
   BeamFilter filter;
   PulseCorrelation pulse_correlation;  ///< of speckle and texture, from cell to cell
   PulseCorrelation noise_correlation;
   std::vector<float> gain;       ///< per range bin: amplitude to codes, TVG included
-  std::vector<float> profile;    ///< per beam: noise amplitude relative to that away from broadside
+  std::vector<float> profile;    ///< per beam: noise amplitude re beams away from broadside
   std::vector<float> noise;      ///< per range bin: amplitude before TVG; 0: off
   std::vector<float> ring_down;  ///< per range bin: amplitude before TVG
   int ring_down_lines = 0;       ///< lines that the ring-down reaches
@@ -34,7 +34,7 @@ struct ReceiverTables {
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);
-  /// True: made from these settings.
+  /// True if made from these settings.
   bool fits(const SonarSettings& settings) const;
 };
 

@@ -14,7 +14,7 @@ namespace sonard::render {
 namespace {
 constexpr double fall_db = 80.0;  // from the peak to the end
 
-/// Amplitude re the peak, nearer than that.
+/// Amplitude re the peak, at ranges before the peak.
 double before_peak(const PhysicalModel& model, double range_m) {
   const double peak_m = model.ring_down.peak_m;
   if (model.ring_down.from_start) {

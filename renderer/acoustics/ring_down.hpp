@@ -9,15 +9,15 @@
 
 namespace sonard::render {
 
-/// Amplitude of the ring-down per range bin, before TVG: from nothing at half of the peak's range up to the
-/// peak as a half cosine, or, RingDown::from_start, even behind the TVG up to the peak; and from there by 80
-/// dB down to the end, straight in dB and so on beyond.
+/// Amplitude of the ring-down per range bin, before TVG. It rises as a half cosine from 0 at half the peak's
+/// range to the peak; with RingDown::from_start it is constant behind the TVG up to the peak. From the peak
+/// to the end it falls by 80 dB, linearly in dB, and continues with that slope.
 std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeLines& range);
 
-/// Mean intensity per range bin, before TVG, of what the vehicle sends back behind the ring-down.
+/// Mean intensity per range bin, before TVG, of echoes from the vehicle itself, from the ring-down's peak on.
 std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeLines& range);
 
-/// The first range bin beyond the end; 0: there is no ring-down.
+/// The first range bin beyond the end of the ring-down; 0 without ring-down.
 int ring_down_lines(const RingDown& ring_down, const RangeLines& range);
 
 /// Factor of the ring-down's amplitude in one ping: its level in dB is normally distributed.

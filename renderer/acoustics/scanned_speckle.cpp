@@ -16,11 +16,11 @@ namespace sonard::render {
 
 namespace {
 
-// The field is correlated as a Gaussian of the difference in bearing, so the weights of the cells are one
-// too, narrower by sqrt 2; with two cells to the correlation width the sum is as good as the integral.
+// The correlation is a Gaussian of the difference in bearing, so the weights of the cells are a Gaussian
+// narrower by sqrt 2. With two cells per correlation width the sum is as accurate as the integral.
 constexpr double cells_per_correlation = 2.0;
 constexpr double most_scan_cells = 1e6;
-constexpr double reach_correlations = 2.0;  // exp(-2 * 4): what is left out is below 1e-3
+constexpr double reach_correlations = 2.0;  // exp(-2 * 4): weights beyond are below 1e-3
 
 SONARD_SIMD_CLONES
 void add_weighed(const float* __restrict row, float weight, int count, float* __restrict sum) {
@@ -53,7 +53,7 @@ void ScannedSpeckle::fade(double decay) {
   }
 }
 
-/// A cell that is looked at for the first time takes its first numbers whole.
+/// Adds the cell if it is missing; a new cell takes its first innovation whole.
 SpeckleField& ScannedSpeckle::cell_at(int number) {
   const auto [found, is_new] = cells_.try_emplace(number, lines_);
   if (is_new) {

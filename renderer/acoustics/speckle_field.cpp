@@ -11,7 +11,7 @@ namespace sonard::render {
 
 namespace {
 
-// exp(-40) is below one rounding of a float: nothing is left. The limit keeps the sum of decays small, so
+// exp(-40) is below the resolution of a float: nothing is left. The limit keeps the sum of decays small, so
 // that it still resolves the slightest motion.
 constexpr double all_gone = 40;
 
@@ -29,7 +29,7 @@ SpeckleField::SpeckleField(int beams) : beams_(beams), stride_(aligned_stride(be
 
 void SpeckleField::ensure_lines(int lines) {
   const auto count = static_cast<std::size_t>(lines);
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // evolved_at_ grows last: if memory runs out before, the next call tries both again.
   if (count > evolved_at_.size()) {
     field_.resize(at(lines), 0.0F);
     evolved_at_.resize(count, -std::numeric_limits<double>::infinity());

@@ -12,7 +12,7 @@ namespace sonard::render {
 namespace {
 
 constexpr std::size_t most_points = 256;
-// Of what array and pulse mix, the spot has to hold this to be a point at all, and to be nothing but one.
+// Share of the mixed intensity above which a spot is a point in part, and from which it is one entirely.
 constexpr float least_dominance = 0.5F;
 constexpr float full_dominance = 0.8F;
 
@@ -42,7 +42,7 @@ bool is_peak(const EchoImage& fine, int fine_beam, int line) {
   return true;
 }
 
-/// How much of a spot is steady: rises from 0 to 1 without a kink.
+/// Share of a spot that is steady; it rises smoothly from 0 to 1.
 float steady_share(const EchoImage& fine, int fine_beam, int line, const MixingReach& reach) {
   const float spot = sum_around(fine, fine_beam, line, 1, 1);
   const float all = sum_around(fine, fine_beam, line, reach.fine_beams, reach.lines);
@@ -52,7 +52,7 @@ float steady_share(const EchoImage& fine, int fine_beam, int line, const MixingR
 
 constexpr int block_lines = 32;
 
-/// Whether any of a block of lines is far above those beside its spot: hardly any block has one.
+/// True if any line of a block is far above the lines beside its spot; few blocks have one.
 SONARD_SIMD_CLONES
 bool stands_out(const float* __restrict row, float faintest) {
   int any = 0;
@@ -147,7 +147,7 @@ SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage&
         const auto of_pulse = static_cast<float>(pulse != nullptr ? pulse->share(std::abs(line - k)) : 1.0);
         float* row = row_at(line);
         for (int b = lobes.begin; b < lobes.end; ++b) {
-          // In the nulls of the main lobe an array receives less than its errors leak everywhere.
+          // Negative in nulls beside the main lobe: there the array receives less than the mean leak.
           row[b] += of_pulse * std::max(received[static_cast<std::size_t>(b)], 0.0F);
         }
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single points send back: echoes that speckle does not touch (docs/physics.md 2.8).
+// Echoes of single points, which have no speckle (docs/physics.md 2.8).
 #pragma once
 
 #include <vector>
@@ -11,29 +11,30 @@
 
 namespace sonard::render {
 
-/// A spot of the fine echo, three fine beams by three lines, that outshines all that array and pulse would
-/// mix it with: the glint of a ball, a corner, a fish. It is one scatterer and not many with random phases,
-/// so its amplitude is steady.
+/// A spot of the fine echo, three fine beams by three lines, stronger than all echoes with which array and
+/// pulse mix it: the glint of a ball, a corner, a fish. It is one scatterer instead of many with random
+/// phases, so its amplitude is steady.
 struct PointEcho {
   int fine_beam = 0;  ///< of the middle
   int line = 0;
-  float share = 0;  ///< of the spot's intensity that is steady, (0, 1]: 1 where nothing else is near
+  float share = 0;  ///< steady part of the spot's intensity, (0, 1]; 1 if nothing else is near
 };
 
-/// How far array and pulse mix an echo with others, in fine beams and in lines.
+/// Distance over which array and pulse mix echoes, in fine beams and in lines.
 struct MixingReach {
   int fine_beams = 1;
   int lines = 1;
 };
 
-/// Reach of an array's main lobe and of a pulse. @param settings of the head, not those with fine beams
+/// Reach of an array's main lobe and of a pulse. @param settings of the head, not PointSpread::sampled()
 MixingReach mixing_reach(const SonarSettings& settings);
 
-/// The strongest points, 256 at most. @param faintest intensity of a cell that is looked at
+/// The strongest points, at most 256. @param faintest cells of at most this intensity are ignored
 std::vector<PointEcho> find_points(const EchoImage& fine, const MixingReach& reach, float faintest,
                                    WorkerPool& workers);
 
-/// What beams receive of these points, inside their main lobes. @param pulse nullptr: a pulse without length
+/// The echo of these points per beam, from main lobes and the side lobes beside them. @param pulse nullptr: a
+/// pulse without length
 SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage& fine,
                           const BeamPattern& pattern, const PulseResponse* pulse, int beams);
 

@@ -20,12 +20,12 @@ namespace {
 constexpr double reach = 6.0;
 constexpr int steps_per_unit = 16;
 constexpr int entries = static_cast<int>(2 * reach) * steps_per_unit + 1;
-// They are made for some nu, eight to an octave, and interpolated in its logarithm.
+// There are eight tables per octave of nu, interpolated in log nu.
 constexpr double least_log2_nu = -4.0;
 constexpr double most_log2_nu = 10.0;
 constexpr int tables_per_octave = 8;
 
-/// std::lgamma() writes the sign into a variable of the whole process, which is a race.
+/// std::lgamma() writes the sign into a global variable, which is a race.
 double log_gamma(double a) {
   int sign = 0;
   return lgamma_r(a, &sign);
@@ -85,8 +85,8 @@ std::vector<float> table_of(double nu) {
 constexpr std::size_t table_count =
     static_cast<std::size_t>(most_log2_nu - least_log2_nu) * tables_per_octave + 1;
 
-/// Made when first asked for, by whichever thread comes first: all of them take tens of milliseconds, and a
-/// sonar needs a few.
+/// Made on first use, by the first thread to call: all tables take tens of milliseconds, and a sonar needs
+/// only a few.
 const std::vector<float>& table(std::size_t number) {
   static std::array<std::once_flag, table_count> made;
   static std::array<std::vector<float>, table_count> tables;

@@ -7,25 +7,25 @@
 
 namespace sonard::render {
 
-/// sqrt(t) of t ~ Gamma(nu, 1/nu), as the rising function of a standard normal number that has this
-/// distribution. A field of normal numbers so becomes one of texture with the same correlation; speckle times
-/// it has K distributed amplitudes and the scintillation index 1 + 2 / nu.
+/// sqrt(t) with t ~ Gamma(nu, 1/nu), as a rising function of a standard normal number. It turns a field of
+/// normal numbers into texture with the same correlation. Speckle times texture has K distributed amplitudes
+/// and the scintillation index 1 + 2 / nu.
 class TextureRoot {
  public:
-  /// @param nu > 0; held within [1/16, 1024].
+  /// @param nu > 0; clamped to [1/16, 1024]
   void set(double nu);
 
   /// out[i] = intensity[i] * t(sqrt 2 * gaussian[i]). @param gaussian of variance 1/2: one part of CN(0, 1).
   void apply(const float* intensity, const float* gaussian, int count, float* out) const;
 
  private:
-  AlignedVector<float> root_;  ///< at numbers of equal distance
+  AlignedVector<float> root_;  ///< at equidistant normal numbers
 };
 
-/// The effective number of scatterers in a cell at this range: cells of a fan grow in proportion to it.
+/// Effective number of scatterers in a cell at a range; cells of a fan grow in proportion to range.
 double scatterers_at(const PhysicalModel& model, double range_m);
 
-/// Above this many scatterers in a cell their number no longer shows (SkipRule::many_scatterers).
+/// Above this number of scatterers in a cell, texture has no visible effect (SkipRule::many_scatterers).
 inline constexpr double texture_ends_at_nu = 20.0;
 
 }  // namespace sonard::render

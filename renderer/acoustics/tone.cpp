@@ -10,10 +10,10 @@
 namespace sonard::render {
 namespace {
 
-/// Integral over the square of sin(pi x) / (pi x) from -1 to 1.
+/// Integral of the square of sin(pi x) / (pi x) from -1 to 1.
 constexpr double lobe_length = 0.902823;
 
-/// Integral over sin(pi x) / (pi x) from -1 to `x`, which is held within -1 to 1.
+/// Integral of sin(pi x) / (pi x) from -1 to `x`, which is clamped to [-1, 1].
 double lobe_integral(double x) {
   constexpr std::size_t steps = 1024;
   static const std::array<double, steps + 1> table = [] {

@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tone along the range, as the band of the transducer lets it through (docs/physics.md 2.6).
+// A tone in range behind the band of the transducer (docs/physics.md 2.6).
 #pragma once
 
 namespace sonard::render {
 
-/// Length over which a tone spreads energy, in metres: the integral over its intensity, whose peak is 1. It
-/// is c tau / 2, but no tone is shorter than the band of the transducer lets it be.
+/// Length over which a tone spreads energy, in metres: the integral of its intensity, whose peak is 1. It is
+/// c tau / 2, but at least the length that the transducer's band allows.
 /// @param cell_m PhysicalModel::range_cell_m, > 0. @param rounding_m PhysicalModel::tone_rounding_m
 double tone_length_m(double cell_m, double rounding_m);
 
-/// A box whose ends are rounded: convolved with the main lobe of a sinc, which is what an even band makes of
-/// an instant. The box is as long as tone_length_m() asks for.
+/// A box with rounded ends: convolved with the main lobe of a sinc, the response of an even band to an
+/// impulse. The length of the box is chosen so that the result has tone_length_m().
 class RoundedTone {
  public:
   /// @param cell_m, rounding_m as of tone_length_m(); rounding_m > 0
   RoundedTone(double cell_m, double rounding_m);
 
-  /// Amplitude `at_m` from the middle, re that of the middle.
+  /// Amplitude at a distance of `at_m` from the middle, re the middle.
   double amplitude(double at_m) const { return overlap(at_m) / overlap(0); }
   /// Beyond it the amplitude is 0.
   double reach_m() const { return box_m_ / 2 + rounding_m_; }
 
  private:
-  /// Of the box and the lobe, of any scale.
+  /// Overlap of the box and the lobe, not normalised.
   double overlap(double at_m) const;
-  /// Integral over the intensity re the peak.
+  /// Integral of the intensity re the peak.
   double length_m() const;
 
   double box_m_;

@@ -8,8 +8,8 @@ namespace sonard::render {
 
 namespace {
 
-/// The strongest amplitude behind two equal resonators in a row. When the tone ends the first one has
-/// `first`, the second `second`; the second rises on until it has what is left in the first.
+/// The strongest amplitude behind two equal resonators in series. When the tone ends, the resonators have
+/// amplitudes `first` and `second`. `second` rises until it equals the falling `first`.
 /// @param length of the tone in time constants; 0: it does not end
 double strongest_amplitude(double length) {
   if (!(length > 0)) {

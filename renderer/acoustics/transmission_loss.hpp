@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What spreading and absorption leave of an echo.
+// Loss of an echo by spreading and absorption.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace sonard::render {
 
-/// Spherical spreading and absorption, two ways, of every range bin (docs/physics.md 2.1, equation 1).
+/// Two-way spherical spreading and absorption per range bin (docs/physics.md 2.1, equation 1).
 struct TransmissionLoss {
   double step_m = 0.0;
   double absorption_db_per_m = 0.0;
@@ -16,11 +16,11 @@ struct TransmissionLoss {
 
   TransmissionLoss() = default;
   explicit TransmissionLoss(const SonarSettings& settings);
-  /// True: made from these settings.
+  /// True if made from these settings.
   bool fits(const SonarSettings& settings) const;
 };
 
-/// @param loss of the lines of the image
+/// Multiplies each line of the image by its loss. @param loss per line
 void apply_loss(const std::vector<float>& loss, EchoImage& image);
 
 }  // namespace sonard::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time-varying gain: what the receiver makes good of spreading and absorption (docs/physics.md 2.9).
+// Time-varying gain, with which the receiver compensates spreading and absorption (docs/physics.md 2.9).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the water itself scatters back: bubbles, plankton, silt (docs/physics.md 2.10).
+// Echo of the water itself: bubbles, plankton, silt (docs/physics.md 2.10).
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace sonard::render {
 
-/// True: mode `physical`, and the water scatters at all.
+/// True in mode `physical` if the sonar transmits and the water scatters.
 bool has_volume_reverberation(const SonarSettings& settings);
 
-/// Adds to every line what scatters in it, before spreading and absorption: the scattering coefficient times
-/// what of the beam is still open times the length of the line.
-/// @param open_sr BinningResult::open_sr.
+/// Adds the echo of the water to every line, before spreading and absorption: the scattering coefficient
+/// times the open solid angle of the beam times the length of the line.
+/// @param open_sr BinningResult::open_sr
 void add_volume_reverberation(const std::vector<float>& open_sr, const SonarSettings& settings,
                               EchoImage& image);
 

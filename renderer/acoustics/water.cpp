@@ -6,8 +6,7 @@
 namespace sonard::render {
 namespace {
 
-/// One relaxation: amplitude f_r f^2 / (f_r^2 + f^2). Zero where the salt is missing (f_r = 0), also at f =
-/// 0.
+/// Amplitude of one relaxation, f_r f^2 / (f_r^2 + f^2); 0 without the salt (f_r = 0), also at f = 0.
 double relaxation(double relaxation_khz, double f_khz) {
   if (relaxation_khz <= 0.0) {
     return 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sea and fresh water do to sound: absorption and speed. Pure functions, thread-safe.
+// Absorption and speed of sound in sea and fresh water. Pure functions, thread-safe.
 // Formulas, ranges and check values: docs/physics.md 2.2.
 #pragma once
 
@@ -14,11 +14,11 @@ struct Water {
 };
 
 /// One-way absorption after Francois & Garrison (1982). Finite for every finite input with frequency_hz >= 0;
-/// trust it within 5-10 % where in_absorption_range() holds.
+/// accurate to 5-10 % if in_absorption_range() is true.
 double francois_garrison_absorption_db_per_m(double frequency_hz, const Water& water);
 
-/// Whether Francois & Garrison stated their formula for this case: 0.2 kHz to 1 MHz, -2 to 30 degC,
-/// 30 to 35 ppt. Outside it is an extrapolation worth a warning.
+/// True inside the stated range of the formula of Francois & Garrison: 0.2 kHz to 1 MHz, -2 to 30 degC,
+/// 30 to 35 ppt. Outside, the formula extrapolates, and callers should warn.
 bool in_absorption_range(double frequency_hz, const Water& water);
 
 /// Speed of sound after Mackenzie (1981): 2 to 30 degC, 25 to 40 ppt, 0 to 8000 m.

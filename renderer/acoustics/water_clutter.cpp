@@ -15,7 +15,7 @@ namespace sonard::render {
 namespace {
 
 constexpr double farthest_m = 20.0;
-constexpr double clutter_per_cell = 0.3;  // of cubes that the world is divided in: one or none in each
+constexpr double clutter_per_cell = 0.3;  // mean per cube of the world; a cube has one at most
 
 /// One cube of the world, numbered along its axes.
 std::uint64_t number_of(const glm::ivec3& cell) {
@@ -40,7 +40,7 @@ class Clutter {
     }
   }
 
-  /// False: nothing within so many metres of a point is received.
+  /// False if nothing within `around_m` metres of a point is received.
   bool may_receive(const glm::dvec3& position_m, double around_m) const {
     const glm::dvec3 from_sonar_m = position_m - T_world_sonar_.position_m;
     const double up_m = std::abs(glm::dot(from_sonar_m, upwards_));
@@ -73,7 +73,7 @@ class Clutter {
     return &image_.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(image_.lines)];
   }
 
-  /// -1: outside of the fan.
+  /// -1 outside the fan.
   int beam_of(double azimuth_rad) const {
     const std::vector<double>& edges = settings_.aperture.beam_edges_rad;  // falling
     const auto below = std::lower_bound(edges.begin(), edges.end(), azimuth_rad, std::greater<>());
@@ -85,7 +85,7 @@ class Clutter {
   EchoImage& image_;
   glm::dvec3 upwards_;  ///< the sonar's z axis in the world
   double limit_cosine_, limit_sine_;
-  std::vector<int> first_echo_;  ///< line of it, per beam
+  std::vector<int> first_echo_;  ///< line of the first echo, per beam
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single things that drift in the water: fish, weed, bubbles (docs/physics.md 2.16).
+// Single drifting objects in the water: fish, weed, bubbles (docs/physics.md 2.16).
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace sonard::render {
 
-/// Adds what the clutter of open water sends back, before spreading and absorption. It lies at places of the
-/// world that `seed` draws, WaterClutter::density_per_m3 of it, out to 20 m, and is seen in a beam as far as
-/// nothing else has sent an echo; target strengths are drawn around the mean, exponentially in intensity.
+/// Adds the echoes of clutter in open water, before spreading and absorption. Clutter has places in the world
+/// that are drawn with `seed`, WaterClutter::density_per_m3 of them, out to 20 m. A beam receives only
+/// clutter nearer than its first other echo. The intensity of targets is exponentially distributed.
 void add_water_clutter(const SonarSettings& settings, const Pose& T_world_sonar, std::uint64_t seed,
                        EchoImage& image);
 
