@@ -18,13 +18,13 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double widest_cell_rad = 0.033;  // 1.9 degrees
-constexpr double latest_m = 3.0;           // behind the first echo: what comes later is as wide
-constexpr int least_paths = 256;           // of a narrow fan, whose cells are smaller
-constexpr double divided_from = 0.6;       // of the power that a surface sends on: 16 paths for its cell
-// Rays are too few to find where a smooth surface has its glint: no path brings more than a white wall.
+constexpr double latest_m = 3.0;           // behind the straight echo: later echoes get no wider
+constexpr int least_paths = 256;           // for a narrow fan, which gets smaller cells
+constexpr double divided_from = 0.6;       // share of power sent on above which a cell gets 16 paths
+// Limit of the response, the response of a white wall: rays are too few to sample glints of smooth surfaces.
 constexpr double strongest = std::numbers::inv_pi;
 
-/// The cells that paths begin in: a grid over the fan, in the sonar frame.
+/// The cells in which paths begin: a grid over the fan, in the sonar frame.
 struct Grid {
   double port_rad, width_rad, lowest_rad, height_rad;  ///< width and height of a cell
   int columns, rows;
@@ -49,7 +49,7 @@ struct Grid {
   }
 };
 
-/// How a surface shares out the power that it meets; the rest is absorbed.
+/// How a surface distributes the incident power; the rest is absorbed.
 struct Shares {
   double mirror, facets, lambert;
 
@@ -63,7 +63,7 @@ struct Shares {
   double sum() const { return mirror + facets + lambert; }
 };
 
-/// Integral of a triangle of area 1 between -1 and 1, as far as x.
+/// Integral from -1 to x of a triangle of area 1 between -1 and 1.
 double triangle_below(double x) {
   const double at = std::clamp(x, -1.0, 1.0);
   return at < 0 ? 0.5 * (1 + at) * (1 + at) : 1 - 0.5 * (1 - at) * (1 - at);
@@ -86,14 +86,14 @@ class Path {
     glm::dquat R_world_sonar, R_sonar_world;
     PathLimits limits;
     int most_bounces;
-    double loss;      ///< factor of the power, each time it is sent on
-    double cell_rad;  ///< across a cell of the grid
+    double loss;      ///< factor of the power at each bounce
+    double cell_rad;  ///< width of a cell of the grid
   };
 
   Path(const Ping& ping, RandomKey numbers, const FanCell& cell, std::vector<BeamPatch>& out)
       : ping_(ping), numbers_(numbers), cell_(cell), out_(out) {}
 
-  /// @param first what the cell's direction meets
+  /// @param first first hit in the cell's direction
   void follow(const glm::dvec3& direction, const PathHit& first) {
     direction_ = direction;
     hit_ = first;
@@ -112,7 +112,7 @@ class Path {
         return;
       }
       length_m_ += hit_.distance_m;
-      // What a mirror shows of a rough surface is a ghost.
+      // GhostPaths adds the echo of a rough surface in a mirror.
       come_back(mirrored && bounce == 1);
     }
   }
@@ -120,7 +120,7 @@ class Path {
  private:
   double number() { return uniform_number(numbers_, next_number_++); }
 
-  /// Goes on in a random direction, with a probability that is the share of the power that does.
+  /// Chooses a random new direction. @return false if the path ends; the probability is the absorbed share.
   bool leave(bool& mirrored) {
     const Shares shares(ping_.scene, hit_, ping_.limits.wavelength_m);
     const double chance = number();
@@ -147,7 +147,7 @@ class Path {
     return glm::dot(direction_, hit_.normal) > 0;
   }
 
-  /// What the surface that was met sends straight back to the sonar.
+  /// Adds the echo that goes straight from the current hit to the sonar.
   void come_back(bool ghost) {
     const double straight_m = glm::length(hit_.position_m);
     const double range_m = 0.5 * (length_m_ + straight_m);
@@ -165,11 +165,11 @@ class Path {
       return;
     }
     const double weight = ping_.fan.aperture().elevation_weight(std::asin(std::clamp(p.z, -1.0, 1.0)));
-    const double longer = range_m / straight_m;  // each line is given the loss of its own range
+    const double longer = range_m / straight_m;  // each line later gets the loss of its own range
     add(range_m, straight_m, std::atan2(p.y, p.x), power_ * response * std::sqrt(weight) * longer * longer);
   }
 
-  /// Power per steradian that comes back of the power that arrives.
+  /// Power per steradian towards the sonar, re the incident power.
   double sent_back(const glm::dvec3& back, double cosine, bool ghost) const {
     const Shares shares(ping_.scene, hit_, ping_.limits.wavelength_m);
     const glm::dvec3 facet = glm::normalize(back - direction_);
@@ -184,13 +184,13 @@ class Path {
     return std::min(response, strongest);
   }
 
-  /// A path stands for all that begin in its cell, which part the more the longer they are under way: their
-  /// echo comes over some length, and none of it sooner, and over some beams.
+  /// A path represents all paths that begin in its cell, and these diverge with their length. Their echo is
+  /// therefore spread over some length, starting at `range_m`, and over some beams.
   void add(double range_m, double straight_m, double bearing_rad, double echo) {
     const double later_m = range_m - straight_m;
     const double length_m = std::max(range_m * ping_.cell_rad, 0.5 * later_m);
     const double half_rad = ping_.cell_rad * (1 + std::min(later_m, latest_m));
-    EchoPatch patch;  // rises over its first half and falls over the other
+    EchoPatch patch;  // rises over its first half and falls over its second
     patch.range_a_m = static_cast<float>(range_m + 0.25 * length_m);
     patch.range_b_m = static_cast<float>(range_m + 0.75 * length_m);
     patch.smear_a_m = patch.smear_b_m = static_cast<float>(0.5 * length_m);
@@ -212,16 +212,16 @@ class Path {
 
   const Ping& ping_;
   RandomKey numbers_;
-  std::uint64_t next_number_ = 2;  // the first two placed it in its cell
+  std::uint64_t next_number_ = 2;  // numbers 0 and 1 set its place in the cell
   FanCell cell_;
   std::vector<BeamPatch>& out_;
   glm::dvec3 direction_{0.0};
   PathHit hit_;
   double length_m_ = 0.0;
-  double power_ = 0.0;  ///< of the cell, less the loss at each bounce: a path goes on whole or not at all
+  double power_ = 0.0;  ///< of the cell, less the loss at each bounce; absorption ends paths (leave())
 };
 
-/// The paths of a few neighbouring cells, 4 x 4, which share the work of their first legs.
+/// The paths of 4 x 4 neighbouring cells, whose first legs are traced together.
 class Group {
  public:
   Group(const Path::Ping& ping, std::vector<BeamPatch>& out) : ping_(ping), out_(out) {}
@@ -230,7 +230,7 @@ class Group {
     const auto k = static_cast<std::size_t>(count_++);
     numbers_[k] = numbers;
     cells_[k] = cell;
-    // Anywhere in the cell: what is seen in even steps would show in the picture.
+    // A random place in the cell: a regular grid would be visible in the image.
     cells_[k].azimuth_rad += cell.width_rad * (uniform_number(numbers, 0) - 0.5);
     cells_[k].elevation_rad += cell.height_rad * (uniform_number(numbers, 1) - 0.5);
     directions_[k] = ping_.R_world_sonar * cells_[k].direction();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Echoes by way of several rough surfaces: the halo that a structure trails, the tail behind the walls of a
-// basin (docs/physics.md 2.11).
+// Echoes by way of several rough surfaces: the halo behind a structure, the tail behind the walls of a basin
+// (docs/physics.md 2.11).
 #pragma once
 
 #include <cstddef>
@@ -17,17 +17,17 @@
 
 namespace sonard::render {
 
-/// Surfaces that send on less of the sound they meet than this, R^2 + pi mu, send none: -15 dB.
+/// Least share of the incident power, R^2 + pi mu, that a surface must send on to be followed: -15 dB.
 inline constexpr double least_sent_on = 0.0316227766016838;
 
-/// Follows paths that are drawn at random, one for every few square degrees of the fan. The numbers are those
-/// of the fan's cells: a ping that is asked for again has the same paths, whatever the number of threads.
+/// Follows random paths, one for every few square degrees of the fan. The random numbers depend on the fan's
+/// cells alone: a repeated ping has the same paths, for any number of threads.
 class Bounces {
  public:
-  /// @param world its bodies may move; what they are made of stays.
+  /// @param world its bodies may move; their meshes and materials must not change.
   Bounces(const World& world, WorkerPool& workers);
 
-  /// Whether a part in range sends sound on (SkipRule::bounces).
+  /// True if a part in range sends sound on (SkipRule::bounces).
   bool any_in_range(const World& world, const glm::dvec3& sonar_position_m, double max_range_m) const;
 
   /// @return the echoes of every group of paths, groups from port to starboard; valid until the next call.
@@ -41,7 +41,7 @@ class Bounces {
     MirrorSurvey::Ball ball;  ///< in the frame of the part
   };
 
-  std::vector<Part> parts_;  // those that send sound on
+  std::vector<Part> parts_;  // parts that send sound on
   WorkerPool& workers_;
   std::vector<std::vector<BeamPatch>> results_;
 };

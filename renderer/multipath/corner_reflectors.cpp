@@ -12,21 +12,21 @@ namespace sonard::render {
 
 namespace {
 
-// The aperture is looked at through a bell as wide as this many sqrt(r / k), and to 2.5 widths: a few Fresnel
-// zones. What a large corner sends back is then free of the ripple of a sharp edge, and right within 0.2 %.
+// The aperture is weighted with a bell, bell_width sqrt(r / k) wide, out to bell_reach widths: a few Fresnel
+// zones. The echo of a large corner then has no ripple of a sharp edge and is accurate to 0.2 %.
 constexpr double bell_width = 4.0;
 constexpr double bell_reach = 2.5;
-constexpr int search_cells = 24;   // along each side, to find where the aperture is
-constexpr int closest_search = 4;  // times that the search is repeated in a field a quarter as wide
-constexpr int cells = 48;          // along each side, to sum it up
+constexpr int search_cells = 24;   // along each side, to find the aperture
+constexpr int closest_search = 4;  // searches, each in a field a quarter as wide as the last
+constexpr int cells = 48;          // along each side, for the sum
 constexpr int phases_per_cell = 8;
 
-/// An upright rectangle of the plane across the line to the image, metres.
+/// A rectangle along s and t in the plane perpendicular to the line to the image, metres.
 struct Field {
   double low_s = 0.0, high_s = 0.0, low_t = 0.0, high_t = 0.0;
 };
 
-/// How far images of the same corner may lie apart: an eighth of a wave, or what rounding leaves.
+/// Largest distance between images of one corner: an eighth of a wavelength, or the rounding error.
 double tolerance_m(const glm::dvec3& image_m, double wavelength_m) {
   return std::max(wavelength_m / 8, 1e-5 * glm::length(image_m));
 }
@@ -46,7 +46,7 @@ class CornerView {
 
   double range_m() const { return range_m_; }
 
-  /// The part of the plane that sends rays to the image, with a margin; empty where there is none.
+  /// The part of the plane that sends rays to the image, with a margin; empty if no ray reaches it.
   Field find_aperture() const {
     double reach = bell_reach * bell_m_;
     for (int i = 0; i < closest_search; ++i, reach /= 4) {
@@ -67,7 +67,7 @@ class CornerView {
     return {};
   }
 
-  /// The integral over the field, square metres.
+  /// The integral over the field, m^2.
   std::complex<double> integral(const Field& field) const {
     const Phases along_s = phases(field.low_s, field.high_s);
     const Phases along_t = phases(field.low_t, field.high_t);
@@ -100,8 +100,8 @@ class CornerView {
     return of;
   }
 
-  /// What the mirrors leave of the pressure of the ray through a point of the plane; 0 where they do not send
-  /// it to the image.
+  /// Factor of the mirrors on the pressure of the ray through a point of the plane; 0 if they do not send it
+  /// to the image.
   double pressure(double s, double t) const {
     glm::dvec3 direction = glm::normalize(range_m_ * ahead_ + s * s_ + t * t_);
     std::array<PathHit, 3> hits;
@@ -128,7 +128,7 @@ class CornerView {
     return 0.0;
   }
 
-  /// Whether the mirrors up to number `last` show the sonar where the candidate has its image.
+  /// True if the image of the sonar in the mirrors up to number `last` is the candidate's.
   bool is_image(const std::array<PathHit, 3>& hits, std::size_t last) const {
     glm::dvec3 image_m(0.0);
     for (std::size_t i = last + 1; i-- > 0;) {

@@ -11,19 +11,18 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int parts_across = packet_side;  // of a cell at an edge
+constexpr int parts_across = packet_side;  // per cell at an edge
 constexpr int parts_up = 2 * packet_side;
-constexpr double corner_reach = 1.5;   // of a cell's diagonal: how near a ray must pass to find a corner
-constexpr double least_cosine = 1e-3;  // surfaces seen edge-on have no end in range, and no energy
+constexpr double corner_reach = 1.5;   // largest angle between a ray and a corner it finds, in cell diagonals
+constexpr double least_cosine = 1e-3;  // limits the range extent of surfaces seen edge-on, without energy
 
-/// The two range and bearing slopes of a path over its cell.
+/// Change of range and bearing of a path over its cell.
 struct Slopes {
   double range_m = 0.0, bearing_rad = 0.0;
 };
 
-/// What neighbours that met the same surface share: its number, and of a flat one the direction of its
-/// normal, coarsely, so that two walls of one part are told apart. The facets of a curved one are one
-/// surface.
+/// Equal for neighbours that hit the same surface: its number, and for a flat surface also its rounded
+/// normal, which separates two walls of one part. The facets of a curved surface are one surface.
 std::uint64_t surface_code(const PathScene& scene, const PathHit& hit) {
   if (!scene.is_flat(hit)) {
     return hit.surface;
@@ -38,7 +37,7 @@ std::uint64_t mixed(std::uint64_t key, std::uint64_t next) {
   return key ^ (key >> 29U);
 }
 
-/// Something that is spread over `a` and over `b`, one independent of the other, around a range.
+/// An echo around a range, spread over `a_m` and independently over `b_m`.
 EchoPatch spread_patch(double range_m, double a_m, double b_m, double echo) {
   const auto wide = static_cast<float>(std::max(std::abs(a_m), std::abs(b_m)));
   const auto narrow = static_cast<float>(std::min(std::abs(a_m), std::abs(b_m)));
@@ -90,7 +89,7 @@ const std::vector<GhostPaths::Result>& GhostPaths::follow(const PathScene& scene
   return results_;
 }
 
-/// Follows as many columns as a packet is wide.
+/// Follows packet_side columns.
 void GhostPaths::follow_columns(const Ping& ping, int first_column) {
   PathScene::Directions directions;
   std::array<PathHit, packet_size> mirrors;
@@ -176,7 +175,7 @@ bool GhostPaths::differs_from_neighbours(const Ping& ping, int column, int row) 
          (column + 1 < ping.fan.columns() && key(column + 1, row) != own);
 }
 
-/// From the sonar. @return as follow_on().
+/// Follows a path from the sonar. @return see follow_on()
 std::uint64_t GhostPaths::follow_one(const Ping& ping, const FanCell& cell, Path& path, Result& result) {
   const glm::dvec3 direction = ping.R_world_sonar * cell.direction();
   if (!ping.scene.trace({}, {}, direction, ping.limits.max_range_m, path.mirror)) {
@@ -185,8 +184,8 @@ std::uint64_t GhostPaths::follow_one(const Ping& ping, const FanCell& cell, Path
   return follow_on(ping, direction, path, result);
 }
 
-/// From what `direction` met first, if anything.
-/// @return a number for the surfaces that were met; 0: no flat mirror.
+/// Follows a path on from its first hit in `direction`, if it has one.
+/// @return a number for the surfaces that were hit; 0 without a flat mirror
 std::uint64_t GhostPaths::follow_on(const Ping& ping, const glm::dvec3& direction, Path& path,
                                     Result& result) {
   if (!(path.mirror.distance_m > 0)) {
@@ -196,10 +195,10 @@ std::uint64_t GhostPaths::follow_on(const Ping& ping, const glm::dvec3& directio
   if (!(path.gain > 0)) {
     return 0;
   }
-  // What a curved mirror shows is spread wide and has no edges worth the rays.
+  // Images in a curved mirror are wide and need no finer rays at their edges.
   const bool is_flat = ping.scene.is_flat(path.mirror);
   const std::uint64_t key = is_flat ? mixed(1, surface_code(ping.scene, path.mirror)) : 0;
-  // Back by the straight way the path is no longer than twice the range.
+  // With the straight line back, the path is at most twice the range.
   const double farthest_m = 2 * ping.limits.max_range_m - path.mirror.distance_m;
   PathHit target;
   if (!ping.scene.trace(path.mirror.position_m, path.mirror.normal, reflected(direction, path.mirror.normal),
@@ -213,7 +212,7 @@ std::uint64_t GhostPaths::follow_on(const Ping& ping, const glm::dvec3& directio
   return !is_flat ? 0 : mixed(mixed(key, surface_code(ping.scene, target)), path.target_seen ? 1 : 2);
 }
 
-/// The path goes straight back to the sonar where the image of the sonar in its mirrors lies ahead.
+/// A path returns straight to the sonar if the image of the sonar in its mirrors lies ahead.
 void GhostPaths::find_corners(const Ping& ping, const glm::dvec3& direction, const Path& path,
                               Result& result) {
   if (!(ping.mirror_gain(path.target) > 0) || !ping.scene.is_flat(path.mirror) ||
@@ -237,7 +236,8 @@ void GhostPaths::find_corners(const Ping& ping, const glm::dvec3& direction, con
   }
 }
 
-/// The ways out by the mirror and straight back, straight out and back by the mirror, and both by the mirror.
+/// Adds the paths out by the mirror and straight back, straight out and back by the mirror, and both by the
+/// mirror.
 void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& path, Result& result) {
   if (!(path.target.distance_m > 0)) {
     return;
@@ -251,8 +251,8 @@ void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& p
   const glm::dvec3 p = ping.R_sonar_world * path.target.position_m;
   const double cosine = std::max(path.target.cosine, least_cosine);
 
-  // How the two ranges and the bearing of the target change over the cell: the mirror's plane turns the rays,
-  // and the target's plane sets where they end (docs/physics.md 2.3, equation 2).
+  // Change of the two ranges and of the target's bearing over the cell: the mirror's plane turns the rays,
+  // and they end at the target's plane (docs/physics.md 2.3, equation 2).
   const auto slopes = [&](const glm::dvec3& step, double& by_mirror_step_m) {
     const glm::dvec3 turned = reflected(ping.R_world_sonar * step, mirror_normal);
     by_mirror_step_m = by_mirror_m * glm::dot(target_normal, turned) / cosine;
@@ -267,7 +267,7 @@ void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& p
 
   const double mu = ping.scene.lambert_mu(path.target);
   const double out_weight = ping.fan.aperture().elevation_weight(cell.elevation_rad);
-  // By the mirror both ways: what is seen in it, at the range at which it seems to be.
+  // By the mirror both ways: the echo has the range of the target's image.
   if (ping.scene.is_flat(path.mirror)) {
     result.patches.push_back({cell.beam, spread_patch(by_mirror_m, by_mirror_width_m, by_mirror_height_m,
                                                       mu * path.target.cosine * cell.solid_angle() *
@@ -276,8 +276,8 @@ void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& p
   if (!path.target_seen) {
     return;
   }
-  // By the mirror one way. Its range is the mean of both, and so is the loss that each line is given; what is
-  // spread over the straight way is spread over that.
+  // By the mirror one way: the range is the mean of both ways. Each line later gets the loss of its own
+  // range, so the echo is scaled by the spreading over the straight way.
   const double range_m = 0.5 * (by_mirror_m + straight_m);
   const double back_weight = ping.elevation_weight(p / straight_m);
   const double echo = mu * -glm::dot(target_normal, straight) * cell.solid_angle() * path.gain *
@@ -305,7 +305,7 @@ void GhostPaths::add_echoes(const Ping& ping, const FanCell& cell, const Path& p
     EchoPatch patch = spread_patch(range_m + turning.range_m * offset, turning.range_m * share, other.range_m,
                                    echo * share);
     if (beam == cell.beam) {
-      patch.echo *= 4.0F;  // the way and its reverse are equally long: their pressures add up
+      patch.echo *= 4.0F;  // a path and its reverse are equally long, so their pressures add
       result.patches.push_back({beam, patch});
     } else {
       result.patches.push_back({beam, patch});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Echoes by way of a mirror: a ray leaves the sonar, is mirrored by a smooth surface and meets a rough one
+// Echoes by way of a mirror: a ray from the sonar is mirrored by a smooth surface and hits a rough one
 // (docs/physics.md 2.11).
 #pragma once
 
@@ -16,39 +16,39 @@
 
 namespace sonard::render {
 
-/// What paths are followed, and how far.
+/// Limits of the paths that are followed.
 struct PathLimits {
   double wavelength_m = 0.0;
   double max_range_m = 0.0;
-  double least_gain = 0.0;    ///< a mirror weaker than this is none
-  bool meshes_mirror = true;  ///< false: only the water surface does
+  double least_gain = 0.0;    ///< weaker mirrors are ignored
+  bool meshes_mirror = true;  ///< false: only the water surface mirrors
 };
 
-/// A part of the echo and the beam that receives it. EchoPatch::echo is, as that of what is seen directly,
-/// yet to be multiplied with spreading and absorption of its range.
+/// A part of the echo and the beam that receives it. EchoPatch::echo does not yet include spreading and
+/// absorption, like the direct echo.
 struct BeamPatch {
   int beam;
   EchoPatch patch;
 };
 
-/// A place that two or three mirrors in turn send sound straight back from: the image of the sonar in them.
+/// A possible corner, where two or three mirrors send sound straight back: the image of the sonar in them.
 struct CornerCandidate {
   glm::dvec3 image_m{0.0};  ///< relative to the sonar, in world axes; the corner is half way to it
 };
 
-/// The image of a point in the plane of a hit.
+/// The mirror image of a point in the plane of a hit.
 inline glm::dvec3 mirrored(const glm::dvec3& point_m, const PathHit& mirror) {
   return point_m - 2 * glm::dot(point_m - mirror.position_m, mirror.normal) * mirror.normal;
 }
 
-/// The direction that a mirror sends a leg on in.
+/// The direction of a leg after a mirror.
 inline glm::dvec3 reflected(const glm::dvec3& direction, const glm::dvec3& normal) {
   return direction - 2 * glm::dot(direction, normal) * normal;
 }
 
-/// Follows rays over the whole fan. The fan is first cut into even cells; those whose path differs from a
-/// neighbour's, at the edge of a flat mirror or of what is seen in it, are cut again. What is found depends
-/// on neither the number of threads nor their order.
+/// Follows rays over the whole fan. The fan is first divided into even cells. Cells whose path differs from a
+/// neighbour's, at the edge of a flat mirror or of an object seen in it, are divided again. Results do not
+/// depend on the number of threads or their order.
 class GhostPaths {
  public:
   struct Result {
@@ -62,7 +62,7 @@ class GhostPaths {
   const std::vector<Result>& follow(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
                                     const PathLimits& limits);
 
-  /// Looks for corners with rays in the cells given alone.
+  /// Searches for corners with rays in the given cells alone.
   static Result search(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
                        const PathLimits& limits, const std::vector<FanCell>& cells);
 
@@ -72,7 +72,7 @@ class GhostPaths {
     int row = 0;
     PathHit mirror, target;
     double gain = 0.0;         ///< of the mirror
-    bool target_seen = false;  ///< the straight way from the target to the sonar is free, and in the fan
+    bool target_seen = false;  ///< the straight line from the target to the sonar is free and in the fan
   };
   struct Ping;
 
@@ -90,8 +90,8 @@ class GhostPaths {
   bool differs_from_neighbours(const Ping& ping, int column, int row) const;
 
   WorkerPool& workers_;
-  std::vector<std::uint64_t> keys_;       // what the path of every cell met, column after column
-  std::vector<std::vector<Path>> paths_;  // of the cells of every column that have one
+  std::vector<std::uint64_t> keys_;       // follow_on() per cell, column after column
+  std::vector<std::vector<Path>> paths_;  // per column, of cells with a target
   std::vector<Result> results_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface keeps of a sound wave that it reflects as a mirror (docs/physics.md 2.11).
+// Specular reflection of sound by a surface (docs/physics.md 2.11).
 #pragma once
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 namespace sonard::render {
 
-/// Surfaces whose mirror image is weaker than this, |R|^2 exp(-P^2), are no mirrors: -15 dB.
+/// Least gain of a mirror, |R|^2 exp(-P^2); weaker surfaces do not count as mirrors: -15 dB.
 inline constexpr double least_mirror_gain = 0.0316227766016838;
 
-/// What is left of the intensity, and with the sign of the pressure: R^2 exp(-P^2) with P = 2 k sigma sin
-/// gamma (Rayleigh's roughness parameter), the coherent part.
+/// Coherent part of the reflected intensity, R^2 exp(-P^2) with P = 2 k sigma sin gamma (Rayleigh's roughness
+/// parameter), and the sign of the pressure.
 struct Mirror {
   double pressure_reflection = 0.0;  ///< R, in [-1, 1]
   double rms_height_m = 0.0;         ///< sigma, >= 0
@@ -24,7 +24,7 @@ struct Mirror {
   explicit Mirror(const AcousticMaterial& material)
       : Mirror(material.pressure_reflection, material.rms_height_m) {}
 
-  /// Factor of the intensity at the sine of a grazing angle.
+  /// Factor of the intensity. @param sin_grazing sine of the grazing angle
   double gain(double sin_grazing, double wavelength_m) const {
     const double p = 4 * std::numbers::pi / wavelength_m * rms_height_m * sin_grazing;
     return pressure_reflection * pressure_reflection * std::exp(-p * p);

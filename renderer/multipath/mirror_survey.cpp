@@ -28,7 +28,7 @@ MirrorSurvey::MirrorSurvey(const World& world) {
     for (std::size_t p = 0; p < world.bodies[b].parts.size(); ++p) {
       const BodyPart& part = world.bodies[b].parts[p];
       const Mirror mirror(part.material);
-      // What mirrors too little head-on and without any roughness never does.
+      // A part that mirrors too little head-on and without roughness never mirrors.
       if (mirror.pressure_reflection * mirror.pressure_reflection > least_mirror_gain) {
         parts_.push_back({b, p, mirror, ball_around(*part.mesh), groups_of(*part.mesh)});
       }
@@ -61,7 +61,7 @@ MirrorSurvey::Group MirrorSurvey::group_of(const TriangleMesh& mesh, std::size_t
   Group group;
   group.centre_m = 0.5 * (low + high);
   group.radius_m = 0.5 * glm::length(high - low);
-  // Sound is mirrored by both sides, so that normals are turned to that of the first triangle.
+  // Both sides of a triangle mirror, so normals are turned to the side of the first triangle's normal.
   glm::dvec3 sum(0.0);
   for (std::size_t t = first; t < end; ++t) {
     const glm::dvec3 n = normal(t);
@@ -82,7 +82,7 @@ std::vector<MirrorSurvey::Ball> MirrorSurvey::small_parts(const World& world,
   std::vector<Ball> small;
   for (const Part& part : parts_) {
     if (world.is_terrain(part.body, part.part)) {
-      continue;  // no tile stands alone
+      continue;  // terrain tiles do not stand alone
     }
     const Body& body = world.bodies[part.body];
     const Pose T_world_part = body.T_world_body * body.parts[part.part].T_body_part;
@@ -107,9 +107,9 @@ bool MirrorSurvey::has_mirror(const World& world, const glm::dvec3& sonar_positi
       if (distance_m - group.radius_m > range_m) {
         continue;
       }
-      // With a facet's normal within `cone` of the axis, |n.x| >= |axis.x| cos(cone) - |x| sin(cone), and
-      // |axis.x| differs by no more than the ball's radius from that of its centre x. Facets that lie in one
-      // plane all have that of the centre.
+      // With a facet's normal within `cone` of the axis, |n.x| >= |axis.x| cos(cone) - |x| sin(cone).
+      // |axis.x| differs by at most the ball's radius from its value at the centre; for facets in one plane
+      // it does not differ.
       const double cone = std::min(group.half_angle_rad, std::numbers::pi / 2);
       const double height_m = std::abs(glm::dot(to_centre, group.normal));
       const double least_height_m = height_m - (cone < one_plane_rad ? 0.0 : group.radius_m);

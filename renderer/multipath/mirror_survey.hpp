@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether anything near the sonar is smooth enough to mirror sound: the numeric rule that spares all of
-// multipath where it would not show.
+// Tests whether anything near the sonar is smooth enough to mirror sound: the numeric rule that skips
+// multipath if it has no visible effect.
 #pragma once
 
 #include <cstddef>
@@ -13,28 +13,27 @@
 
 namespace sonard::render {
 
-/// Knows of every part that reflects at all the groups of facets it has, in the frame of the part: some
-/// triangles that lie together, within one ball and with normals within one cone. Made once; asking costs a
-/// few operations for each group that is in range, until one mirrors.
+/// Holds the groups of facets of every reflecting part, in the frame of the part. A group is a few adjacent
+/// triangles within one ball, with normals within one cone. It is made once; a query costs a few operations
+/// per group in range, until one mirrors.
 class MirrorSurvey {
  public:
   explicit MirrorSurvey(const World& world);
 
-  /// A ball around a part, relative to the sonar and in world axes where nothing else is said.
+  /// A ball around a part, relative to the sonar and in world axes unless stated otherwise.
   struct Ball {
     glm::dvec3 centre_m{0.0};
     double radius_m = 0.0;
   };
-  /// Of a mesh, in its own frame.
+  /// A ball around a mesh, in the frame of the mesh.
   static Ball ball_around(const TriangleMesh& mesh);
-  /// The parts in range that are seen under no more than this angle: rays of a grid may miss them.
+  /// The parts in range that subtend at most `angle_rad`: a grid of rays may miss them.
   std::vector<Ball> small_parts(const World& world, const glm::dvec3& sonar_position_m, double range_m,
                                 double angle_rad) const;
 
-  /// Whether a surface of these bodies, no farther than `range_m`, could return a mirror image of more than
-  /// least_mirror_gain to a sonar here: at the smallest grazing angle under which the sonar sees a point of
-  /// it. Never false where one does.
-  /// @param world the one it was made of, with its bodies where they are now.
+  /// True if a surface of these bodies within `range_m` could mirror sound with more than least_mirror_gain,
+  /// at the smallest grazing angle under which the sonar sees a point of it. Never false if one does.
+  /// @param world the world given to the constructor, with current poses of its bodies
   bool has_mirror(const World& world, const glm::dvec3& sonar_position_m, double range_m,
                   double wavelength_m) const;
 
@@ -58,7 +57,7 @@ class MirrorSurvey {
   std::vector<Part> parts_;
 };
 
-/// Whether the water surface, a plane above the sonar, mirrors within range.
+/// True if the water surface, a plane above the sonar, mirrors within range.
 bool water_surface_mirrors(const Mirror& surface, double depth_m, double range_m, double wavelength_m);
 
 }  // namespace sonard::render

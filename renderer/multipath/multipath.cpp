@@ -11,8 +11,8 @@ namespace sonard::render {
 namespace {
 
 constexpr double fast_coarseness = 2.0;       // of the cells with the preset `fast`
-constexpr double small_parts_in_cells = 2.0;  // that many diagonals of a cell across: a grid may miss it
-constexpr int search_rays = 8;                // along each side of a part that is so small
+constexpr double small_parts_in_cells = 2.0;  // size in cell diagonals up to which a grid may miss a part
+constexpr int search_rays = 8;                // along each side of such a part
 
 Mirror water_surface_of(const MultipathSettings& settings) {
   return {-1.0, settings.water_surface_rms_height_m};
@@ -25,7 +25,7 @@ bool is_finite(const EchoPatch& patch) {
 void add(const EchoPatch& patch, double step_m, RangeProfile& profile) {
   const double a = static_cast<double>(patch.range_a_m) / step_m;
   const double b = static_cast<double>(patch.range_b_m) / step_m;
-  if (a == b) {  // a corner reflector echoes in one line, also where two meet
+  if (a == b) {  // the echo of a corner reflector is in one line, even at a border of two
     profile.add_point(a, patch.echo);
     return;
   }
@@ -127,7 +127,7 @@ void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar
   }
 }
 
-/// A corner reflector far away is smaller than a cell of the fan: rays are aimed at what is.
+/// Aims rays at small parts, because a distant corner reflector is smaller than a cell of the fan.
 GhostPaths::Result Multipath::search_small_parts(const Pose& T_world_sonar, const PathLimits& limits) const {
   const glm::dquat R_sonar_world = glm::conjugate(T_world_sonar.orientation);
   std::vector<FanCell> cells;
@@ -171,7 +171,7 @@ void Multipath::collect_corners(const std::vector<CornerCandidate>& corners, con
   }
 }
 
-/// Sums are exact (RangeProfile), so they depend on the order of patches as little as on threads.
+/// Sums are exact (RangeProfile), so they do not depend on the order of patches or on threads.
 void Multipath::sum(const RangeLines& range, std::vector<float>& echo) {
   const auto lines = static_cast<std::size_t>(range.count);
   workers_.run(static_cast<int>(patches_of_beam_.size()), [&](int beam) {

@@ -20,19 +20,18 @@
 
 namespace sonard::render {
 
-/// Does not depend on the engine. It traces rays only where something mirrors or sends sound on: a world
-/// where nothing does needs no search trees.
+/// Adds multipath, independently of the engine. It traces rays only if something mirrors or sends sound on; a
+/// world in which nothing does needs no search trees.
 class Multipath {
  public:
-  /// @param index where the world is moved; it outlives this object.
-  /// @param workers outlives this object.
+  /// @param index moves the world; must outlive this object
+  /// @param workers must outlive this object
   Multipath(SpatialIndex& index, WorkerPool& workers, const SkipSwitches& skip);
 
-  /// Adds what arrives by way of other surfaces to an echo that is yet to be multiplied with spreading and
-  /// absorption of every line (BinningResult::echo). Leaves out what the settings, SkipRule::multipath and
-  /// SkipRule::bounces say.
+  /// Adds multipath to an echo before spreading and absorption (BinningResult::echo). Settings,
+  /// SkipRule::multipath and SkipRule::bounces can switch parts off.
   /// @param echo [beam * lines + line]
-  /// @throws RendererError when Embree fails.
+  /// @throws RendererError if Embree fails
   void add_to(std::vector<float>& echo, const SonarSettings& settings, const Pose& T_world_sonar,
               SkipCounts& skipped);
 
@@ -46,7 +45,7 @@ class Multipath {
                        const Pose& T_world_sonar, const PathLimits& limits);
   void sum(const RangeLines& range, std::vector<float>& echo);
 
-  const World& world_;  // of the index: bodies are where they were last moved to
+  const World& world_;  // of the index, with bodies at their last poses
   WorkerPool& workers_;
   const SkipSwitches skip_;
   MirrorSurvey survey_;

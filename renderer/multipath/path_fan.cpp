@@ -14,7 +14,7 @@ constexpr double widest_column_rad = 0.25 * degree;
 constexpr double highest_row_rad = 0.16 * degree;
 constexpr double low_weight = 0.25;  // of the elevation pattern
 
-/// Where the pattern has fallen to low_weight, between the axis and the end of the fan.
+/// Elevation at which the pattern has fallen to low_weight, at most the end of the fan.
 double well_ensonified_rad(const Aperture& aperture) {
   double ensonified = 0.0;
   double end = aperture.elevation_limit_rad();

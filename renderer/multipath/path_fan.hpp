@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The directions that sound leaves in and comes back from: the fan as cells for the rays of multipath.
+// The directions in which sound leaves and arrives: the fan as cells for the rays of multipath.
 #pragma once
 
 #include <optional>
@@ -19,30 +19,30 @@ struct FanCell {
 
   double solid_angle() const;
   glm::dvec3 direction() const;     ///< unit
-  glm::dvec3 along_width() const;   ///< by how much it changes from one side of the cell to the other
-  glm::dvec3 along_height() const;  ///< from the lower to the upper end
+  glm::dvec3 along_width() const;   ///< change of direction() from one side of the cell to the other
+  glm::dvec3 along_height() const;  ///< change of direction() from the lower to the upper end
   /// One of columns x rows parts of the cell.
   FanCell part(int column, int row, int columns, int rows) const;
 };
 
-/// A grid of such cells over the fan: columns that divide beams, rows of equal elevation, twice as high where
+/// A grid of cells over the fan: columns divide beams; rows have equal elevation and are twice as high where
 /// the elevation pattern is low.
 class PathFan {
  public:
-  /// @param coarseness how many times wider and higher cells are than they need be.
+  /// @param coarseness factor of width and height of the cells
   explicit PathFan(const Aperture& aperture, double coarseness = 1.0);
 
   int columns() const { return static_cast<int>(columns_.size()); }
   int rows() const { return static_cast<int>(rows_.size()); }
   FanCell cell(int column, int row) const;
-  /// FanCell::direction() of that cell.
+  /// FanCell::direction() of a cell.
   glm::dvec3 direction(int column, int row) const;
-  /// The angle across a cell from corner to corner, of the largest one.
+  /// Diagonal of the largest cell.
   double diagonal_rad() const { return diagonal_rad_; }
 
-  /// The beam of an azimuth; nullopt outside of the fan.
+  /// The beam of an azimuth; nullopt outside the fan.
   std::optional<int> beam_of(double azimuth_rad) const;
-  /// Whether sound is sent and received in this direction, in the sonar frame.
+  /// True if the sonar sends and receives in this direction, in the sonar frame.
   bool contains(const glm::dvec3& direction) const;
   const Aperture& aperture() const { return aperture_; }
   double coarseness() const { return coarseness_; }

@@ -10,11 +10,11 @@ namespace sonard::render {
 
 namespace {
 
-/// A leg begins off its surface by this share of the distance to the sonar, ten times what rounding makes of
-/// it, so that it does not meet that surface again. Nearer than that to an edge, a leg is lost.
+/// A leg begins this share of the distance to the sonar off its surface, ten times the rounding error, so
+/// that it does not hit that surface again. Legs that begin nearer than that to an edge are lost.
 constexpr double lift = 1e-6;
 
-/// A mesh of the water surface, less than this share of the way behind it, is met before it.
+/// A mesh less than this share of the distance behind the water surface counts as before it.
 constexpr double same_surface = 1e-5;
 
 constexpr float flat_cosine = 0.99999F;  // 0.26 degrees
@@ -87,7 +87,7 @@ void PathScene::trace_from_sonar(const Directions& directions, double farthest_m
   }
 }
 
-/// @param met the first surface of a mesh, if any
+/// Compares the first hit of a mesh with the water surface. @param met part no_part: no mesh was hit
 bool PathScene::complete(const glm::vec3& start_m, const glm::dvec3& direction, double farthest_m,
                          const SurfaceHit& met, PathHit& hit) const {
   hit.distance_m = farthest_m;
@@ -99,7 +99,7 @@ bool PathScene::complete(const glm::vec3& start_m, const glm::dvec3& direction, 
   }
   if (water_above_m_ && direction.z > 0) {
     const double to_water_m = (*water_above_m_ - static_cast<double>(start_m.z)) / direction.z;
-    // A mesh of the surface itself comes first, whatever the rounding.
+    // A mesh of the water surface comes first, despite rounding.
     if (to_water_m > 0 && to_water_m * (1 + same_surface) < hit.distance_m) {
       hit.distance_m = to_water_m;
       hit.surface = no_part;
