@@ -24,7 +24,7 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
     if (!fill(b, sums)) {
       ++empty_beams;
       std::fill_n(&result.echo[b * lines], lines, 0.0F);
-      return;  // an empty beam is not asked for its open water
+      return;  // fill() returns false only if open water is not requested
     }
     sums.read(lines, &result.echo[b * lines]);
     if (options.open_water) {
@@ -41,7 +41,7 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
 
 BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
                           WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of) {
-  // The bound of a mean's weights, or exactly what the beam sees.
+  // Upper bound of the weights of a mean, or the exact solid angle of the beam.
   const double height =
       options.open_water ? aperture.pattern_height() : 2 * std::sin(aperture.elevation_limit_rad());
   const auto fill = [&](std::size_t beam, BeamSums& sums) {
@@ -51,7 +51,8 @@ BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, con
     if (options.skip.on(SkipRule::empty_beams) && !options.open_water && patches.empty()) {
       return false;
     }
-    // What a beam holds in fact: the echo of a bed at grazing incidence keeps its digits.
+    // The actual echo of the beam as bound, so that weak echoes of a bed at grazing incidence keep their
+    // digits.
     double echo = 0.0;
     for (const EchoPatch& patch : patches) {
       echo += std::isfinite(patch.echo) ? static_cast<double>(patch.echo) : 0.0;

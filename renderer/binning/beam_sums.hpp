@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sums of beams: patches in, lines out. Its loops are part of what includes it, to be vectorised there.
+// The sums of beams: patches in, lines out. Inline, so that its loops are vectorised in each file that
+// includes it.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +17,11 @@
 
 namespace sonard::render {
 
-/// One beam's accumulators, and the memory of one thread.
+/// Accumulators of one beam; each thread reuses one object.
 class BeamSums {
  public:
-  /// @param solid_angle of the beam.
-  /// @param most_echo that will be added.
+  /// @param solid_angle of the beam, steradians
+  /// @param most_echo upper bound of the total echo that will be added
   void reset(const RangeLines& range, double solid_angle, double most_echo, const BinningOptions& options) {
     lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
@@ -76,7 +77,7 @@ class BeamSums {
     }
   }
 
-  /// What is still open in the middle of every line; after read().
+  /// Writes the open solid angle in the middle of every line, steradians; call it after read().
   void read_open(float* out) const {
     double open = static_cast<double>(solid_angle_);
     for (std::size_t k = 0; k < weights_.size(); ++k) {
@@ -96,29 +97,28 @@ class BeamSums {
   double lines_per_m_ = 1.0;
   float solid_angle_ = 1.0F;
   bool mean_ = false;
-  bool weighs_ = false;  ///< the weights are summed too
+  bool weighs_ = false;  ///< weights are summed too
 };
 
-/// Resets the sums and adds all that a beam receives, in the thread that will read them.
-/// @return false: the beam is empty, has no open water, and the sums are as they were
+/// Resets the sums and adds all patches of a beam, in the thread that reads them afterwards.
+/// @return false: the beam is empty, open water is not requested, and the sums are unchanged
 using FillBeam = std::function<bool(std::size_t beam, BeamSums& sums)>;
 
-/// Fills every beam, each in one job, and collects what it summed. A beam has one owner, so nothing depends
+/// Fills every beam, each in one job, and collects the sums. One thread owns a beam, so results do not depend
 /// on the number of threads.
-/// @param memory for BinningResult::echo, whatever it holds: saves allocating a megabyte for every
-/// ping.
+/// @param memory reused for BinningResult::echo, with any contents: saves allocating a megabyte per ping
 BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
                         WorkerPool& workers, std::vector<float> memory, const FillBeam& fill);
 
-/// Puts what a beam receives into `patches`, which are empty. Any thread.
+/// Puts the patches of a beam into `patches`, which is empty. Runs on any thread.
 using PatchesOfBeam = std::function<void(std::size_t beam, std::vector<EchoPatch>& patches)>;
 
-/// Each beam in one job from its patches to its lines: they are summed while they are in the cache.
-/// @param memory as of bin_beams()
+/// Makes and sums the patches of each beam in one job, so that they are summed while they are in the cache.
+/// @param memory see bin_beams()
 BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
                           WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of);
 
-/// What lies in `columns`, told apart by cones around the array of BinningOptions::cone_aperture.
+/// Bins the patches in `columns`; beams are cones around the array of BinningOptions::cone_aperture.
 BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
                            const BinningOptions& options, WorkerPool& workers, std::vector<float> memory);
 

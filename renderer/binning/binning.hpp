@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How patches become an image, and the image with what it took.
+// Options and result of binning, which makes an image of patches.
 #pragma once
 
 #include <cstdint>
@@ -16,35 +16,34 @@ struct BinningOptions {
   bool footprint = true;          ///< false: a sample is a point in range
   bool legacy_bin_index = false;  ///< docs/physics.md 1.2, A4; only with footprint = false
   bool open_water = false;        ///< fill BinningResult::open_sr; not with `mean`
-  float largest_response = 1.0F;  ///< of any sample of a grid; sets how fine the sums are
-  /// Beams are told apart by cones, and these are the beams (ConeBearings); null: by azimuth. With
-  /// footprints.
+  float largest_response = 1.0F;  ///< of any sample of a grid; sets the resolution of the sums
+  /// The beams, if they are cones (ConeBearings); null: beams are azimuths. Only with footprints.
   const Aperture* cone_aperture = nullptr;
-  SkipSwitches skip{};  ///< for SkipRule::empty_beams, of slices
+  SkipSwitches skip{};  ///< for SkipRule::empty_beams, with slices
 };
 
-/// Means are not taken where less than this share of a beam is seen: there the weights are mostly rounding.
+/// Share of a beam in a line below which its mean is 0: smaller weights are mostly rounding.
 inline constexpr float least_share = 0x1p-32F;
-/// A beam that is open to less than this share is blocked: what remains is the error of the solid angles.
+/// Open share of a beam below which it is blocked: the rest is the error of the solid angles.
 inline constexpr double least_open = 2e-3;
 
 struct BinningResult {
   int beams = 0;
   int lines = 0;
-  std::vector<float> echo;     ///< [beam * lines + line], as the image of MeanEcho
+  std::vector<float> echo;     ///< [beam * lines + line], see MeanEcho::image
   std::vector<float> open_sr;  ///< see MeanEcho::open_sr
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
-  std::uint64_t saturated_samples = 0;  ///< of GpuBinner: echoes beyond what its sums hold, taken as that
+  std::uint64_t saturated_samples = 0;  ///< GpuBinner only: echoes clamped to the range of its sums
   SkipCounts skipped;
-  double shading_s = 0.0;  ///< of slices: the part of the time in which patches were made
+  double shading_s = 0.0;  ///< slices only: time in which patches were made
 };
 
-/// How the image of a request is binned.
+/// Options for the image of a request.
 /// @param largest_response of any surface of the world
 BinningOptions binning_options(const EchoRequest& request, const SkipSwitches& skip, float largest_response);
 
-/// Makes a mean echo of what was binned, and adds what binning has counted to the statistics.
+/// Moves a result into a mean echo and adds its counts to the statistics.
 void hand_over(BinningResult&& bins, MeanEcho& echo, PingStatistics& statistics);
 
 }  // namespace sonard::render

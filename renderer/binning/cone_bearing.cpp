@@ -9,18 +9,18 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double most_move = 0.25;  // of a beam, within one part of a patch
+constexpr double most_move = 0.25;  // change of bearing within one part of a patch, in beams
 
 double cosine_of(double tangent) {
   return 1 / std::sqrt(1 + tangent * tangent);
 }
 
-/// The part of a patch from share `from` to share `to` of the way from its end a to its end b, and `share` of
-/// that.
+/// `share` of the part of a patch between the fractions `from` and `to` of the way from its end a to its end
+/// b.
 EchoPatch part_of(const EchoPatch& patch, float from, float to, float share) {
   const auto between = [](float a, float b, float at) { return a + (b - a) * at; };
   const float length = to - from;
-  // Per metre echo and weight rise in a straight line.
+  // Echo and weight per metre are linear.
   const auto mean = [&](float gradient) { return 1 + gradient * (from + to - 1); };
   EchoPatch part = patch;
   part.range_a_m = between(patch.range_a_m, patch.range_b_m, from);
@@ -57,7 +57,7 @@ void ConeBearings::patches_of(int beam, std::vector<EchoPatch>& patches) const {
   const auto b = static_cast<std::size_t>(beam);
   const double port = edges_sine_[b];
   const double starboard = edges_sine_[b + 1];
-  // What lies off the horizontal appears nearer to the axis.
+  // Patches off the horizontal appear nearer to the axis.
   const double farthest_port = port > 0 ? port / least_cosine_ : port;
   const double farthest_starboard = starboard < 0 ? starboard / least_cosine_ : starboard;
   patches.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bearing that a straight array measures: the angle of a cone around it, not the azimuth.
+// The bearing that a straight array measures: the angle of a cone around the array instead of the azimuth.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,23 @@
 
 namespace sonard::render {
 
-/// Patches of some azimuths.
+/// Patches between two azimuths.
 struct PatchColumn {
   double port_rad = 0.0, starboard_rad = 0.0;
   const EchoPatch* begin = nullptr;
   const EchoPatch* end = nullptr;
 };
 
-/// Sorts what is seen into beams by sin psi_c = sin psi cos theta (docs/physics.md 2.5). A patch is divided
-/// along its elevations, so finely that each part moves by less than a quarter of a beam, and each part is
-/// shared among beams evenly over its azimuths, at its own mean range.
+/// Sorts patches into beams by sin psi_c = sin psi cos theta (docs/physics.md 2.5). A patch is divided along
+/// its elevations so finely that the bearing of each part varies by less than a quarter of a beam. Each part
+/// is distributed over beams evenly over its azimuths, at its own mean range.
 class ConeBearings {
  public:
-  /// @param columns side by side in any order, within 90 degrees of the axis; they outlive this object
+  /// @param columns adjacent, in any order, within 90 degrees of the axis; their patches must outlive this
+  /// object
   ConeBearings(const Aperture& aperture, std::vector<PatchColumn> columns);
 
-  /// Replaces `patches` by what beam `beam` receives.
+  /// Replaces `patches` by the patches of one beam.
   void patches_of(int beam, std::vector<EchoPatch>& patches) const;
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What visibility hands to binning: bits of visible surface, each within one beam.
+// Output of the visibility stage and input of binning: pieces of visible surface, each within one beam.
 #pragma once
 
 namespace sonard::render {
 
-/// A bit of surface that is seen between two elevations over some azimuth. At each azimuth its echo is spread
-/// between the ranges of its two ends, evenly or rising in a straight line, and the range of each end runs
-/// evenly over its smear as the azimuth goes from one side to the other. A pixel of a grid is one with equal
-/// smears (docs/physics.md 2.3); facets have ends that run as their edges do.
+/// A piece of surface between two elevations, over a span of azimuths. At each azimuth its echo is spread
+/// between the ranges of its two ends, evenly or linearly rising. From one side of the azimuths to the other,
+/// the range of each end changes linearly by its smear. A pixel of a grid has equal smears (docs/physics.md
+/// 2.3); the ends of a facet follow its edges.
 struct EchoPatch {
   float range_a_m = 0.0F, range_b_m = 0.0F;  ///< of the ends, in the middle of the azimuth; in any order
   float smear_a_m = 0.0F, smear_b_m = 0.0F;  ///< >= 0

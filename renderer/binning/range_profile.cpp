@@ -11,9 +11,9 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int vector_lines = 4;                // a smeared step is added so many lines at a time
+constexpr int vector_lines = 4;                // lines of a smeared step that are added at a time
 constexpr float least_smear = 1e-3F;           // lines; below, a step is sharp
-constexpr double least_spread = 1e-3;          // lines; what is narrower is widened to this
+constexpr double least_spread = 1e-3;          // lines; narrower amounts are widened to this
 constexpr float widest_smear = 512.0F;         // lines; surfaces seen edge-on carry no energy
 constexpr double total_units = 0x1p40;         // of `largest`; a patch of least_spread stays below 2^51
 constexpr double round_to_integer = 0x1.8p52;  // adding and subtracting it rounds a double below 2^51
@@ -22,10 +22,10 @@ inline double rounded(double value) {
   return (value + round_to_integer) - round_to_integer;
 }
 
-/// Adds what a smeared step makes of four differences; most steps change three at most. The step begins
-/// `from` lines after the first of them; before that one, it has none. Written as a vector, for left to
-/// itself, the compiler makes several; of four, as AVX2 has: one that is wider than the registers goes
-/// through the stack, operation by operation.
+/// Adds a smeared step to four differences; most steps change at most three. The step begins `from` lines
+/// after the first of them; if `from` is negative, earlier calls have added its first part. An explicit
+/// vector, because the compiler alone makes several; of four numbers, as in AVX2, because wider vectors than
+/// the registers go through the stack at each operation.
 [[gnu::always_inline]] inline void add_smeared_step(double from, double smear, double density,
                                                     double* difference) {
   using Lines = double __attribute__((vector_size(vector_lines * sizeof(double))));
@@ -48,7 +48,7 @@ inline double rounded(double value) {
   const Lines sum = (density * (after - here) + round_to_integer) - round_to_integer;
   Lines changed;
   std::memcpy(&changed, difference, sizeof changed);
-  // Lines beyond the step hold all of it, free of rounding.
+  // Lines beyond the step get exactly its whole height, without rounding.
   changed += (y >= to ? whole : sum) - (y - 1 >= to ? whole : last);
   std::memcpy(difference, &changed, sizeof changed);
 }
@@ -66,12 +66,12 @@ void RangeProfile::reset(std::size_t lines, double largest) {
   open_density_ = 0.0;
 }
 
-// With all that it calls, so that the vectors of a patch are one function's.
+// Flattened, so that the vectors of a patch stay within one function.
 [[gnu::flatten]] SONARD_SIMD_CLONES void RangeProfile::add(double position_a, float smear_a,
                                                            double position_b, float smear_b, float amount,
                                                            float relative_gradient) {
-  // Two ends become one step where they are the same. The patch then begins where the last one ended, before
-  // its spread is taken: moving an end afterwards would change the amount.
+  // Equal ends become one step. The patch is moved to the end of the last one before its spread is computed:
+  // moving an end afterwards would change the amount.
   const bool joined = open_density_ != 0.0 && std::abs(open_position_ - position_a) < least_spread &&
                       std::abs(open_smear_ - smear_a) < least_smear * (1 + smear_a);
   if (joined) {
@@ -83,7 +83,7 @@ void RangeProfile::reset(std::size_t lines, double largest) {
     spread = std::copysign(least_spread, spread);
     position_b = position_a + spread;
   }
-  // Negative where the far end comes first: the two steps then change places by themselves.
+  // Negative if the far end comes first; the signs of the two steps then swap.
   const double mean = static_cast<double>(amount) * units_ / spread;
   const bool has_gradient = relative_gradient != 0.0F && position_a >= 0 && position_b >= 0;
   const double change = has_gradient ? mean * static_cast<double>(relative_gradient) : 0.0;
@@ -102,16 +102,16 @@ void RangeProfile::reset(std::size_t lines, double largest) {
   }
 }
 
-/// Lets the density rise from one position to the other.
-/// @return by how much, a whole number as everything that is added.
+/// Adds a linear rise of the density from one position to another.
+/// @return the rise, a whole number of units
 double RangeProfile::add_gradient(double from, double to, double slope) {
   has_slope_ = true;
   return add_slope_change(from, slope) + add_slope_change(to, -slope) +
          slope * (std::floor(to) - std::floor(from));
 }
 
-/// From here on the density rises.
-/// @return what the n-th line after that of the position has beside slope * n.
+/// Adds a change of the density's slope at a position.
+/// @return the offset c: the n-th line after the position's line gets slope * n + c
 double RangeProfile::add_slope_change(double position, double slope) {
   const double line = std::floor(position);
   const double left = line + 1 - position;
@@ -161,9 +161,9 @@ void RangeProfile::step(double position, float smear, double density) {
   } while (offset + wide > -1 && line < lines_);
 }
 
-/// A step that begins before the first line and ends after its beginning.
+/// Adds a step that begins before the first line and ends behind its beginning.
 void RangeProfile::step_from_before(double from, double smear, double density) {
-  // Integral from -infinity to the beginning of line k.
+  // Integral of the step from -infinity to the beginning of line k.
   const auto integral_to = [&](std::size_t k) {
     const double y = static_cast<double>(k) - from;
     const double rising = std::clamp(y, 0.0, smear);
@@ -192,13 +192,12 @@ void RangeProfile::add_point(double position, float amount) {
   difference_[line + 1] -= units;
 }
 
-// Where the ends of a patch cross, it holds less than nothing on one side and as much too much on the other.
-// Its neighbours make up for that; where they do not, the lines beside it do, so that the beam has all of its
-// echo.
+// If the ends of a patch cross, it is negative on one side and as much too large on the other. Neighbouring
+// patches usually compensate this; otherwise the lines beside it do, so that the beam keeps its whole echo.
 void RangeProfile::read(float* lines) const {
   const double unit = 1.0 / units_;  // a power of two
   double missing = 0.0;
-  std::size_t end = 0;  // of the lines before that can give
+  std::size_t end = 0;  // end of the earlier lines from which a deficit can be taken
   const auto write = [&](std::size_t k, double sum) {
     double left = sum * unit - missing;
     lines[k] = left > 0 ? static_cast<float>(left) : 0.0F;
@@ -213,7 +212,7 @@ void RangeProfile::read(float* lines) const {
       end -= left > 0 ? 0 : 1;
     }
     if (left < 0 && sum != 0) {
-      missing = -left;  // the next lines give
+      missing = -left;  // taken from the next lines
     }
   };
   double sum = 0.0;
