@@ -14,13 +14,13 @@ namespace sonard::render {
 
 namespace {
 
-/// What of a pixel counts: a parallelogram, its centre relative to the pixel's, tangent units.
+/// The part of a pixel that counts: a parallelogram, its centre relative to the pixel's, tangent units.
 struct Cell {
   float x_offset, y_offset, width, height;
   float slope;  ///< dy/dx of its upper and lower side
 };
 
-/// The echo of `cell` of the pixel at tangents (x, y): two independent even spreads, along its two sides.
+/// The echo of `cell` of the pixel at tangents (x, y), spread evenly and independently along its two sides.
 EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& cell, float weight) {
   RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
   if (cell.x_offset != 0 || cell.y_offset != 0) {
@@ -44,9 +44,9 @@ EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& ce
           tangent};
 }
 
-/// The patches of one column of one beam, cut at the beam's edges and the elevation limit: a pixel is not one
-/// range but the span its cell covers on the plane it hit (docs/physics.md 2.3).
-/// @return the number of samples that were marked invalid.
+/// Makes the patches of one column of one beam, cut at the beam's edges and the elevation limit. A pixel
+/// covers the range span of its cell on the plane that it hit (docs/physics.md 2.3).
+/// @return number of samples marked invalid
 std::uint64_t make_patches(const SampleGrid& grid, const std::vector<const SurfaceSample*>& views,
                            const ColumnPart& part, const float* weights, std::vector<EchoPatch>& patches) {
   const SubView& view = grid.views[static_cast<std::size_t>(part.view)];
@@ -89,7 +89,7 @@ void add_points(const SampleGrid& grid, const std::vector<const SurfaceSample*>&
   }
 }
 
-/// The part of a column, with its patches.
+/// Azimuths and patches of a part of a column.
 PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std::vector<EchoPatch>& patches) {
   return {grid.port_rad(part), grid.starboard_rad(part), patches.data(), patches.data() + patches.size()};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a grid -> echo per beam and range line.
+// From samples of a grid to echo per beam and range line.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,11 @@
 
 namespace sonard::render {
 
-/// Sums of a grid. Sums are exact (RangeProfile), so the result is the same for any number of threads.
-/// @param weights of the grid.
-/// @param views the samples of every view, row after row as SubView orders them.
-/// @param memory as of bin_beams()
+/// Bins the samples of a grid. Sums are exact (RangeProfile), so the result is the same for any number of
+/// threads.
+/// @param weights of the grid
+/// @param views the samples of every view, row after row in the order of SubView
+/// @param memory see bin_beams()
 BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
                          const std::vector<const SurfaceSample*>& views, const RangeLines& range,
                          const BinningOptions& options, WorkerPool& workers, std::vector<float> memory = {});

@@ -9,16 +9,17 @@
 
 namespace sonard::render {
 
-/// Grids cost more to make than a ping: the last one is kept for as long as the same aperture is asked for.
+/// Keeps the last grid until another aperture or sampling is requested, because a grid costs more than a
+/// ping.
 class GridCache {
  public:
-  /// Makes the grid that the settings ask for.
-  /// @param may_keep the cached grid may be used if it is equal.
-  /// @return whether it was used; otherwise rebuild what was made of it.
-  /// @throws RequestError as make_sample_grid()
+  /// Provides the grid for the settings.
+  /// @param may_keep the cached grid may be used if it is equal
+  /// @return true if the cached grid was used; false: rebuild everything that was made from it
+  /// @throws RequestError see make_sample_grid()
   bool prepare(const SonarSettings& settings, bool may_keep);
   const SampleGrid& grid() const { return grid_; }
-  /// Worked out when first asked for.
+  /// Weights of the grid, computed on first use.
   const CellWeights& weights() {
     if (!weights_) {
       weights_.emplace(grid_);

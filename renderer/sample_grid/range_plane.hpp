@@ -10,8 +10,8 @@ namespace sonard::render {
 struct RangePlane {
   float range, dx, dy;
 
-  /// From the ray at tangents (x, y) to that at (x + x_offset, y + y_offset). On a plane the inverse depth is
-  /// affine in x and y, so what holds there follows exactly.
+  /// Moves from the ray at tangents (x, y) to the ray at (x + x_offset, y + y_offset). On a plane the inverse
+  /// depth is affine in x and y, so the result is exact.
   void move(float x, float y, float x_offset, float y_offset) {
     const float qq = 1 + x * x + y * y;
     // Relative slopes of the inverse depth, from equation (2) of docs/physics.md 2.3.
@@ -19,7 +19,7 @@ struct RangePlane {
     const float slope_y = y / qq - dy / range;
     const float inverse_depth = 1 + slope_x * x_offset + slope_y * y_offset;
     if (inverse_depth < 0.5F) {
-      return;  // the plane turns away within the pixel: keep the pixel's own values
+      return;  // the plane turns away within the pixel: keep the values of the pixel
     }
     const float to_x = x + x_offset;
     const float to_y = y + y_offset;

@@ -14,8 +14,8 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double widest_single_view_rad = 2.8;  // planar projection ends below pi
-constexpr double most_samples = 0x1p27;         // 2 GiB of them
+constexpr double widest_single_view_rad = 2.8;  // a planar view must be narrower than pi
+constexpr double most_samples = 0x1p27;         // 2 GiB of samples
 
 void check(const Sampling& sampling) {
   if (sampling.views < 1 || sampling.columns_per_view < 1 || sampling.rows < 1 || sampling.views > 64 ||
@@ -51,8 +51,8 @@ SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, cons
   SubView view;
   view.azimuth_rad = (span.port_rad + span.starboard_rad) / 2;
   view.tan_half_width = std::tan(half);
-  // The elevation limit is highest in the plane of the view at its sides. Without the mask the paper's
-  // frustum is kept: the limit holds on the axis only.
+  // In the plane of the view the elevation limit is highest at the sides. Without the mask the view is the
+  // paper's frustum, where the limit holds on the axis only.
   view.tan_half_height =
       std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
   view.columns = span.columns;
@@ -60,7 +60,7 @@ SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, cons
   return view;
 }
 
-/// Builds the parts of one aperture; a class only to keep the running vectors together.
+/// Builds the parts of one aperture.
 class GridBuilder {
  public:
   GridBuilder(const Aperture& aperture, const GridOptions& options, SampleGrid& grid)
@@ -69,7 +69,7 @@ class GridBuilder {
     grid_.beam_parts.push_back(0);
   }
 
-  /// @throws RequestError when a beam gets no column.
+  /// @throws RequestError if a beam gets no column
   void add_run(const BeamRun& run) {
     const std::size_t first_view = grid_.views.size();
     for (const ViewSpan& span : run.views) {
@@ -86,12 +86,12 @@ class GridBuilder {
   }
 
  private:
-  /// From the views from `first_view` on.
+  /// Adds the parts of one beam from the views `first_view` and later.
   void add_beam(std::size_t first_view, double port_edge_rad, double starboard_edge_rad) {
     for (std::size_t v = first_view; v < grid_.views.size(); ++v) {
       const SubView& view = grid_.views[v];
       const double half = std::atan(view.tan_half_width);
-      // Azimuth to starboard of the view axis; edges outside the view are cut at its side.
+      // Azimuth from the view axis, positive to starboard; edges outside the view are clamped to its side.
       const double from = std::clamp(view.azimuth_rad - port_edge_rad, -half, half);
       const double to = std::clamp(view.azimuth_rad - starboard_edge_rad, -half, half);
       if (to > from) {
@@ -149,7 +149,7 @@ class GridBuilder {
     part.row_begin = std::clamp(static_cast<int>(std::floor(row_of(-limit) + 1e-9)), 0, view.rows - 1);
     part.row_end =
         std::clamp(static_cast<int>(std::ceil(row_of(limit) - 1e-9)), part.row_begin + 1, view.rows);
-    // What of a row lies between the limits: its middle relative to the pixel's, and its height.
+    // The part of a row between the limits: its middle relative to the pixel's, and its height.
     const auto cut = [&](int row, float& offset, float& height) {
       const double bottom = -view.tan_half_height + row * step;
       const double from = std::max(bottom, -limit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the fan is sampled: side-by-side planar views, what their pixels see, and which part of which pixel
-// belongs to which beam.
+// Sampling of the fan: adjacent planar views, the samples of their pixels, and the parts of pixels that
+// belong to each beam.
 #pragma once
 
 #include <numbers>
@@ -10,7 +10,7 @@
 
 namespace sonard::render {
 
-/// Beyond, pixels of one planar view grow too unequal (docs/physics.md 1.3).
+/// Widest view; in wider planar views the pixels are too unequal (docs/physics.md 1.3).
 inline constexpr double widest_view_rad = std::numbers::pi / 3;
 
 /// One planar view. A ray of the view is q(x, y) = axis + x * starboard + y * up with tangents x and y;
@@ -28,11 +28,11 @@ struct SubView {
   double pixel_height() const { return 2 * tan_half_height / rows; }
 };
 
-/// What is seen along the ray of one pixel. With q the un-normalised ray of SubView, range_dx and range_dy
-/// are the signed derivatives of the range along the tangents x and y on the plane of the surface hit
-/// (docs/physics.md 2.3, equation 2); they use the geometric normal, never the shading normal.
+/// The first surface on the ray of one pixel. With q the un-normalised ray of SubView, range_dx and range_dy
+/// are the signed derivatives of the range by the tangents x and y on the plane of the surface hit
+/// (docs/physics.md 2.3, equation 2). They use the geometric normal, never the shading normal.
 struct SurfaceSample {
-  float range_m = 0.0F;   ///< slant range to the first surface; 0: nothing seen
+  float range_m = 0.0F;   ///< slant range to the first surface; 0: no surface; < 0: invalid
   float response = 0.0F;  ///< echo per solid angle at unit range; see SurfaceModel
   float range_dx = 0.0F;  ///< metres per unit tangent
   float range_dy = 0.0F;
@@ -40,8 +40,7 @@ struct SurfaceSample {
   bool operator==(const SurfaceSample&) const = default;
 };
 
-/// The part of one pixel column that lies inside one beam, cut at the beam's edges and at the elevation
-/// limit.
+/// The part of one pixel column inside one beam, cut at the beam's edges and at the elevation limit.
 struct ColumnPart {
   int view = 0;
   int column = 0;
@@ -56,42 +55,42 @@ struct ColumnPart {
   float limit_slope = 0.0F;
 };
 
-/// The sampling of one aperture: pure geometry, made once per configuration and shared by both samplers.
+/// The sampling of one aperture: pure geometry, made once per configuration, the same for CPU and GPU.
 struct SampleGrid {
-  Aperture aperture;  ///< of all beams; the grid may be of some of them only
+  Aperture aperture;  ///< of all beams; the grid may cover only some of them
   std::vector<SubView> views;
   std::vector<ColumnPart> parts;  ///< sorted by beam
   std::vector<int> beam_parts;    ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
 
   int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
-  /// Tangent of the middle of a part, in its view.
+  /// Tangent x of the middle of a part, in its view.
   double middle(const ColumnPart& part) const;
   /// Azimuths of the middle of a part's column, and of the two sides of the part.
   double column_rad(const ColumnPart& part) const;
   double port_rad(const ColumnPart& part) const;
   double starboard_rad(const ColumnPart& part) const;
-  /// Solid angle times elevation pattern of what of the pixel in this row lies in the part, steradians.
+  /// Solid angle times elevation pattern of the part's piece of the pixel in this row, steradians.
   float weight(const ColumnPart& part, int row) const;
-  /// Number of pixels, each counted once for every part that it has.
+  /// Number of cells: pixels, each counted once per part.
   std::size_t cell_count() const;
 };
 
-/// SampleGrid::weight() of all cells, for who bins on the CPU: with an elevation pattern they cost more than
-/// a ping.
+/// SampleGrid::weight() of all cells, for binning on the CPU: with an elevation pattern they cost more than a
+/// ping.
 class CellWeights {
  public:
   explicit CellWeights(const SampleGrid& grid);
-  /// Those of a part, from its first row on.
+  /// Weights of a part, from its first row on.
   const float* of(std::size_t part) const { return &weights_[first_[part]]; }
-  /// The sum of those of the parts [begin, end).
+  /// Sum of the weights of the parts [begin, end).
   double sum(std::size_t begin, std::size_t end) const;
 
  private:
   std::vector<float> weights_;
-  std::vector<std::size_t> first_;  ///< of each part, and where the last one ends
+  std::vector<std::size_t> first_;  ///< first weight of each part, then the number of weights
 };
 
-/// How the fan is cut into pixels. The defaults are what accuracy wants; the others reproduce the paper.
+/// Division of the fan into pixels. The defaults are accurate; other values reproduce the paper.
 struct GridOptions {
   bool whole_columns = false;  ///< a column belongs to the beam that holds its centre
   bool elevation_mask = true;  ///< false: every row of a column counts
@@ -99,39 +98,39 @@ struct GridOptions {
   bool operator==(const GridOptions&) const = default;
 };
 
-/// Whether only a grid of pixels gives what is asked for: a fixed grid, samples without footprints, or one of
-/// the paper's variants of these.
+/// True if the settings require a grid of pixels: a fixed grid, samples without footprints, or one of the
+/// paper's variants.
 bool needs_grid(const SonarSettings& settings);
 
-/// What the model of `settings` asks for.
+/// Options for the model of `settings`.
 GridOptions grid_options(const SonarSettings& settings);
 
-/// @throws RequestError when the aperture or the sampling cannot be gridded, or when a beam would get no
-/// column.
+/// The sampling of all beams.
+/// @throws RequestError if aperture or sampling are out of range, or if a beam gets no column
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling,
                             const GridOptions& options = {});
 
-/// A view of some azimuths.
+/// A view between two azimuths.
 struct ViewSpan {
   double port_rad = 0.0, starboard_rad = 0.0;
   int columns = 1;
 };
 
-/// Neighbouring beams that have views of their own.
+/// Neighbouring beams with views that no other beams share.
 struct BeamRun {
   int begin = 0, end = 0;       ///< beams [begin, end) of the aperture, at least one
-  std::vector<ViewSpan> views;  ///< from port to starboard; together the azimuths of the beams
+  std::vector<ViewSpan> views;  ///< from port to starboard; together they span the beams
   int rows = 1;
 
   double samples() const;
 };
 
-/// The sampling of some beams only. The beams of the grid are those of the runs, one run after the other.
-/// @param runs in the order of the beams, none twice; no view wider than 60 degrees.
-/// @throws RequestError when a beam gets no column.
+/// The sampling of some beams only: the beams of the runs, one run after the other.
+/// @param runs in the order of the beams, without repetitions; no view wider than 60 degrees
+/// @throws RequestError if a beam gets no column
 SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs);
 
-/// Some beams of a grid, [begin, end) of it, in the same views.
+/// The beams [begin, end) of a grid, with the same views.
 SampleGrid part_of(const SampleGrid& grid, int begin, int end);
 
 }  // namespace sonard::render
