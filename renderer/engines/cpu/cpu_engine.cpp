@@ -20,7 +20,7 @@ std::unique_ptr<SpatialIndex> bendable_index(const World& world, WorkerPool& wor
              : std::make_unique<SpatialIndex>(refractable(world, curvature_per_m), workers);
 }
 
-/// Facets that were divided so that they bend with the rays are not to be merged again.
+/// Keeps facets apart that were divided so that they bend with the rays.
 SkipSwitches slice_switches(const RendererOptions& options) {
   SkipSwitches switches = options.skip;
   return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that needs no graphics: exact visibility in azimuth slices for presets, rays for fixed grids.
+// The engine without graphics: exact visibility in azimuth slices for presets, rays for fixed grids.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ namespace sonard::render {
 
 class CpuEngine final : public EchoEngine {
  public:
-  /// @param index where the world is moved. Only a fixed grid traces rays through it.
-  /// @param workers outlives the engine, as the index does.
+  /// @param index moves the world; only a fixed grid traces rays through it. It must outlive the engine.
+  /// @param workers must outlive the engine
   CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
 
   void images(std::span<const EchoJob> jobs) override;
@@ -39,7 +39,7 @@ class CpuEngine final : public EchoEngine {
   const float largest_response_;
   WorkerPool& workers_;
   std::unique_ptr<SpatialIndex>
-      bendable_;  ///< the world in facets that bend with the rays; null: they do not
+      bendable_;  ///< the world with facets that bend with the rays; null without refraction
   SliceSampler slices_;
   RaySampler rays_;
   GridCache grid_;

@@ -11,7 +11,7 @@ namespace sonard::render {
 
 namespace {
 
-/// For x from -80 to 0, to 2e-7; std::exp() is a call, which no loop is vectorised around.
+/// exp(x) for x from -80 to 0, accurate to 2e-7; a call of std::exp() would prevent vectorisation.
 inline float exp_of_negative(float x) {
   const float y = x * 1.44269504F;
   const auto whole = static_cast<std::int32_t>(y - 0.5F);
@@ -21,8 +21,8 @@ inline float exp_of_negative(float x) {
   return series * std::bit_cast<float>((whole + 127) << 23);
 }
 
-/// Backscatter::facets() as a function of the squared cosine, without branches: a negligible response is
-/// 1e-25, also for what is not a number.
+/// Backscatter::facets() as a function of the squared cosine, without branches. A negligible response is
+/// 1e-25, also for NaN.
 inline float facets(float c2, float strength, float variance) {
   constexpr float grazing = 1e-4F, as_good_as_none = 80.0F;
   const float k2 = c2 > grazing ? (c2 < 1 ? c2 : 1.0F) : grazing;
@@ -35,7 +35,7 @@ inline float facets(float c2, float strength, float variance) {
 
 void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std::vector<PartSurface>& parts,
                           bool everywhere) {
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // responds_ grows last: if memory runs out before, the next call tries all again.
   if (visible.size() > responds_.size()) {
     for (auto* array : {&strength_, &variance_, &least_cosine_, &slopes_per_t_, &slopes_across_, &mean_,
                         &moment_, &gradient_, &responds_}) {
@@ -51,8 +51,9 @@ void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std:
   }
 }
 
-/// From how direction d and normal n, both of unit length, change in the middle: off a mirror they differ by
-/// d - n or d + n. Incidences up to half of the turn away respond too: cos(phi - a) <= cos phi + a sin phi.
+/// Computed from the changes of direction d and normal n, both of unit length, in the middle; re a mirror
+/// they differ by d - n or d + n. Incidences up to half the turn away count too: cos(phi - a) <= cos phi + a
+/// sin phi.
 SONARD_SIMD_CLONES
 void FacetArrays::find_turns(const VisibleArrays& visible, const NormalArrays& normals, float width_rad) {
   const float* __restrict low = visible.low.data();
@@ -74,7 +75,7 @@ void FacetArrays::find_turns(const VisibleArrays& visible, const NormalArrays& n
     const float facing = std::copysign(per_n, product);
     const float u_h = n_h * per_n, u_s = n_s * per_n, u_z = n_z * per_n;
     // Along: d changes by the part of (0, 0, 1) across d, n by the part of per_t across n.
-    const float d_t = t * per_d * per_d;  // (0, 0, 1) . d, over the length of q
+    const float d_t = t * per_d * per_d;  // (0, 0, 1) . d, divided by the length of q
     const float n_t = u_h * t_h[i] + u_s * t_s[i] + u_z * t_z[i];
     const float a_h = -d_t * per_d - (t_h[i] - u_h * n_t) * facing;
     const float a_s = -(t_s[i] - u_s * n_t) * facing;

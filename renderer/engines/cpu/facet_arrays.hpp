@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facets of all segments of a slice at once, as arrays, because loops over them are vectorised.
+// Facets of all segments of a slice, as arrays for vectorised loops.
 #pragma once
 
 #include <cmath>
@@ -12,28 +12,27 @@
 
 namespace sonard::render {
 
-/// What FacetSight says of one segment, from three samples along it and three across the wedge. That is
-/// enough where facets turn little across; is_wide() says where it is not. Arrays never shrink.
+/// The results of FacetSight for all segments, from three samples along a segment and three across the wedge.
+/// That is accurate unless is_wide(). Arrays never shrink.
 class FacetArrays {
  public:
-  /// @param everywhere facets are added whatever the incidence
+  /// @param everywhere facets are added at any incidence
   void lay_out(const std::vector<VisibleSegment>& visible, const std::vector<PartSurface>& parts,
                bool everywhere);
 
-  /// How the direction of the echo turns, and where facets may respond.
+  /// Finds turns of the echo's direction, and segments whose facets may respond.
   void find_turns(const VisibleArrays& visible, const NormalArrays& normals, float width_rad);
   /// Finds mean(), moment() and gradient().
   void respond(const VisibleArrays& visible, const NormalArrays& normals, float width_rad);
 
-  /// False only where all facets between both ends and both sides echo less than SkipRule::facet_kernel
-  /// allows.
+  /// False only if all facets of the segment, between both sides of the wedge, echo less than
+  /// SkipRule::facet_kernel allows.
   bool may_respond(std::size_t i) const { return responds_[i] > 0; }
-  /// Of each segment, by how many rms slopes m the direction of the echo, against that of a mirror, changes
-  /// over a height of 1 in t.
+  /// Per segment: turn of the echo's direction, re the direction of a mirror, in rms slopes m per unit of t.
   const float* slopes_per_t() const { return slopes_per_t_.data(); }
-  /// By how much that direction changes across the wedge, radians.
+  /// Turn of that direction across the wedge, radians.
   float turn_across_rad(std::size_t i) const { return slopes_across_[i] * std::sqrt(variance_[i]); }
-  /// Whether the echo changes more across the wedge than three samples can tell.
+  /// True if the echo changes too much across the wedge for three samples.
   bool is_wide(std::size_t i) const { return slopes_across_[i] > most_across; }
 
   /// See SegmentFacets.

@@ -42,7 +42,7 @@ Fan::Fan(const Aperture& aperture, double max_range_m)
 }
 
 bool Fan::misses(const glm::vec3& centre_m, float radius_m) const {
-  constexpr float slack = 1e-3F;  // radians; more than all rounding here
+  constexpr float slack = 1e-3F;  // radians; more than all rounding errors here
   const float horizontal_m = std::sqrt(centre_m.x * centre_m.x + centre_m.y * centre_m.y);
   const float distance_m = std::sqrt(horizontal_m * horizontal_m + centre_m.z * centre_m.z);
   const float reach_m = radius_m + slack * distance_m;
@@ -52,7 +52,8 @@ bool Fan::misses(const glm::vec3& centre_m, float radius_m) const {
   }
   const float port_m = centre_m.x * beyond_port_.x + centre_m.y * beyond_port_.y;
   const float starboard_m = centre_m.x * beyond_starboard_.x + centre_m.y * beyond_starboard_.y;
-  // Up to half a turn what is beyond either side is outside, in a wider fan what is beyond both.
+  // A sphere beyond either side is outside a fan of up to half a turn; beyond both sides, outside a wider
+  // fan.
   const bool convex = width_rad_ < std::numbers::pi_v<float>;
   return (convex ? std::max(port_m, starboard_m) : std::min(port_m, starboard_m)) > reach_m;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fan of a sonar as the slices see it: beams found by azimuth, limits of elevation and range.
+// The fan of a sonar, for slices: beams by azimuth, limits of elevation and range.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace sonard::render {
 
-/// Angle of (x, y) from the x axis, towards y, in (-pi, pi]; error below `azimuth_error_rad`. No branches, so
-/// that loops over it are vectorised.
+/// Angle of (x, y) from the x axis, towards y, in (-pi, pi]; error below `azimuth_error_rad`. Without
+/// branches, so that loops over it are vectorised.
 inline constexpr float azimuth_error_rad = 2e-5F;
 inline float fast_azimuth(float y, float x) {
   const float ax = x < 0 ? -x : x;
@@ -31,7 +31,7 @@ inline float fast_azimuth(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
-/// Made for one ping.
+/// The fan of one ping.
 class Fan {
  public:
   static constexpr float widest_slice = 0.0174533F;  ///< radians, a degree
@@ -42,21 +42,21 @@ class Fan {
   double edge_rad(int i) const { return edges_rad_[static_cast<std::size_t>(i)]; }
   float max_range_m() const { return max_range_m_; }
   float tan_limit() const { return tan_limit_; }
-  /// Whether a sphere is wholly outside the range, the elevation limits or the azimuths. The fan may be said
-  /// to hold a little more than it does.
+  /// True if a sphere is wholly outside the range, the elevation limits or the azimuths; false for some
+  /// spheres that are just outside.
   bool misses(const glm::vec3& centre_m, float radius_m) const;
 
-  /// An edge that changes its azimuth by less than this, at most a tenth of a beam, runs along slices: from
-  /// inside a slice it cannot be told how much of the slice lies to either side of it.
+  /// An edge whose azimuth changes by less than this, at most a tenth of a beam, is upright: it runs along
+  /// slices, and a cut does not show how much of the wedge lies to either side of it.
   float upright_rad() const { return std::min(1e-3F, 0.1F * width_rad_ / static_cast<float>(beam_count())); }
 
-  /// No slice is laid that is wider.
+  /// Width of the widest slice.
   float widest_slice_rad() const {
     return std::min(widest_slice, width_rad_ / static_cast<float>(beam_count()));
   }
 
-  /// Beams that azimuths [low, high] of (-pi, pi] may touch; a few more at the ends of the range may be
-  /// named. first > last: none.
+  /// Beams that azimuths [low, high] within (-pi, pi] may touch, possibly with a few more at either end; no
+  /// beam if first > last.
   struct BeamRange {
     int first = 0;
     int last = -1;
@@ -69,7 +69,7 @@ class Fan {
   float tan_limit_;
   float max_range_m_;
   float width_rad_;
-  glm::vec2 beyond_port_, beyond_starboard_;  ///< horizontal unit vectors across the sides, out of the fan
+  glm::vec2 beyond_port_, beyond_starboard_;  ///< horizontal unit normals of the sides, out of the fan
   float buckets_per_rad_;
   std::vector<std::uint16_t> first_beam_, last_beam_;  ///< per bucket of azimuth, from port to starboard
 };

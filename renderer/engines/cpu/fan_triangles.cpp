@@ -14,7 +14,7 @@ namespace {
 
 constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
 constexpr float thin_ratio = 3.0F;      // angular height over width
-constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges matter little
+constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges have little effect
 constexpr auto half_turn = static_cast<float>(std::numbers::pi);
 
 /// Vertices of one cluster in the sonar frame.
@@ -47,7 +47,7 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
   }
 }
 
-/// Moves the vertices to where they are seen.
+/// Moves the vertices to their apparent positions.
 void refract_corners(const Refraction& bend, std::uint32_t count, Corners& at) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 p = bend.point({at.x[i], at.y[i], at.z[i]});
@@ -60,7 +60,7 @@ void refract_corners(const Refraction& bend, std::uint32_t count, Corners& at) {
   }
 }
 
-/// Whether a cluster is wholly out of the fan, wherever its rays bend to.
+/// True if a cluster is wholly outside the fan, with the bending of its rays.
 bool is_out(const Fan& fan, const Refraction& bend, const PlacedPart& part,
             const MeshClusters::Cluster& cluster) {
   const glm::vec3 centre = part.R_sonar_part * cluster.centre_m + part.t_sonar_part_m;
@@ -69,7 +69,7 @@ bool is_out(const Fan& fan, const Refraction& bend, const PlacedPart& part,
              : fan.misses(bend.point(centre), cluster.radius_m + bend.spread_m(centre, cluster.radius_m));
 }
 
-/// Whether all of a cluster lies to one side of the fan, by less than half a turn.
+/// True if a cluster lies wholly to one side of the fan, by less than half a turn.
 SONARD_SIMD_CLONES
 bool lies_outside(const Fan& fan, std::uint32_t count, const Corners& at) {
   const auto port = static_cast<float>(fan.edge_rad(0)) + azimuth_error_rad;
@@ -85,7 +85,7 @@ bool lies_outside(const Fan& fan, std::uint32_t count, const Corners& at) {
   return to_port == all || to_starboard == all;
 }
 
-/// One number of each corner of the triangles of a cluster.
+/// One number per corner of the triangles of a cluster.
 struct OfCorners {
   std::array<float, MeshClusters::most_triangles> a, b, c;
 
@@ -102,7 +102,7 @@ struct OfCorners {
   }
 };
 
-/// What the corners of each triangle of a cluster say of it.
+/// Bounds of each triangle of a cluster, from its corners.
 struct Bounds {
   OfCorners azimuth, horizontal_squared, height, tangent;
   std::array<float, MeshClusters::most_triangles> low_azimuth, high_azimuth;
@@ -127,7 +127,7 @@ void bound(const Fan& fan, std::size_t count, Bounds& out) {
     return (lean < upright_rad) & (lean > -upright_rad) & ((rise > upright_t) | (rise < -upright_t));
   };
   for (std::size_t t = 0; t < count; ++t) {
-    // No point of the triangle is farther out than its farthest corner, so none has less room in elevation.
+    // The farthest corner has the most height within the elevation limits.
     const float far =
         most(out.horizontal_squared.a[t], out.horizontal_squared.b[t], out.horizontal_squared.c[t]);
     const float room = far * room_per_square;
@@ -149,7 +149,7 @@ void bound(const Fan& fan, std::size_t count, Bounds& out) {
   }
 }
 
-/// Whether a whole cluster may lie between two slices: a stone, a plate.
+/// True if a whole cluster may lie between two slices: a stone, a plate.
 bool is_small(const Fan& fan, std::size_t count, const Bounds& bounds) {
   const float low = *std::min_element(bounds.low_azimuth.begin(), bounds.low_azimuth.begin() + count);
   const float high = *std::max_element(bounds.high_azimuth.begin(), bounds.high_azimuth.begin() + count);
@@ -250,11 +250,11 @@ void FanTriangles::add(const FanTriangle& triangle, const std::array<float, 3>& 
     return;
   }
   if (std::min({std::abs(azimuth[0]), std::abs(azimuth[1]), std::abs(azimuth[2])}) < half_turn / 2) {
-    // It may hold the sonar's vertical axis: any azimuth can meet it.
+    // It may contain the sonar's vertical axis: any azimuth can hit it.
     share.add(triangle, {0, fan.beam_count() - 1});
     return;
   }
-  // It lies behind, across the azimuth where pi meets -pi.
+  // It lies behind the sonar, across the azimuth of pi and -pi.
   float port = half_turn;
   float starboard = -half_turn;
   for (const float a : azimuth) {
@@ -275,7 +275,7 @@ void FanTriangles::Share::add(const FanTriangle& triangle, Fan::BeamRange range)
   }
 }
 
-/// Turns the counts of each share into the places where it lists its triangles.
+/// Converts the counts of each share to the places of its triangles in listed_.
 void FanTriangles::make_room_for_lists(std::size_t beams) {
   first_of_beam_.resize(beams + 1);
   std::size_t next = 0;

@@ -19,7 +19,8 @@
 
 namespace sonard::render {
 
-/// Where one part of a body is for this ping: p_sonar = rotation * p_part + translation, taken from doubles.
+/// The pose of one part of a body in this ping: p_sonar = rotation * p_part + translation, computed in
+/// doubles.
 struct PlacedPart {
   std::shared_ptr<const MeshClusters> clusters;
   glm::mat3 R_sonar_part{1.0F};
@@ -31,35 +32,35 @@ struct FanTriangle {
   float x[3], y[3], z[3];
   std::uint32_t part = 0;           ///< index of the PlacedPart
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
-  /// Much taller than wide, as seen from the sonar, or of something small: the leg of a frame, a stone. A
+  /// Much taller than wide, as seen from the sonar, or part of a small object: the leg of a frame, a stone. A
   /// slice beside it misses it.
   bool thin = false;
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
-  /// Between which it lies; -pi to pi where it may hold the sonar's vertical axis.
+  /// Azimuths of its sides; -pi and pi if it may contain the sonar's vertical axis.
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
 
   glm::vec3 corner(std::size_t k) const { return {x[k], y[k], z[k]}; }
-  /// Across the triangle, as its winding says; its length is twice the area.
+  /// Normal by the winding of the triangle; its length is twice the area.
   glm::vec3 across() const { return glm::cross(corner(1) - corner(0), corner(2) - corner(0)); }
 };
 
-/// Entry of a beam's list, with its azimuths once more: what a slice does not touch is passed over without
-/// being looked up.
+/// Entry of a beam's list, with a copy of the azimuths, so that triangles beside a slice are skipped without
+/// a look-up.
 struct ListedTriangle {
   const FanTriangle* triangle;
   float low_azimuth_rad, high_azimuth_rad;
 };
 
-/// Culls and transforms, first clusters against fan and range, then triangle by triangle; what is kept is
-/// listed for every beam its azimuths touch. A triangle too many costs time, never an error.
+/// Culls clusters against fan and range, transforms the rest, and culls triangles. The remaining triangles
+/// are listed for every beam that their azimuths touch. A superfluous triangle costs time but makes no error.
 class FanTriangles {
  public:
-  /// Lists are the same for any number of threads.
-  /// @param cull false: no cluster is dropped, all their triangles are tested.
+  /// Fills the lists, which are the same for any number of threads.
+  /// @param cull false: no cluster is culled, all triangles are tested
   void find(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend, WorkerPool& workers,
             bool cull = true);
 
-  /// In the order of the world, which decides between surfaces in the same place.
+  /// Triangles of a beam in the order of the world; of surfaces in the same place, the first is visible.
   std::span<const ListedTriangle> of_beam(int beam) const {
     const auto b = static_cast<std::size_t>(beam);
     return {listed_.data() + first_of_beam_[b], first_of_beam_[b + 1] - first_of_beam_[b]};
@@ -67,11 +68,11 @@ class FanTriangles {
   std::uint64_t clusters_culled() const;
 
  private:
-  /// What one job finds: it owns a run of clusters.
+  /// The triangles that one job finds in its range of clusters.
   struct Share {
     std::vector<FanTriangle> triangles;
     std::vector<Fan::BeamRange> beams;    ///< of each triangle
-    std::vector<std::uint32_t> per_beam;  ///< number of triangles; then where the next one is listed
+    std::vector<std::uint32_t> per_beam;  ///< number of triangles; later the place of the next one in listed_
     std::uint64_t culled = 0;
 
     void add(const FanTriangle& triangle, Fan::BeamRange range);
@@ -84,7 +85,7 @@ class FanTriangles {
   void make_room_for_lists(std::size_t beams);
   void list(Share& share);
 
-  std::vector<std::uint32_t> part_starts_;  ///< first cluster of each part, counting through all parts
+  std::vector<std::uint32_t> part_starts_;  ///< first cluster of each part, numbered over all parts
   std::vector<Share> shares_;
   std::vector<ListedTriangle> listed_;
   std::vector<std::size_t> first_of_beam_;

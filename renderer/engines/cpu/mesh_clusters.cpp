@@ -12,7 +12,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr float morton_cells = 2097151.0F;  // 2^21 - 1, what three interleaved axes leave in 64 bits
+constexpr float morton_cells = 2097151.0F;  // 2^21 - 1, so that three interleaved axes fit in 64 bits
 constexpr std::int32_t not_in_cluster = -1;
 
 /// Puts two zero bits between the lowest 21 bits of v.
@@ -98,7 +98,7 @@ void MeshClusters::add_cluster(const TriangleMesh& mesh, const std::vector<std::
   clusters.push_back(cluster);
 }
 
-/// A sphere around the box around the vertices.
+/// Sets the bounding sphere, centred in the bounding box.
 void MeshClusters::close_cluster(Cluster& cluster) const {
   const std::size_t begin = cluster.first_vertex;
   const std::size_t end = begin + cluster.vertex_count;

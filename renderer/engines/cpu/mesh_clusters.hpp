@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh cut into small clusters of neighbouring triangles: what is out of the fan is dropped a cluster at a
-// time.
+// A mesh in small clusters of neighbouring triangles; parts outside the fan are culled cluster by cluster.
 #pragma once
 
 #include <array>
@@ -14,11 +13,11 @@
 
 namespace sonard::render {
 
-/// Triangles of one mesh in the order of a space-filling curve. Every cluster has its own copy of the
-/// vertices it uses, so that they are transformed where they are needed and addressed with one byte.
+/// Triangles of one mesh in the order of a space-filling curve. Every cluster has its own copy of its
+/// vertices, so that only needed vertices are transformed, and an index fits in one byte.
 struct MeshClusters {
   struct Cluster {
-    glm::vec3 centre_m{0.0F};  ///< of a sphere around it, in the frame of the part
+    glm::vec3 centre_m{0.0F};  ///< of its bounding sphere, in the frame of the part
     float radius_m = 0.0F;
     std::uint32_t first_vertex = 0;
     std::uint32_t vertex_count = 0;  ///< <= most_vertices

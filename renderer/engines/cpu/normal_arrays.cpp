@@ -5,7 +5,7 @@ namespace sonard::render {
 
 void NormalArrays::lay_out(const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original) {
   const std::size_t count = original.size();
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // at_h grows last: if memory runs out before, the next call tries all again.
   if (count > at_h.size()) {
     for (auto* array : {&at_s, &at_z, &h_per_x, &s_per_x, &z_per_x, &h_per_t, &s_per_t, &z_per_t, &at_h}) {
       array->resize(count + count / 2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Normals that shade segments, as arrays, because loops over them are vectorised.
+// Normals that shade segments, as arrays for vectorised loops.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace sonard::render {
 
-/// What NormalRun says of each segment, an array for each number. Arrays never shrink: they may be longer
-/// than there are segments.
+/// The NormalRun of each segment, one array per number. Arrays never shrink, so they may be longer than the
+/// number of segments.
 struct NormalArrays {
   std::vector<float> at_h, at_s, at_z;  ///< NormalRun::at
   std::vector<float> h_per_x, s_per_x, z_per_x, h_per_t, s_per_t, z_per_t;
 
-  /// @param original of each segment, which of `runs` is its own
+  /// @param original per segment: its index in `runs`
   void lay_out(const std::vector<NormalRun>& runs, const std::vector<std::uint32_t>& original);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What slices know of the surface of one part of a body.
+// Surface of one part of a body, for slices.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@
 
 namespace sonard::render {
 
-/// How the surface of one part answers.
+/// Acoustic response of the surface of one part.
 struct PartSurface {
   std::shared_ptr<const TriangleMesh> mesh;
-  std::shared_ptr<const NormalPyramid> normal_map;  ///< null: none, or switched off
-  bool vertex_normals = false;                      ///< whether shading interpolates them
+  std::shared_ptr<const NormalPyramid> normal_map;  ///< null: no map, or switched off
+  bool vertex_normals = false;                      ///< shading interpolates vertex normals
   Backscatter backscatter;
   float reflectance = 0.0F;
   // For this ping:

@@ -15,8 +15,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::size_t tiles_per_job =
-    64;  // 1024 rays: some ten microseconds, and too few to share when alone
+constexpr std::size_t tiles_per_job = 64;  // 1024 rays: about ten microseconds, too few to split further
 
 bool same_pixels(const SubView& a, const SubView& b) {
   return a.azimuth_rad == b.azimuth_rad && a.tan_half_width == b.tan_half_width &&
@@ -27,7 +26,7 @@ std::size_t tile_count(int pixels) {
   return static_cast<std::size_t>((pixels + packet_side - 1) / packet_side);
 }
 
-/// Pixel `i` of tile number `tile`, or the view's last one where the tile reaches beyond it.
+/// Pixel `i` of tile number `tile`, or the last pixel of the view if the tile reaches beyond it.
 int pixel_of(std::size_t tile, int i, int count) {
   return std::min(static_cast<int>(tile) * packet_side + i, count - 1);
 }
@@ -83,7 +82,7 @@ RaySampler::RaySampler(SpatialIndex& index, WorkerPool& workers) : index_(index)
   }
 }
 
-/// Lists the tiles that hold pixels of the grid. They stay the same for as long as the grid does.
+/// Lists the tiles that hold pixels of the grid, if the grid has changed.
 void RaySampler::prepare(const SampleGrid& grid) {
   const bool same_views =
       std::equal(views_.begin(), views_.end(), grid.views.begin(), grid.views.end(),
@@ -173,10 +172,10 @@ SONARD_SIMD_CLONES void RaySampler::shade(const RayPacket& rays, const RayHits& 
   for (std::size_t i = 0; i < packet_size; ++i) {
     surfaces.depth[i] = hits.part[i] != no_part ? hits.depth[i] : 0.0F;
   }
-  // Neighbours mostly meet the same part: one round shades them all.
+  // Neighbours mostly hit the same part: one round shades them all.
   Lanes<std::uint32_t> waiting = hits.part;
   while (true) {
-    std::uint32_t part = no_part;  // the greatest number, so what is left of the smallest is a part
+    std::uint32_t part = no_part;  // the largest number, so any waiting part is smaller
     for (std::size_t i = 0; i < packet_size; ++i) {
       part = std::min(part, waiting[i]);
     }
@@ -205,7 +204,7 @@ SONARD_SIMD_CLONES void RaySampler::trace(const SpatialIndex& index, const Tile&
     rays.y[i] += tangent_y[i] * up.y;
     rays.z[i] += tangent_y[i] * up.z;
   }
-  // No ray of a view is shorter than its axis: the depth reaches no less far than the range.
+  // Rays are at least as long as the axis of the view, so a depth of max_range_m covers the range.
   RayHits hits;
   index.trace(rays, max_range_m, surface.two_sided, hits);
   SurfacePacket surfaces;
@@ -227,7 +226,7 @@ SONARD_SIMD_CLONES void RaySampler::trace(const SpatialIndex& index, const Tile&
     const float dx = r * (x / qq - n_starboard / n_ray);
     const float dy = r * (y / qq - n_up / n_ray);
     const bool seen = surfaces.depth[i] != 0.0F;
-    // A sum is finite when all its terms are.
+    // A sum is finite only if all its terms are.
     const bool valid = std::abs(r + surfaces.response[i] + dx + dy) < INFINITY;
     range[i] = !seen ? 0.0F : (valid ? r : -1.0F);
     response[i] = seen && valid ? surfaces.response[i] : 0.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visibility by tracing rays on the CPU: one ray per pixel, sixteen at a time, on all cores.
+// Visibility by ray tracing on the CPU: one ray per pixel, sixteen at a time, on all cores.
 #pragma once
 
 #include <vector>
@@ -15,20 +15,20 @@
 
 namespace sonard::render {
 
-/// Needs no graphics of any kind. Pixels that no part of the grid uses are left as "nothing seen".
+/// Samples a grid with Embree, without graphics. Pixels that no part of the grid uses stay at range 0.
 class RaySampler {
  public:
-  /// @param index where the world is moved; it outlives the sampler.
-  /// @param workers outlives the sampler; used by no one else during a call.
+  /// @param index moves the world; must outlive the sampler
+  /// @param workers must outlive the sampler; a call needs it exclusively
   RaySampler(SpatialIndex& index, WorkerPool& workers);
 
-  /// The samples of view i, row after row as SubView orders them. They stay valid until the next call.
-  /// Surfaces beyond `max_range_m` may be reported or not.
-  /// @throws RendererError when Embree fails or runs out of memory.
+  /// The samples of each view, row after row in the order of SubView; valid until the next call. Surfaces
+  /// beyond `max_range_m` may be missing.
+  /// @throws RendererError if Embree fails or runs out of memory
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m);
-  /// See EchoEngine. With refraction the trees of the world are rebuilt for every ping: several times the
-  /// cost of a ping.
+  /// See EchoEngine. With refraction the trees of the world are rebuilt for every ping, which costs several
+  /// times as much as the ping.
   void set_refraction(double bend_per_m) { bend_per_m_ = bend_per_m; }
 
  private:
@@ -69,7 +69,7 @@ class RaySampler {
   std::vector<SurfaceShader> shaders_;  ///< of the parts of all bodies
   double bend_per_m_ = 0.0;
   std::vector<View> views_;
-  std::vector<std::vector<Rows>> used_;  // by view and column of tiles: the rows that parts of the grid use
+  std::vector<std::vector<Rows>> used_;  // per view and column of tiles: rows that parts of the grid use
   std::vector<Tile> tiles_;
 };
 

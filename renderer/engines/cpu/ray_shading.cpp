@@ -13,7 +13,7 @@ namespace sonard::render {
 
 namespace {
 
-/// Weights of a triangle's corners.
+/// Interpolates values of a triangle's corners. @param u, v weights of b and c
 template <class T>
 T interpolate(const T& a, const T& b, const T& c, float u, float v) {
   return a * (1.0F - u - v) + b * u + c * v;
@@ -21,7 +21,7 @@ T interpolate(const T& a, const T& b, const T& c, float u, float v) {
 
 }  // namespace
 
-/// Per lane, in the part's frame: the normal that shades, and the square of what it is divided by.
+/// Per lane, in the part's frame: the normal that shades, and the square of its divisor.
 struct alignas(64) SurfaceShader::ShadingNormals {
   Lanes<float> x, y, z;
   Lanes<float> squared_length;
@@ -45,7 +45,7 @@ glm::vec3 SurfaceShader::vertex_normal(std::uint32_t triangle, float u, float v)
   return interpolate(mesh_->normals[corner[0]], mesh_->normals[corner[1]], mesh_->normals[corner[2]], u, v);
 }
 
-/// How many texels a sample spans, as the level of the pyramid whose texels are as large.
+/// Level of the pyramid whose texels are as large as the span of a sample.
 float SurfaceShader::map_level(const RayPacket& rays, const RayHits& hits, std::size_t lane) const {
   const std::uint32_t* corner = &mesh_->indices[std::size_t{hits.triangle[lane]} * 3];
   const glm::vec3 a = mesh_->positions[corner[0]];
@@ -58,8 +58,8 @@ float SurfaceShader::map_level(const RayPacket& rays, const RayHits& hits, std::
   const glm::vec2 map_c = mesh_->texcoords[corner[2]] - uv;
   const glm::vec2 size(map_->levels[0].width_px, map_->levels[0].height_px);
   const auto texels = [&](const glm::vec3& step_world) {
-    // The neighbour's ray meets the plane of the triangle so far away, and the corners' weights change by so
-    // much on the way.
+    // Distance to the hit of the neighbour's ray in the plane of the triangle, and the change of the corners'
+    // weights over it.
     const glm::vec3 step = to_part(step_world);
     const glm::vec3 move = hits.depth[lane] * (step - q * (glm::dot(n, step) / glm::dot(n, q)));
     const float nn = glm::dot(n, n);
@@ -71,7 +71,7 @@ float SurfaceShader::map_level(const RayPacket& rays, const RayHits& hits, std::
   return 0.5F * std::log2(std::max(texels(rays.step_x), texels(rays.step_y)));
 }
 
-/// Not of unit length: see NormalPyramid.
+/// Mean mapped normal, not of unit length (NormalPyramid).
 glm::vec3 SurfaceShader::mapped_normal(const RayPacket& rays, const RayHits& hits, std::size_t lane) const {
   const std::uint32_t* corner = &mesh_->indices[std::size_t{hits.triangle[lane]} * 3];
   const float u = hits.u[lane];
@@ -95,7 +95,7 @@ void SurfaceShader::look_up_normals(const RayPacket& rays, const RayHits& hits, 
     const glm::vec3 n =
         mapped ? mapped_normal(rays, hits, i) : vertex_normal(hits.triangle[i], hits.u[i], hits.v[i]);
     const float nn = glm::dot(n, n);
-    if (nn > 0.0F) {  // else, or when it is not a number, the triangle's own stays
+    if (nn > 0.0F) {  // for 0 or NaN the triangle's normal stays
       normals.x[i] = n.x;
       normals.y[i] = n.y;
       normals.z[i] = n.z;
@@ -124,7 +124,7 @@ SONARD_SIMD_CLONES void SurfaceShader::shade(const RayPacket& rays, const RayHit
                           normals.y[i] * (ay.x * x + ay.y * y + ay.z * z) +
                           normals.z[i] * (az.x * x + az.y * y + az.z * z);
     const float ratio = std::abs(product) / std::sqrt(normals.squared_length[i] * (x * x + y * y + z * z));
-    cosine[i] = ratio > 1.0F ? 1.0F : ratio;  // not a number stays so
+    cosine[i] = ratio > 1.0F ? 1.0F : ratio;  // NaN stays NaN
   }
   const bool physical = model.model == Model::physical;
   const float gain = physical ? backscatter_.lambert_mu : 1.0F;
@@ -146,7 +146,7 @@ SONARD_SIMD_CLONES void SurfaceShader::shade(const RayPacket& rays, const RayHit
   }
 }
 
-/// Facets need a direction; what is missing of the length of a mean normal widens their slopes.
+/// Facets need a normal of unit length; the shorter a mean normal, the wider their slopes.
 void SurfaceShader::add_facets(const RayHits& hits, std::uint32_t part, Facets which,
                                const ShadingNormals& normals, const Lanes<float>& cosine,
                                SurfacePacket& surfaces) const {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a surface that a ray has met answers: the twin of the fragment shader of RasterSampler.
+// Response of a surface that a ray hits: the counterpart of the fragment shader of RasterSampler.
 #pragma once
 
 #include <array>
@@ -15,29 +15,29 @@
 
 namespace sonard::render {
 
-/// What the rays of a packet meet. The surface point of a lane is depth * q. Where depth is 0 the rest is
-/// without meaning.
+/// The surfaces that the rays of a packet hit. The surface point of a lane is depth * q. If depth is 0, the
+/// other numbers are undefined.
 struct alignas(64) SurfacePacket {
-  Lanes<float> depth;  ///< 0: nothing up to the depth asked for
-  /// Geometric normal in world axes, neither of unit length nor turned towards the sonar.
+  Lanes<float> depth;  ///< 0: no hit up to the requested depth
+  /// Geometric normal in world axes, of any length and sign.
   Lanes<float> normal_x, normal_y, normal_z;
-  Lanes<float> response;  ///< see SurfaceModel; may be not a number
+  Lanes<float> response;  ///< see SurfaceModel; may be NaN
 };
 
-/// Shades what rays meet of one part.
+/// Shades the hits of one part.
 class SurfaceShader {
  public:
-  /// @param map of the part; null when it has none.
+  /// @param map of the part; null if it has no map
   SurfaceShader(const BodyPart& part, std::shared_ptr<const NormalPyramid> map);
 
-  /// @param mesh with the attributes of the one before.
-  /// @param axes of the part in the world.
+  /// @param mesh with the same attributes as the last one
+  /// @param axes of the part in the world
   void place(const std::shared_ptr<const TriangleMesh>& mesh, const std::array<glm::vec3, 3>& axes) {
     mesh_ = mesh;
     axes_ = axes;
   }
 
-  /// Fills normal and response of the lanes that hit part number `part`, this one.
+  /// Fills normal and response of the lanes that hit this part. @param part its number
   void shade(const RayPacket& rays, const RayHits& hits, std::uint32_t part, const SurfaceModel& model,
              SurfacePacket& surfaces) const;
 

@@ -5,7 +5,7 @@ namespace sonard::render {
 
 SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
   SliceAccuracy accuracy;
-  // The paper's sigmoid makes more of small changes of incidence.
+  // The paper's sigmoid amplifies small changes of incidence.
   accuracy.slices_per_beam = model == Model::paper ? 2 : 1;
   if (preset == Sampling::Preset::fast) {
     accuracy.most_divisions = 5;

@@ -13,16 +13,16 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int enough_beams = 8;  // with fewer, threads would be left without
+constexpr int enough_beams = 8;  // with fewer beams, threads would be idle
 
-/// What is seen in all slices is more than the caches hold: the next one is fetched while one is shaded.
+/// Prefetches the next slice while one is shaded, because all slices together exceed the caches.
 void fetch(const SliceCell& cell) {
   for (const VisibleSegment& segment : cell.visible) {
     __builtin_prefetch(&segment);
   }
 }
 
-/// Makes patches in the threads that ask for them, and counts what that took.
+/// Makes patches in the calling threads and sums the time of all of them.
 class Shading {
  public:
   explicit Shading(const SliceSampler& slices) : slices_(slices) {}
@@ -74,7 +74,7 @@ BinningResult bin_slices_by_cones(Shading& shading, std::span<const SliceCell* c
   return bin_by_cones(std::move(columns), range, options, workers, std::move(memory));
 }
 
-/// The cells of each beam, of cells from port to starboard.
+/// Groups cells by beam. @param cells from port to starboard
 std::vector<std::span<const SliceCell* const>> cells_by_beam(std::span<const SliceCell* const> cells,
                                                              int beams) {
   std::vector<std::span<const SliceCell* const>> by_beam(static_cast<std::size_t>(beams));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slices -> echo per beam and range line.
+// From slices to echo per beam and range line.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace sonard::render {
 
-/// Shades slices and sums what they echo, which always has footprints.
+/// Shades slices and bins their echoes, which always have footprints.
 /// @param cells of `slices`, from port to starboard
-/// @param memory as of bin_beams()
+/// @param memory see bin_beams()
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
                          const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
                          WorkerPool& workers, std::vector<float> memory);

@@ -12,12 +12,12 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::size_t widest_vector = 16;  // arrays end on a multiple, so that no loop has a rest
-constexpr float nearest_m = 1e-4F;         // what is nearer to the vertical axis is cut off
+constexpr std::size_t widest_vector = 16;  // arrays have a multiple of this length: loops have no remainder
+constexpr float nearest_m = 1e-4F;         // nearer to the vertical axis, triangles are cut off
 constexpr float sharp_turn_rad = 0.6F;
-constexpr double same_edge_rad = 2e-6;  // edges nearer to each other stand in one place
+constexpr double same_edge_rad = 2e-6;  // nearer edges count as one
 
-/// Azimuth into which the normal of a triangle points that is turned away from the sonar.
+/// Azimuth of a triangle's normal, turned away from the sonar.
 float facing(const FanTriangle& t) {
   const glm::vec3 n = t.across();
   return glm::dot(n, t.corner(0)) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
@@ -99,8 +99,8 @@ void SliceCutter::drop_back_faces() {
   std::erase_if(triangles_, seen_from_behind);
 }
 
-/// Thin triangles of one part that touch in azimuth make one thing: the facets of a pole are not missed one
-/// by one.
+/// Joins thin triangles of one part that touch in azimuth to one thing, so that a slice hits or misses a
+/// whole pole instead of single facets.
 void SliceCutter::list_thin() {
   thin_.clear();
   for (const FanTriangle* t : triangles_) {
@@ -135,7 +135,7 @@ void SliceCutter::list_upright_edges(double low_rad, double high_rad, const Fan&
             [](const EdgePart& a, const EdgePart& b) { return a.azimuth_rad < b.azimuth_rad; });
 }
 
-/// Azimuths are compared as tangents of their differences: most edges are no upright ones.
+/// Compares azimuths by the tangent of their difference, which is cheap; most edges are not upright.
 void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad,
                                  const Fan& fan) {
   double x[3], y[3], t[3];
@@ -161,14 +161,14 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
     }
     const double at = std::atan2(y[k], x[k]) + 0.5 * lean;
     if (at > low_rad && at < high_rad) {
-      // Where the edge, or its continuation, is as high as the third corner.
+      // The point of the edge, or of its continuation, at the height of the third corner.
       const double beside = lean * (t[opposite] - t[k]) / (t[next] - t[k]);
       edge_parts_.push_back({at, first, last, turn(k, opposite) > beside ? 1 : -1, facing(triangle)});
     }
   }
 }
 
-/// Probes of the edge parts [begin, end), which stand in one place.
+/// Probes of the edge parts [begin, end), which are at one azimuth.
 ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
   std::array<std::int32_t, side_probes + 1> sides{};
   std::array<float, side_probes + 1> turns{};
@@ -195,7 +195,7 @@ ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
 void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const {
   constexpr double margin = 1e-3;  // of the wedge
   constexpr std::size_t most_edges = 4;
-  constexpr std::int32_t least_probes = 12;  // lower edges do as well in even parts
+  constexpr std::int32_t least_probes = 12;  // for lower edges even parts are as good
   const double reach = (0.5 - margin) * static_cast<double>(slice.width_rad);
   edges.clear();
   std::size_t begin = 0;
@@ -232,8 +232,8 @@ bool SliceCutter::misses_thin_thing(const Slice& slice) const {
   return std::any_of(thin_.begin(), thin_.end(), [&](const ThinThing& thing) {
     const float port = thing.high_azimuth_rad - azimuth;
     const float starboard = thing.low_azimuth_rad - azimuth;
-    // Whether a slice next door hits it is not asked: what reaches into the wedge is to be hit there.
-    // Azimuths are only known so well; a slice along the very edge of a thing may miss it too.
+    // A neighbouring slice may hit it, but a thing that reaches into this wedge must be hit here. The margin
+    // is the error of azimuths: a slice along the very edge of a thing may miss it too.
     return (starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half);
   });
 }
@@ -256,9 +256,9 @@ void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
   segments.kept.resize(count);
 }
 
-/// With s the distance of a corner from the plane of the slice, an edge from i to j meets it where
-/// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes the signs of numerator
-/// and denominator and nothing else, so that two triangles find the same point on their common edge.
+/// With s the distance of a corner from the plane of the slice, an edge from i to j crosses it at
+/// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes only the signs of
+/// numerator and denominator, so that two triangles find the same point on their common edge.
 SONARD_SIMD_CLONES
 void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segments) {
   const float cosine = slice.cosine, sine = slice.sine;
@@ -300,7 +300,7 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
     const float over_p = 1.0F / (hpi * spj - hpj * spi), over_q = 1.0F / (hqi * sqj - hqj * sqi);
     const float tp = (zpi * spj - zpj * spi) * over_p, wp = ep * over_p;
     const float tq = (zqi * sqj - zqj * sqi) * over_q, wq = eq * over_q;
-    // dt / d azimuth along the edge is (dz - t dh) / ds; the azimuth over which it runs is w ds.
+    // dt / d azimuth along the edge is (dz - t dh) / ds; the edge spans the azimuth w ds.
     const float rp = (zpj - zpi) - tp * (hpj - hpi), rq = (zqj - zqi) - tq * (hqj - hqi);
     const float mp = rp / ep, mq = rq / eq;
     const float fp = rp * wp, fq = rq * wq;
@@ -324,8 +324,8 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
   }
 }
 
-/// Cuts a triangle that the plane of the slice meets behind the vertical axis too, in doubles and one at a
-/// time: such triangles are few.
+/// Cuts a triangle that crosses the plane of the slice behind the vertical axis too; in doubles and one at a
+/// time, because such triangles are rare.
 void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i, Segments& segments) {
   const auto cosine = static_cast<double>(slice.cosine), sine = static_cast<double>(slice.sine);
   double s[3], h[3], z[3];

@@ -13,8 +13,8 @@
 namespace sonard::render {
 
 /// A slice: the half plane h > 0 at one azimuth, with horizontal distance h and height z as coordinates, and
-/// the thin wedge around it that it stands for. Rays of the slice are told apart by the tangent of their
-/// elevation, t = z / h; along any straight line of it 1 / h is affine in t.
+/// the thin wedge around it that it represents. The tangent of the elevation, t = z / h, identifies a ray of
+/// the slice; along any straight line in the slice 1 / h is affine in t.
 struct Slice {
   double azimuth_rad = 0.0;
   float width_rad = 0.0F;            ///< of the wedge
@@ -28,30 +28,30 @@ struct Slice {
         sine(static_cast<float>(std::sin(azimuth))) {}
 };
 
-/// Neighbouring slices are compared at so many t, evenly spaced over the elevation of the fan; the first and
-/// the last lie just inside its limits, where a beam that receives little receives it.
+/// Number of t at which neighbouring slices are compared, evenly spaced over the elevation of the fan. The
+/// first and the last lie just inside its limits, where weak echoes of a beam often are.
 inline constexpr int side_probes = 256;
 inline constexpr double probe_reach = 0.999;  ///< of the tangent of the limit
 
 using ProbeSet = std::bitset<side_probes>;
 
-/// Where a surface ends along a slice or turns sharply: the end of a wall, the side of a post, the corner of
-/// a room.
+/// An edge along a slice at which a surface ends or turns sharply: the end of a wall, the side of a post, the
+/// corner of a room.
 struct UprightEdge {
   double azimuth_rad = 0.0;
-  ProbeSet probes;  ///< at which it does
+  ProbeSet probes;  ///< at which the surface ends or turns
 };
 
-/// Shortest segment, in radians of elevation: a shorter one says nothing of the slope of its surface and is
-/// left out.
+/// Shortest segment, in radians of elevation; shorter ones are dropped, because rounding hides the slope of
+/// their surface.
 inline constexpr float shortest_rad = 1e-6F;
 
-/// How the end of a segment moves beside the slice, as the edge runs of which it is a point.
+/// Motion of a segment's end beside the slice, along the edge on which it lies.
 struct EdgeRun {
   float slope = 0.0F;  ///< dt / d azimuth
-  float reach = 0.0F;  ///< the edge ends after so much of t: within a wedge it moves no farther
+  float reach = 0.0F;  ///< length of the edge in t: the largest move within a wedge
 
-  /// The slope of a straight line over a wedge of the fan. An end at `t` that leaves the fan stops there.
+  /// The slope as a straight line over a wedge of the fan. An end at `t` that leaves the fan stops there.
   float slope_within(float t, float width_rad, float tan_limit) const {
     const float rest = (tan_limit - (t < 0 ? -t : t)) * 2;
     const float most = (reach < rest ? reach : rest) / width_rad;
@@ -59,8 +59,8 @@ struct EdgeRun {
   }
 };
 
-/// What a slice cuts out of triangles: a straight segment each, in arrays as long as the list of triangles,
-/// because loops over them are vectorised. Only those named in `kept` exist.
+/// The straight segments that a slice cuts out of triangles, in arrays as long as the list of triangles, for
+/// vectorised loops. Only segments in `kept` are valid.
 struct Segments {
   std::vector<std::int32_t> kept;
   std::vector<float> low, high;                                     ///< t at the two ends; low < high
@@ -78,8 +78,8 @@ struct Segments {
 /// The triangles of one beam, ready to be cut at any azimuth inside it.
 class SliceCutter {
  public:
-  /// @param low_rad, high_rad azimuths between which it will be cut; triangles elsewhere are left out.
-  /// @param two_sided false: triangles seen from behind are left out.
+  /// @param low_rad, high_rad azimuths between which it will be cut; triangles elsewhere are left out
+  /// @param two_sided false: triangles seen from behind are left out
   void load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad, const Fan& fan,
             bool two_sided);
 
@@ -87,8 +87,8 @@ class SliceCutter {
   /// shared by two triangles is cut at the same point, to the bit.
   void cut(const Slice& slice, float tan_limit, Segments& segments);
 
-  /// Whether something narrow, the leg of a frame, a pole or a stone, reaches into the wedge of a slice but
-  /// not to its middle: the slice misses all of it.
+  /// True if a thin thing (the leg of a frame, a pole, a stone) reaches into the wedge of a slice but not to
+  /// its middle, so that the slice misses it.
   bool misses_thin_thing(const Slice& slice) const;
 
   /// Finds the upright edges well inside the wedge, from port to starboard; the highest ones if there are
@@ -97,7 +97,7 @@ class SliceCutter {
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }
   std::uint32_t part(int index) const { return part_[static_cast<std::size_t>(index)]; }
-  /// Unit normal in the sonar frame; its sign is that of the winding.
+  /// Unit normal in the sonar frame, with the sign of the winding.
   const float* normal_x() const { return normal_x_.data(); }
   const float* normal_y() const { return normal_y_.data(); }
   const float* normal_z() const { return normal_z_.data(); }
@@ -126,14 +126,14 @@ class SliceCutter {
   struct EdgePart {
     double azimuth_rad;
     std::int32_t first_probe, last_probe;  ///< probes first <= i < last
-    /// 1 if the triangle lies to port of it, else -1: where a surface goes on to the other side the two
-    /// cancel out, where it ends or folds back they do not.
+    /// 1 if the triangle lies to port of the edge, else -1. If a surface continues on the other side, the two
+    /// cancel; if it ends or folds back, they do not.
     std::int32_t side;
-    float facing_rad;  ///< azimuth of the triangle's normal; where it goes on evenly, this cancels out too
+    float facing_rad;  ///< azimuth of the triangle's normal; cancels too if the surface continues evenly
   };
   std::vector<EdgePart> edge_parts_;  ///< by rising azimuth
   enum Fate : std::int32_t { none, kept, partly_behind };
-  std::vector<std::int32_t> fate_;  // of each triangle in the slice that is being cut
+  std::vector<std::int32_t> fate_;  // per triangle, in the current slice
 };
 
 }  // namespace sonard::render

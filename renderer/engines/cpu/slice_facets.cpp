@@ -26,8 +26,8 @@ float FacetSight::cosine(float x, float t) const {
   return std::min(std::abs(glm::dot(n, d)) / std::sqrt(glm::dot(n, n) * glm::dot(d, d)), 1.0F);
 }
 
-/// On p = h (1, x, t) the surface is across its normal: (ln h)' = -n_s / (n . q). The range is h times the
-/// length of q.
+/// On p = h (1, x, t) the surface is perpendicular to its normal: (ln h)' = -n_s / (n . q). The range is h
+/// times the length of q.
 float FacetSight::range_slope(float t, float place) const {
   constexpr float steepest = 10.0F;  // 84 degrees off: a silhouette
   const float x = place * width_rad_;
@@ -50,7 +50,7 @@ FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
     sum.mean += echo;
     sum.moment += echo * place;
   };
-  // Gauss and Legendre's two points, or three on each stride over which a bell is a smooth thing.
+  // Gauss-Legendre: two points, or three per stride; over a stride the bell is smooth.
   if (slopes < nearly_even) {
     constexpr float off = 0.28867513F;
     sample(-off * width, 0.5F);

@@ -15,23 +15,23 @@ struct WedgePart {
   float from = -0.5F, to = 0.5F;
 };
 
-/// What facets answer, SurfaceSample::response, over part of a wedge.
+/// Response of facets (SurfaceSample::response) over part of a wedge.
 struct FacetResponse {
   float mean = 0.0F;
   float moment = 0.0F;  ///< mean of response * (place across the wedge, from the middle of the part)
 };
 
-/// Normals and directions over one segment. Beside the segment the surface goes on as its triangle does.
+/// Normals and directions over one segment. The surface continues beside the segment like its triangle.
 class FacetSight {
  public:
   /// @param middle_t of the segment
   FacetSight(const Backscatter& backscatter, const NormalRun& normals, float width_rad, float middle_t);
 
-  /// How the range of a surface that has these normals changes across the wedge at one elevation: r' / r, per
-  /// radian, at a place in it.
+  /// Relative change r' / r, per radian of azimuth, of the range of a surface with these normals, at one
+  /// elevation and place in the wedge.
   float range_slope(float t, float place) const;
 
-  /// At one elevation.
+  /// Response at one elevation.
   FacetResponse response(float t, const WedgePart& wedge) const;
 
  private:
@@ -40,13 +40,13 @@ class FacetSight {
   const Backscatter& backscatter_;
   NormalRun normals_;
   float width_rad_;
-  float slopes_across_;  ///< by how many rms slopes m the direction of the echo turns across the wedge
+  float slopes_across_;  ///< turn of the echo's direction across the wedge, in rms slopes m
 };
 
-/// Mean of a segment, and how it changes along it.
+/// Response of a segment, and its change along the segment.
 struct SegmentFacets {
   float mean = 0.0F, moment = 0.0F;  ///< FacetResponse
-  float gradient = 0.0F;             ///< response at the high end less that at the low end
+  float gradient = 0.0F;             ///< response at the high end minus response at the low end
 };
 SegmentFacets facets_of_segment(const FacetSight& sight, const VisibleSegment& segment,
                                 const WedgePart& wedge = {});

@@ -16,20 +16,20 @@ namespace {
 
 constexpr int pattern_steps = 1024;
 constexpr int most_divisions = 16;          // of a segment at once
-constexpr int most_rounds = 6;              // near a foot point the divided segments are divided again
-constexpr float most_gradient = 1.1F;       // of a segment; 1 where the range turns round at one end
+constexpr int most_rounds = 6;              // near a foot point, parts are divided again
+constexpr float most_gradient = 1.1F;       // of a segment; 1 if the range turns round at one end
 constexpr float most_side_by_side = 16.0F;  // patches of a segment
 constexpr float anything = std::numeric_limits<float>::infinity();
 
-/// Over how much of the fan's half height a segment may reach that is spread over many range bins.
+/// Largest height of a segment that spreads over many range bins, re the fan's half height.
 float share_of_pattern(float linearity) {
   return 0.36F * std::sqrt(linearity);
 }
 constexpr float share_in_one_place = 0.25F;
 
-/// By how much the mean range of a plane over a wedge is above that in its middle, relative: a 24th of r'' /
-/// r times the width squared, with r = D / (n . d) as a function of the azimuth. Not for planes seen so
-/// nearly edge-on that the range is far from straight.
+/// Relative excess of a plane's mean range over a wedge above its range in the middle: a 24th of r'' / r
+/// times the width squared, with r = D / (n . d) as a function of the azimuth. 0 for planes seen nearly
+/// edge-on, whose range is far from straight.
 /// @param h, s components of the normal over n . d
 inline float sagitta_of_plane(float h, float s, float width) {
   const float turn = s * width;
@@ -78,8 +78,8 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
   return without_facets;
 }
 
-/// Normals of all segments, if any of them is shaded by those of its corners. What a segment is divided into
-/// goes on with its own.
+/// Finds the normals of all segments, if any segment has facets or is shaded by vertex normals. The parts of
+/// a divided segment share its normals.
 void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
@@ -115,7 +115,7 @@ void SlicePatcher::see_normals(const Request& request) {
   }
 }
 
-/// One, or several side by side where facets are much louder at one side of the wedge.
+/// Adds one patch, or several side by side if facets are much stronger at one side of the wedge.
 void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vector<EchoPatch>& patches) const {
   const EchoPatch whole{
       range_low_[i],   range_high_[i],    smear_low_[i],      smear_high_[i], response_[i] * solid_angle_[i],
@@ -136,7 +136,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   const FacetSight sight = sight_of(request, i);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
   const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * centroid_offset_[i];
-  // What moves a part, and by how much it is curved, fall with the square of their number.
+  // Both the move and the curvature of a part fall with the square of the number of parts.
   const float facets_share = 1 - response_without_facets_[i] / response_[i];
   const float sagitta_m =
       0.125F * wedge_m * facets_share * (sight.range_slope(t, 0.5F) - sight.range_slope(t, -0.5F));
@@ -159,7 +159,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
     patch.echo = response * patch.weight;
     const auto put = [&](float end_t, float& range_m, float& smear_m) {
       const float place = 0.5F * (part.from + part.to);
-      // From the azimuth of the slice, not from the mean over the wedge.
+      // The range at the azimuth of the slice instead of the mean over the wedge.
       const float n = seen_.normal_h[i] + seen_.normal_z[i] * end_t;
       range_m /= 1 + sagitta_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
       const float wedge_there_m = range_m * request.slice.width_rad;
@@ -177,7 +177,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
 
 void SlicePatcher::lay_out(const Request& request) {
   seen_.lay_out(*visible_);
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // plain_ grows last: if memory runs out before, the next call tries all again.
   if (seen_.size() > plain_.size()) {
     for (auto* array :
          {&range_low_, &range_mid_, &range_high_, &smear_low_, &smear_high_, &cosine_, &solid_angle_,
@@ -198,10 +198,10 @@ void SlicePatcher::lay_out(const Request& request) {
   }
 }
 
-/// Ranges at both ends and in the middle, the smear of the ends, incidence and solid angle. On the plane n.p
-/// = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D, and its range is sqrt(1 + t^2) h. An end that moves
-/// by m = dt / d azimuth changes range by dr/d azimuth + m dr/dt (docs/physics.md 2.3, equation 2, along the
-/// edge).
+/// Computes ranges at both ends and in the middle, smears of the ends, incidence and solid angle. On the
+/// plane n.p = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D and the range sqrt(1 + t^2) h. An end that
+/// moves by m = dt / d azimuth changes range by dr/d azimuth + m dr/dt (docs/physics.md 2.3, equation 2,
+/// along the edge).
 SONARD_SIMD_CLONES
 void SlicePatcher::measure(const Request& request) {
   const float width = request.slice.width_rad;
@@ -255,7 +255,7 @@ void SlicePatcher::measure(const Request& request) {
   }
 }
 
-/// Incidence on the normals that shade.
+/// Computes incidence with the normals that shade.
 SONARD_SIMD_CLONES
 void SlicePatcher::measure_shading() {
   const auto count = visible_->size();
@@ -277,16 +277,17 @@ void SlicePatcher::measure_shading() {
     };
     const float c1 = cosine_at(low[i]), c2 = cosine_at(high[i]), cm = cosine_at(0.5F * (low[i] + high[i]));
     const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
-    const bool is_direction = cosine >= 0;  // else the plane's is kept
+    const bool is_direction = cosine >= 0;  // otherwise the plane's cosine stays
     cos_phi[i] = is_direction ? (cosine < 1 ? cosine : 1.0F) : cos_phi[i];
     cosine_gradient[i] = is_direction ? 0.5F * (c2 - c1) / cosine : cosine_gradient[i];
     cosine_mid[i] = is_direction ? cm : cosine_mid[i];
   }
 }
 
-/// The gradient of the echo along the range, and what it leaves. The range is taken as quadratic in t, r = rm
-/// + half x + sagitta x^2 with x from -1 to 1. Per metre of it the echo goes as the solid angle, (1 +
-/// t^2)^(-3/2) dt, over dr: in first order this is the gradient (docs/physics.md 2.3).
+/// Computes the gradient of the echo along the range, and the error that remains. The range is approximated
+/// as quadratic in t, r = rm + half x + sagitta x^2 with x from -1 to 1. The echo per metre of range is
+/// proportional to the solid angle, (1 + t^2)^(-3/2) dt, over dr; its first order is the gradient
+/// (docs/physics.md 2.3).
 SONARD_SIMD_CLONES
 void SlicePatcher::find_gradients(const Request& request) {
   const auto count = visible_->size();
@@ -315,9 +316,9 @@ void SlicePatcher::find_gradients(const Request& request) {
     const float stretch = 0.5F * qm * std::sqrt(qm) * (1 / (q2 * std::sqrt(q2)) - 1 / (q1 * std::sqrt(q1)));
     const float gradient = stretch - 2 * sagitta / half;
     const float length = std::abs(half), steepness = std::abs(gradient);
-    // Ends whose smears differ by more than twice the spread cross within the wedge. They do where the
-    // segment shrinks to nothing, and its neighbour then makes up for it; but not where the range hardly
-    // changes along the segment, as on a wall.
+    // Ends whose smears differ by more than twice the spread cross within the wedge. That is right if the
+    // segment shrinks to nothing, because its neighbour compensates; it is wrong if the range hardly changes
+    // along the segment, as on a wall.
     const float shrinks = std::abs(high_slope[i] - low_slope[i]) * width / (t2 - t1);
     const float smear = 0.5F * (smear_low[i] + smear_high[i]);
     const float difference = 0.5F * (smear_high[i] - smear_low[i]);
@@ -329,10 +330,10 @@ void SlicePatcher::find_gradients(const Request& request) {
     const float with_cosine = std::abs(gradient + plain[i] * cosine_gradient[i]);
     const float steeper = with_cosine > steepness ? with_cosine : steepness;
     range_gradient[i] = (has_gradient & (steeper * length > least_gradient_m)) ? gradient : 0.0F;
-    // What a gradient leaves is of third order. Spread evenly, the echo lies two thirds of the sagitta too
-    // far towards its thin end; as all segments of a surface do so to the same side, that counts nine times.
+    // With a gradient the error is of third order. Spread evenly, the echo lies two thirds of the sagitta too
+    // far towards its thin end. All segments of a surface err to the same side, so this counts nine times.
     const float left = (has_gradient & (plain[i] > 0)) ? sagitta * sagitta / length : 6 * std::abs(sagitta);
-    // Where the range turns round inside, the halves overlap.
+    // If the range turns round inside, the halves overlap.
     const float both = std::abs(rm - r1) + std::abs(r2 - rm);
     const bool turns = (rm - r1) * (r2 - rm) < 0;
     const float nearest = r1 < r2 ? (r1 < rm ? r1 : rm) : (r2 < rm ? r2 : rm);
@@ -340,8 +341,8 @@ void SlicePatcher::find_gradients(const Request& request) {
   }
 }
 
-/// Sets `parts_` to 0 where parts_of() is to be asked, which is for a few of many, else to 1.
-/// @return whether there are any
+/// Sets `parts_` to 0 for the few segments that need parts_of(), else to 1.
+/// @return true if any segment needs parts_of()
 SONARD_SIMD_CLONES
 bool SlicePatcher::mark_uneven(const Request& request) {
   const auto count = visible_->size();
@@ -373,7 +374,7 @@ bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segme
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
-/// Into how many parts a segment is to be divided.
+/// Number of parts into which a segment must be divided.
 int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   const float allowed_m = request.linearity * request.line_m;
   const float span_m = std::abs(range_mid_[i] - range_low_[i]) + std::abs(range_high_[i] - range_mid_[i]);
@@ -381,7 +382,7 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   if (displaced_[i] > allowed_m) {
     const bool turns = (range_mid_[i] - range_low_[i]) * (range_high_[i] - range_mid_[i]) < 0;
     const bool has_gradient = plain_[i] > 0 && range_gradient_[i] != 0.0F;
-    // The displacement falls with the square of the length, and with the third power if the echo has a
+    // The displacement falls with the square of the length, or with its third power if the echo has a
     // gradient.
     const float excess = displaced_[i] / allowed_m;
     parts = turns ? 2.0F : 1.0F + std::floor(has_gradient ? std::cbrt(excess) : std::sqrt(excess));
@@ -400,8 +401,8 @@ int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
   return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
 }
 
-/// So that over each part the elevation pattern is nearly a straight line, or its mean well known where a
-/// part echoes in one place.
+/// Number of parts with a nearly linear elevation pattern, or with an accurate mean of it if a part echoes in
+/// one place.
 float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
   const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
   const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
@@ -409,8 +410,8 @@ float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, flo
   return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
 }
 
-/// So that over each part the echo of facets changes little: by less than would show if the part lies in one
-/// line, and by about as much as a straight line follows if it spreads over more.
+/// Number of parts with nearly constant echo of facets if a part lies in one line, or nearly linear echo if
+/// it spreads over more.
 float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
   if (!facets_.may_respond(i)) {
     return 1.0F;
@@ -420,7 +421,7 @@ float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, floa
   return std::ceil(facets_.slopes_per_t()[i] * (segment.high - segment.low) / share);
 }
 
-/// Divides the segments whose echo runs otherwise in range than a patch can say.
+/// Divides the segments whose echo over range a patch cannot represent. @return false if there were none
 bool SlicePatcher::divide_uneven(const Request& request) {
   if (!mark_uneven(request)) {
     return false;
@@ -451,11 +452,11 @@ bool SlicePatcher::divide_uneven(const Request& request) {
   return true;
 }
 
-/// Puts its parts into `divided_`.
+/// Puts the parts of a segment into `divided_`.
 void SlicePatcher::divide(std::size_t i, int parts) {
   const VisibleSegment& whole = (*visible_)[i];
   VisibleSegment part = whole;
-  // A range that turns round inside does so where dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
+  // The range turns round at dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
   const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
   const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
   for (int k = 1; k <= parts; ++k) {
@@ -470,7 +471,7 @@ void SlicePatcher::divide(std::size_t i, int parts) {
   }
 }
 
-/// @return of how many segments facets were left out.
+/// @return number of segments whose facets were left out
 std::uint64_t SlicePatcher::shade(const Request& request) {
   std::uint64_t without_facets = 0;
   const bool any_facets = request.any_facets;
@@ -500,7 +501,7 @@ void SlicePatcher::join_gradients() {
   }
 }
 
-/// What a segment answers without facets.
+/// Response of a segment without facets.
 float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
   const VisibleSegment& segment = (*visible_)[i];
   const PartSurface& part = request.parts[segment.part];
@@ -509,7 +510,7 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
     const float t = 0.5F * (segment.low + segment.high);
     const float h = 1.0F / (seen_.w_at_0[i] + seen_.w_slope[i] * t);
     const SegmentPlace place{h, t * h, request.slice, std::abs(range_high_[i] - range_low_[i])};
-    // In the middle; that the mean differs from the middle is a matter of geometry.
+    // In the middle of the segment; the ratio of mean and middle follows from geometry.
     const float middle = cosine_mid_[i];
     mapped_[i] = {middle, 1.0F};
     if (middle > 0) {
@@ -520,7 +521,7 @@ float SlicePatcher::shade_plainly(const Request& request, std::size_t i) {
   return surface_response(part, request.surface, cosine, range_mid_[i]);
 }
 
-/// @return false where there are none to add.
+/// @return false if the segment has no facets to add
 bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
   const VisibleSegment& segment = (*visible_)[i];
   const PartSurface& part = request.parts[segment.part];
@@ -556,8 +557,8 @@ FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
           0.5F * (segment.low + segment.high)};
 }
 
-/// Mean over the echo of each segment, and its gradient. Solid angle and response change along the segment
-/// too.
+/// Weights each segment with the mean of the pattern over its echo, and adds the pattern's gradient. The mean
+/// includes the changes of solid angle and response along the segment.
 SONARD_SIMD_CLONES
 void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
   const auto count = visible_->size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible segments of a slice -> echo patches.
+// From visible segments of a slice to echo patches.
 #pragma once
 
 #include <array>
@@ -18,15 +18,15 @@
 
 namespace sonard::render {
 
-/// Elevation pattern as a function of t, tabled.
+/// Table of the elevation pattern as a function of t.
 class ElevationPattern {
  public:
-  /// @param tabled_if_flat a pattern that is 1 everywhere too (SkipRule::flat_elevation switched off)
+  /// @param tabled_if_flat also tables a pattern that is 1 everywhere (SkipRule::flat_elevation off)
   explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
   bool flat() const { return weight_.empty(); }
   bool varies() const { return varies_; }
 
-  /// Weights at even steps of t from -tan_limit to tan_limit; the weight at t has the index
+  /// Weights at even steps of t from -tan_limit to tan_limit; the index of t is
   /// step_at_0() + t * steps_per_t().
   const float* table() const { return weight_.data(); }
   float steps_per_t() const { return 0.5F * static_cast<float>(weight_.size() - 1) / tan_limit_; }
@@ -38,7 +38,7 @@ class ElevationPattern {
   std::vector<float> weight_;  ///< empty: 1 everywhere
 };
 
-/// One per thread; keeps its memory.
+/// Makes patches. One per thread; reuses its memory.
 class SlicePatcher {
  public:
   struct Request {
@@ -48,26 +48,26 @@ class SlicePatcher {
     const SurfaceModel& surface;
     const ElevationPattern& pattern;
     float tan_limit;  ///< of the fan's elevation
-    /// Within a segment the echo is taken as even in range, or as linear in it. Segments are divided
-    /// until that displaces it by no more than this many lines.
+    /// Within a segment the echo is treated as constant or linear in range. Segments are divided until this
+    /// displaces it by at most this many lines.
     float linearity;
-    bool any_mapped;  ///< whether any of the parts has a normal map
-    /// Under one, segments are no longer than this many lines, so that its bumps appear at their ranges.
+    bool any_mapped;  ///< some part has a normal map
+    /// With a normal map, segments are at most this many lines long, so that bumps appear at their ranges.
     float mapped_lines;
-    bool any_vertex_normals;  ///< whether any of the parts is shaded by them
-    bool any_facets;          ///< whether any of the parts has facets
-    /// Segments that spread over lines are divided until the direction of their echo, against that of a
-    /// mirror, turns by no more than this many rms slopes of their facets.
+    bool any_vertex_normals;  ///< some part is shaded by vertex normals
+    bool any_facets;          ///< some part has facets
+    /// Segments that spread over lines are divided until the direction of their echo, re the direction of a
+    /// mirror, turns by at most this many rms slopes of their facets.
     float facet_slopes;
-    /// Where facets are louder at one side of the wedge than at the other, a patch lies that much nearer to
-    /// that side. It is divided across until that is no more than this many lines.
+    /// If facets are stronger at one side of the wedge, the patch moves towards that side. It is divided
+    /// across the wedge until the move is at most this many lines.
     float facet_lines;
     float line_m;
-    float max_range_m;  ///< what is wholly beyond is left as it is
+    float max_range_m;  ///< segments wholly beyond are not divided
   };
 
-  /// @param patches is appended to.
-  /// @return of how many patches facets were left out (SkipRule::facet_kernel).
+  /// @param patches gets the new patches appended
+  /// @return number of segments whose facets were left out (SkipRule::facet_kernel)
   std::uint64_t make(const Request& request, std::vector<EchoPatch>& patches);
 
  private:
@@ -91,31 +91,30 @@ class SlicePatcher {
   void weigh_by_pattern(const ElevationPattern& pattern);
   void join_gradients();
 
-  /// Segments after division, and what is known of each; arrays are as long as those of `seen_`.
+  /// Segments after division, and numbers per segment; arrays are as long as those of `seen_`.
   const std::vector<VisibleSegment>* visible_ = nullptr;  ///< the request's, or whole_
   std::vector<VisibleSegment> whole_, divided_;
-  /// Normals of each segment of the request; empty where all are shaded by their planes and none has facets.
+  /// Normals of each segment of the request; empty if all are shaded by their planes and have no facets.
   std::vector<NormalRun> runs_;
-  std::vector<std::uint32_t> original_, divided_original_;  ///< of each segment, its number in `runs_`
+  std::vector<std::uint32_t> original_, divided_original_;  ///< per segment: its index in `runs_`
   VertexNormals vertex_normals_;
-  std::vector<std::uint32_t> shaded_;  ///< the segments of the request that it interpolates
-  NormalArrays normals_;               ///< `runs_` of each segment, if there are any
+  std::vector<std::uint32_t> shaded_;  ///< segments of the request that vertex_normals_ interpolates
+  NormalArrays normals_;               ///< `runs_` per segment, if not empty
   FacetArrays facets_;
   VisibleArrays seen_;
   VisibleEnds ends_;
   std::vector<float> range_low_, range_mid_, range_high_, smear_low_, smear_high_, cosine_, solid_angle_;
   std::vector<float> by_azimuth_low_, by_azimuth_high_;  ///< change of the ends' ranges with the azimuth
-  std::vector<float> plain_;  ///< 1 where the response is cosine_, which changes evenly; else 0
-  std::vector<float>
-      range_gradient_;  ///< of the solid angle along the range, see EchoPatch; 0: not to be used
+  std::vector<float> plain_;            ///< 1 if the response is cosine_, which changes evenly; else 0
+  std::vector<float> range_gradient_;   ///< of the solid angle along the range, see EchoPatch; 0: constant
   std::vector<float> cosine_gradient_;  ///< of cosine_, the mean of a segment
-  std::vector<float> cosine_mid_;       ///< in its middle
-  std::vector<float> echo_gradient_;    ///< of both
-  std::vector<std::int32_t> parts_;     ///< into how many each is divided
-  std::vector<float> displaced_;        ///< how far the echo may be from where it is taken to be, metres
+  std::vector<float> cosine_mid_;       ///< cosine in the middle of a segment
+  std::vector<float> echo_gradient_;    ///< range_gradient_ plus the gradient of the response
+  std::vector<std::int32_t> parts_;     ///< number of parts into which a segment is divided
+  std::vector<float> displaced_;        ///< bound of the echo's displacement by linearity, metres
   std::vector<float> response_, response_without_facets_;
-  std::vector<float> centroid_offset_;   ///< where in its wedge the echo has its middle, 1/2 at the port side
-  std::vector<MappedIncidence> mapped_;  ///< in its middle
+  std::vector<float> centroid_offset_;   ///< centroid of the echo in its wedge, 1/2 at the port side
+  std::vector<MappedIncidence> mapped_;  ///< in the middle of a segment
 };
 
 }  // namespace sonard::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where slices have to be narrower.
+// Refinement of slices: comparison of neighbours, and division.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,28 +12,28 @@ namespace sonard::render {
 
 namespace {
 
-// Odd, so that the part in the middle goes on with what the whole has seen. An edge is closed in on, a
-// sagitta falls with the square of the width.
+// Odd, so that the middle part keeps the visible segments of the whole. Five parts close in on an edge; for a
+// sagitta, which falls with the square of the width, three do.
 constexpr int parts_at_edges = 5;
 constexpr int parts_of_curves = 3;
 constexpr float three_helps_by = 9.0F;    // the error falls with the width, and its share of a beam once more
-constexpr float curves_per_edge = 10.0F;  // what a sagitta displaces stays nearby, what an edge hides is gone
-constexpr float ends_per_edge = 1.0F;  // where the range ends, the smear of a slice is right in first order
+constexpr float curves_per_edge = 10.0F;  // a sagitta displaces echoes only a little, an edge hides them
+constexpr float ends_per_edge = 1.0F;     // at the end of the range, smears are right in first order
 constexpr std::size_t borders_per_job = 32;
-constexpr float lone_share = 0.6F;  // of what a beam receives, in disagreement
+constexpr float lone_share = 0.6F;  // of the elevations with an echo, at which neighbours disagree
 constexpr float least_ensonified = 0.5F / side_probes;
 
-/// Compares neighbours. Ranges are secant / w: compared without dividing, and without those out of range in
-/// both.
+/// Compares neighbours. Ranges are secant / w; they are compared without division, and ignored if both are
+/// out of range.
 struct Comparison {
   const SideView& view;
   float most_sagitta_m;
-  float divided_anyway;  ///< above such a share of mismatch the rest is not needed
+  float divided_anyway;  ///< share of mismatch above which shift_lines() is not needed
 
   SliceBorder operator()(const SliceCell& port, const SliceCell& starboard) const;
 
  private:
-  /// @param port_side, starboard_side what the two expect on the border.
+  /// @param port_side, starboard_side profiles that the two expect on the border
   SliceBorder compare(const SliceCell& port, const SideProfile& port_side, const SideProfile& starboard_side,
                       const SliceCell& starboard) const;
   float shift_lines(const SideProfile& port_side, const SideProfile& starboard_side) const;
@@ -43,7 +43,7 @@ SliceBorder Comparison::operator()(const SliceCell& port, const SliceCell& starb
   if (port.edge_at_starboard.none()) {
     return compare(port, port.sides.starboard, starboard.sides.port, starboard);
   }
-  // Along the edge they have every reason to disagree.
+  // Probes along the edge are ignored: there the surfaces differ.
   SideProfile port_side = port.sides.starboard, starboard_side = starboard.sides.port;
   for (std::size_t i = 0; i < side_probes; ++i) {
     if (port.edge_at_starboard[i]) {
@@ -85,11 +85,10 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
           mismatch > 0 && mismatch < divided_anyway ? shift_lines(port_side, starboard_side) : 0.0F};
 }
 
-/// One number for each probe.
+/// One number per probe.
 using OfProbes = std::array<float, side_probes>;
 
-/// In sixteen lanes, as float sums are not reordered by the compiler: two vectors of eight, which is what
-/// AVX2 has.
+/// Sum in sixteen lanes, two AVX2 vectors of eight, because the compiler does not reorder float sums.
 SONARD_SIMD_CLONES
 float sum(const OfProbes& numbers) {
   constexpr std::size_t lanes = 8;
@@ -113,9 +112,9 @@ float sum(const OfProbes& numbers) {
   return all;
 }
 
-/// The echo of an elevation goes as cos(incidence) / r^2. With s the slope of the range along the slice, from
-/// one probe to the next, the cosine is taken as 1 / (1 + |s|), which is near enough to weigh the
-/// error and needs no root.
+/// The echo of an elevation is proportional to cos(incidence) / r^2. With s the slope of the range along the
+/// slice, from one probe to the next, the cosine is approximated as 1 / (1 + |s|): accurate enough as a
+/// weight of errors, and without a root.
 SONARD_SIMD_CLONES
 float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& starboard_side) const {
   const float* __restrict wa = port_side.data();
@@ -125,8 +124,8 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
   const float probes_per_t = (side_probes - 1) / (2 * static_cast<float>(probe_reach) * view.tan_limit);
   /// Echo times range.
   const auto weight_of = [&](float w, float next_w, float scale, float next_scale) {
-    constexpr float tiny = 1e-30F;                             // where nothing is seen
-    const float here = next_scale * w, next = scale * next_w;  // as the ranges there and here
+    constexpr float tiny = 1e-30F;                             // avoids 0 / 0 if nothing is seen
+    const float here = next_scale * w, next = scale * next_w;  // proportional to the ranges there and here
     const float steps = here > next ? here - next : next - here;
     const float cosine = next / (next + steps * (probes_per_t * scale * scale) + tiny);
     return scale < furthest_m * w ? cosine * w : 0.0F;
@@ -151,7 +150,7 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
 
 }  // namespace
 
-/// Between two slices that were compared before nothing has changed.
+/// Compares only pairs with a new slice.
 void SliceSampler::compare_neighbours(const Setting& setting) {
   const std::size_t borders = order_.size() - 1;
   workers_.run(static_cast<int>((borders + borders_per_job - 1) / borders_per_job), [&](int job) {
@@ -171,7 +170,7 @@ void SliceSampler::compare_neighbours(const Setting& setting) {
   });
 }
 
-/// The share of its elevations at which each beam receives anything.
+/// Per beam, the share of elevations at which it receives an echo.
 std::vector<float> SliceSampler::ensonified_by_beam(const Setting& setting) const {
   std::vector<float> ensonified(static_cast<std::size_t>(setting.fan.beam_count()), 0.0F);
   for (const std::size_t i : order_) {
@@ -184,8 +183,8 @@ std::vector<float> SliceSampler::ensonified_by_beam(const Setting& setting) cons
   return ensonified;
 }
 
-/// How many slices of each beam share in its error: by their squares, so that one much worse than the
-/// others counts alone.
+/// Per beam, the effective number of slices that share its error: weighted by squares, so that one slice much
+/// worse than the others counts alone.
 std::vector<float> SliceSampler::slices_in_error(const Setting& setting) const {
   const auto beams = static_cast<std::size_t>(setting.fan.beam_count());
   std::vector<float> squares(beams, 0.0F), fourths(beams, 0.0F);
@@ -203,9 +202,9 @@ std::vector<float> SliceSampler::slices_in_error(const Setting& setting) const {
   return squares;
 }
 
-/// Into how many parts each slice is to be divided: those on both sides of every border at which they
-/// disagree too much, those that miss something thin, and those in which the range ends. All is measured by
-/// what the beam receives; errors of many slices add up as independent ones do.
+/// Number of parts into which each slice must be divided. Divided are slices on both sides of a border at
+/// which they disagree too much, slices that miss a thin thing, and slices in which the range ends. Errors
+/// are relative to the elevations at which the beam receives an echo, and add like independent errors.
 std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
   const std::vector<float> ensonified = ensonified_by_beam(setting);
@@ -244,10 +243,11 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   return parts;
 }
 
-/// Puts the parts of a slice into `order` and `fresh`: at upright edges if there are any, else evenly.
+/// Puts the parts of a slice into `order` and `fresh`: cut at upright edges if there are any, else even
+/// parts.
 void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
                           std::vector<std::size_t>& fresh) {
-  const SliceCell& whole = *cells_[whole_number];  // stays where it is while cells are added
+  const SliceCell& whole = *cells_[whole_number];  // stays valid while cells are added
   const double width = static_cast<double>(whole.slice.width_rad);
   const double port_rad = whole.slice.azimuth_rad + 0.5 * width;
   const bool at_edges = !whole.edges.empty();
@@ -274,7 +274,7 @@ void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::
   }
 }
 
-/// @return whether anything was divided; `fresh` are the new cells.
+/// @return true if any slice was divided; `fresh` gets the new cells
 bool SliceSampler::refine(const Setting& setting, std::vector<std::size_t>& fresh) {
   fresh.clear();
   if (setting.accuracy.most_divisions == 1) {

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double most_sag_lines = 0.06;  // at `change` 1 %
 
-/// How wide a first slice may be around an azimuth. Along a wall across the axis the range is d / cos psi and
-/// the echo goes as cos^3 psi: within a slice the echo must not change, and the range not depart from a
-/// straight line, by more than the accuracy allows.
+/// Largest width of a first slice at an azimuth. Along a wall across the axis the range is d / cos psi, and
+/// the echo is proportional to cos^3 psi. Within a slice, the change of the echo and the deviation of the
+/// range from a straight line must stay within the accuracy.
 double widest_first_slice(double azimuth_rad, double line_m, double max_range_m, double change) {
   const double tangent = std::abs(std::tan(std::min(std::abs(azimuth_rad), 1.4)));
   const double for_echo = change * std::sqrt(12.0) / (3 * tangent + 1e-9);
@@ -28,14 +28,14 @@ double widest_first_slice(double azimuth_rad, double line_m, double max_range_m,
 
 }  // namespace
 
-/// What parts share: meshes and normal maps are prepared once, however many parts use them.
+/// Meshes and normal maps that parts share; each is prepared once.
 struct SliceSampler::Prepared {
   struct Shape {
     std::shared_ptr<const TriangleMesh> mesh;
     std::shared_ptr<const MeshClusters> clusters;
     std::uint64_t merged_facets = 0;
   };
-  std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< as it is (false) or merged (true)
+  std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< unchanged (false) or merged (true)
   std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
 
   const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge) {
@@ -45,7 +45,7 @@ struct SliceSampler::Prepared {
       if (merge) {
         TriangleMesh merged = merge_coplanar_facets(*mesh);
         shape.merged_facets = mesh->triangle_count() - merged.triangle_count();
-        if (shape.merged_facets > 0) {  // else there is no need for a second one of the same
+        if (shape.merged_facets > 0) {  // otherwise the original mesh is used
           shape.mesh = std::make_shared<const TriangleMesh>(std::move(merged));
         }
       }
@@ -53,7 +53,7 @@ struct SliceSampler::Prepared {
     }
     return shape;
   }
-  /// @param map null: one without bumps
+  /// @param map null: a map without bumps
   std::shared_ptr<const NormalPyramid> pyramid(const NormalMap* map) {
     auto& pyramid = pyramids[map];
     if (!pyramid) {
@@ -76,7 +76,7 @@ SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSw
 
 SliceSampler::~SliceSampler() = default;
 
-/// Adds a part of the body that is added next.
+/// Adds a part of the next body.
 void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   PartSurface surface;
   surface.backscatter = Backscatter(part.material);
@@ -92,7 +92,7 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
     surface.normal_map = prepared.pyramid(part.normal_map.get());
     any_mapped_ = true;
   }
-  // Nothing but its plane is asked of a facet that is shaded by its own normal.
+  // Of a facet that is shaded by its own normal, only the plane matters.
   const bool merge = !surface.vertex_normals && !surface.normal_map && skip_.on(SkipRule::coplanar_facets);
   const Prepared::Shape& shape = prepared.shape(part.mesh, merge);
   skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
@@ -102,7 +102,7 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   surfaces_.push_back(std::move(surface));
 }
 
-/// Facets of such parts are not merged: neighbouring parts share corners.
+/// Facets of changed parts are not merged, because neighbouring parts share corners.
 void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
   std::vector<Replacement> replacements(changes.size());
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -126,7 +126,7 @@ void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
   }
 }
 
-/// In doubles up to here: no world coordinate reaches a float.
+/// Computes poses relative to the sonar in doubles, so that no world coordinate is rounded to a float.
 void SliceSampler::place_parts(const Pose& T_world_sonar) {
   bend_.up = glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1));
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -200,8 +200,8 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   return cells;
 }
 
-/// Fills the cells `fresh`, which run from port to starboard; all of one beam in one job, unless the beams
-/// are so few that threads would be left without.
+/// Fills the cells `fresh`, which run from port to starboard. One job has all cells of a beam, unless the
+/// beams are so few that threads would be idle.
 void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& fresh) {
   constexpr std::size_t enough_jobs = 4;
   const std::size_t longest = std::max<std::size_t>(1, fresh.size() / enough_jobs);

@@ -22,45 +22,45 @@
 
 namespace sonard::render {
 
-/// Shares of the elevations at which neighbouring slices do not agree.
+/// Disagreement of neighbouring slices on their border, as shares of the elevations.
 struct SliceBorder {
-  float range_mismatch = 0.0F;  ///< they expect ranges on the border that differ by more than a line
-  float curvature = 0.0F;       ///< their surfaces curve too much for straight lines across the slices
-  float shift_lines = 0.0F;     ///< by how much the range mismatch may move the centroid of the echo
+  float range_mismatch = 0.0F;  ///< expected ranges differ by more than a line
+  float curvature = 0.0F;       ///< surfaces curve too much for straight lines across the slices
+  float shift_lines = 0.0F;     ///< move of the echo's centroid that range mismatch may cause, in lines
 };
 
-/// A wedge of the fan and what is seen in it.
+/// A wedge of the fan and its visible segments.
 struct SliceCell {
   Slice slice;
   int beam = 0;
-  std::vector<VisibleSegment> visible;  ///< seen along its azimuth, whatever its width
+  std::vector<VisibleSegment> visible;  ///< at its azimuth, independent of its width
   SliceSides sides;
   SliceBorder to_starboard;                  ///< between this slice and the next one
   bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
-  bool seen = false;                         ///< `visible` is known
+  bool seen = false;                         ///< `visible` is filled
   bool fresh = true;                         ///< not yet compared with its neighbours
   std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
-  ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge for which the slice ends there
+  ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge at which the slice was cut
 };
 
-/// Along the elevation nothing is sampled: in each slice visibility and range limits are exact, so that only
-/// the width of slices makes errors, and these of second order but at round silhouettes that run along the
-/// slices (docs/accuracy.md). One thread uses it; it shares its work with the pool's.
+/// Samples azimuths only: in each slice visibility and range limits are exact. Errors come from the width of
+/// slices alone and are of second order, except at round silhouettes along the slices (docs/accuracy.md).
+/// Only one thread may use it; it distributes its work over the pool.
 class SliceSampler {
  public:
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});
   ~SliceSampler();
 
-  /// Cells from port to starboard; they stay valid until the next call. The result does not depend on the
-  /// number of threads.
-  /// @param sampled_range_m at least that of the lines: how far surfaces are looked for.
+  /// Cells from port to starboard; valid until the next call. The result does not depend on the number of
+  /// threads.
+  /// @param sampled_range_m range up to which surfaces are found; at least the range of the lines
   std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture,
                                        const RangeLines& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
-  /// What one of these cells echoes. Any thread.
-  /// @param patches is appended to.
-  /// @return of how many of them facets were left out (SkipRule::facet_kernel).
+  /// Makes the patches of one of these cells. Any thread may call it.
+  /// @param patches gets the new patches appended
+  /// @return number of segments whose facets were left out (SkipRule::facet_kernel)
   std::uint64_t make_patches(const SliceCell& cell, std::vector<EchoPatch>& patches) const;
 
   /// See EchoEngine::set_body_pose().
@@ -72,7 +72,7 @@ class SliceSampler {
   /// See EchoEngine::set_refraction().
   void set_refraction(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
 
-  /// What the last call left out.
+  /// Work that the last sample() left out.
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
@@ -106,17 +106,17 @@ class SliceSampler {
 
   WorkerPool& workers_;
   SkipSwitches skip_;
-  SkipCounts skipped_parts_;  ///< of every ping: what is left out of shading
+  SkipCounts skipped_parts_;  ///< work left out of shading in every ping
   std::vector<Pose> T_world_body_;
   std::vector<Part> parts_;
   std::vector<PlacedPart> placed_;
   std::vector<PartSurface> surfaces_;
   MeshCache<Replacement> replacements_;
   bool any_mapped_ = false;
-  bool any_facets_ = false;  ///< whether any material has them
+  bool any_facets_ = false;  ///< some material has facets
   Refraction bend_;          ///< in the sonar frame of this ping
   FanTriangles triangles_;
-  std::vector<std::unique_ptr<SliceCell>> cells_;  ///< all ever needed; the first cells_used_ are in use
+  std::vector<std::unique_ptr<SliceCell>> cells_;  ///< kept for reuse; the first cells_used_ are in use
   std::size_t cells_used_ = 0;
   std::vector<std::size_t> order_;  ///< cells from port to starboard
   SkipCounts skipped_;

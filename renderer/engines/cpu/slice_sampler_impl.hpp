@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the two halves of SliceSampler share: seeing slices (slice_sampler.cpp) and refining them
+// Types shared by the two halves of SliceSampler: visibility (slice_sampler.cpp) and refinement
 // (slice_refinement.cpp).
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace sonard::render {
 
-/// What stays the same during one ping.
+/// Constants of one ping.
 struct SliceSampler::Setting {
   Fan fan;
   ElevationPattern pattern;
@@ -18,7 +18,7 @@ struct SliceSampler::Setting {
   const std::vector<PartSurface>& parts;
   bool any_mapped;
   bool any_vertex_normals;
-  bool any_facets;  ///< whether any part has them
+  bool any_facets;  ///< some part has facets
   float line_m;
   SideView side_view;
 
@@ -27,7 +27,7 @@ struct SliceSampler::Setting {
   }
 };
 
-/// Memory of one thread, and the way of one slice through it.
+/// Memory of one thread: the stages of one slice.
 struct SliceSampler::Scratch {
   SliceCutter cutter;  ///< holds the triangles of one beam
   Segments segments;

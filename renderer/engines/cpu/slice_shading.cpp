@@ -25,7 +25,7 @@ struct SurfacePoint {
         normal(t.across()),
         p(point) {}
 
-  /// Weights of the second and third corner of a point, or their change along a step in the plane.
+  /// Weights of the second and third corner at a point, or their change along a step in the plane.
   glm::vec2 weights(const glm::vec3& from_corner) const {
     const float nn = glm::dot(normal, normal);
     return {glm::dot(glm::cross(from_corner, edge_c), normal) / nn,
@@ -39,8 +39,8 @@ T interpolate(const std::vector<T>& values, const std::uint32_t* corner, const g
          values[corner[2]] * weights.y;
 }
 
-/// Level of the pyramid whose texels are as large as the smaller side of the segment's footprint, and how
-/// many of them lie along the larger side.
+/// Level of the pyramid whose texels are as large as the smaller side of the segment's footprint, and the
+/// number of texels along the larger side.
 struct MapFootprint {
   float level;
   int taps;
@@ -75,7 +75,7 @@ MapFootprint footprint_on_map(const PartSurface& part, const SurfacePoint& surfa
   return {std::log2(std::max(shorter, longer / most_taps)), taps, u_texels > v_texels ? u : v};
 }
 
-/// Mean of the mapped normals over the footprint, not of unit length: see NormalPyramid.
+/// Mean of the mapped normals over the footprint, not of unit length (NormalPyramid).
 glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, const std::uint32_t* corner,
                         const glm::vec2& weights, const glm::vec3& vertex_normal, const SegmentPlace& place) {
   const glm::vec2 uv = interpolate(part.mesh->texcoords, corner, weights);
@@ -99,7 +99,7 @@ bool has_plain_facets(const TriangleMesh& mesh) {
     const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
     const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
     for (std::size_t k = 0; k < 3; ++k) {
-      // What is not a number is no direction.
+      // Negated, so that NaN returns false.
       if (!(glm::length(glm::cross(facet, mesh.normals[corner[k]])) < plain_rad)) {
         return false;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface answers at a segment of a slice: normal maps, and the response laws.
+// Response of a surface at a segment of a slice: normal maps and response laws.
 #pragma once
 
 #include "renderer/engines/cpu/fan_triangles.hpp"
@@ -9,10 +9,10 @@
 
 namespace sonard::render {
 
-/// How sound meets the normals of a map.
+/// Incidence of sound on the normals of a map.
 struct MappedIncidence {
-  float cosine;       ///< |n . d|, with the mean of the map's normals as it is
-  float mean_length;  ///< of that mean
+  float cosine;       ///< |n . d|, with n the mean of the map's normals, not of unit length
+  float mean_length;  ///< length of n
 };
 
 /// The middle of a segment in its slice, and its size.
@@ -22,16 +22,16 @@ struct SegmentPlace {
   float range_extent_m;
 };
 
-/// In the middle of a segment of a part with a normal map.
-/// @param geometric cos phi of the triangle itself; the answer where the shading normal is no direction.
+/// Incidence in the middle of a segment of a part with a normal map.
+/// @param geometric cos phi of the triangle itself; returned if the shading normal is not finite
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const SegmentPlace& place, float geometric);
 
-/// Whether all vertex normals are those of their facets, to 1e-4 rad, as where there are none: then there is
-/// nothing to interpolate.
+/// True if all vertex normals equal the normals of their facets, to 1e-4 rad, or if there are no vertex
+/// normals: then interpolation is not needed.
 bool has_plain_facets(const TriangleMesh& mesh);
 
-/// SurfaceSample::response of a surface seen under `cosine` at a range, without its facets.
+/// SurfaceSample::response of a surface at an incidence and a range, without its facets.
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m);
 
 }  // namespace sonard::render

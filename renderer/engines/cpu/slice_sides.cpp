@@ -19,8 +19,8 @@ float probe_step(float tan_limit) {
   return -2 * first_probe(tan_limit) / (side_probes - 1);
 }
 
-/// Shares and lines of SliceSides from its profiles. Ranges are positive, so that their bits are ordered as
-/// they are: GCC 12 vectorises extremes of integers only.
+/// Computes shares and lines of SliceSides from its profiles. Ranges are positive, so their bit patterns have
+/// the same order; GCC 12 vectorises extremes of integers only.
 SONARD_SIMD_CLONES
 void summarise(const SideView& view, SliceSides& sides) {
   const float* __restrict port = sides.port.data();
@@ -70,7 +70,7 @@ void SideExpectation::find(const std::vector<VisibleSegment>& visible, float wid
 
 void SideExpectation::lay_out(const std::vector<VisibleSegment>& visible) {
   seen_.lay_out(visible);
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // w_by_azimuth_ grows last: if memory runs out before, the next call tries all again.
   if (seen_.size() > w_by_azimuth_.size()) {
     first_probe_.resize(seen_.size());
     last_probe_.resize(seen_.size());
@@ -78,7 +78,7 @@ void SideExpectation::lay_out(const std::vector<VisibleSegment>& visible) {
   }
 }
 
-/// How each segment goes on beside the slice.
+/// Continues each segment beside the slice.
 SONARD_SIMD_CLONES
 void SideExpectation::follow(float width_rad, float tan_limit) {
   const auto count = seen_.count;
@@ -97,13 +97,13 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
   for (std::size_t i = 0; i < count; ++i) {
     low_slope[i] = EdgeRun{low_slope[i], low_reach[i]}.slope_within(low[i], width_rad, tan_limit);
     high_slope[i] = EdgeRun{high_slope[i], high_reach[i]}.slope_within(high[i], width_rad, tan_limit);
-    // On a plane n . p = D, 1 / h = (n_h + n_z t) / D changes with azimuth by n_s / D, wherever on it.
+    // On a plane n . p = D, 1 / h = (n_h + n_z t) / D changes with azimuth by n_s / D, at any point.
     const float t = 0.5F * (low[i] + high[i]);
     w_by_azimuth[i] = (w_at_0[i] + w_slope[i] * t) * normal_s[i] / (normal_h[i] + normal_z[i] * t);
   }
 }
 
-/// The probes of each segment, as they run if the segment goes on as it does in the middle.
+/// Finds the probes of each segment at an offset from the slice, if it continues as in the middle.
 SONARD_SIMD_CLONES
 void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   const auto count = seen_.count;
@@ -116,7 +116,7 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    // The first probe above t. Truncation is floor where it counts.
+    // The first probe above t. Negative numbers become 0, so truncation equals floor.
     const float from = (low[i] + low_slope[i] * offset_rad - lowest) * probes_per_t + 1;
     const float to = (high[i] + high_slope[i] * offset_rad - lowest) * probes_per_t + 1;
     first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
@@ -124,11 +124,11 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   }
 }
 
-/// @param offset_rad from the middle of the slice, positive to port.
+/// @param offset_rad from the middle of the slice, positive to port
 void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& out) {
   const float step = probe_step(tan_limit);
   find_probes(tan_limit, offset_rad);
-  std::int32_t end = 0;  // of what is filled
+  std::int32_t end = 0;  // of the filled probes
   for (std::size_t i = 0; i < seen_.count; ++i) {
     const std::int32_t first = first_probe_[i], last = last_probe_[i];
     for (; end < first; ++end) {
@@ -137,7 +137,7 @@ void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& ou
     const float slope = seen_.w_slope[i] * step;
     const float w = seen_.w_at_0[i] + w_by_azimuth_[i] * offset_rad +
                     seen_.w_slope[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
-    // Most hold a probe or two. What is written too much the next segment writes again, or the end.
+    // Most segments have one or two probes. The next segment, or the fill at the end, overwrites the excess.
     float* const at = &out[static_cast<std::size_t>(first)];
     for (std::int32_t k = 0; k < probe_padding; ++k) {
       at[k] = w + slope * static_cast<float>(k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a slice expects at the two sides of its wedge if its surfaces go on as they are seen in its middle.
+// Ranges that a slice expects at the two sides of its wedge if its surfaces continue as in its middle.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace sonard::render {
 
-inline constexpr int probe_padding = 4;  ///< at the end of a profile; so many are written at once
-/// 1 / horizontal distance at the probes of one side, 0 where nothing is seen.
+inline constexpr int probe_padding = 4;  ///< at the end of a profile; number of probes written at once
+/// 1 / horizontal distance at the probes of one side, 1 / m; 0 if nothing is seen.
 using SideProfile = std::array<float, side_probes + probe_padding>;
 
-/// What a slice expects at both sides of its wedge; neighbours compare theirs.
+/// Expectation of a slice at both sides of its wedge; neighbours compare theirs.
 struct SliceSides {
   SideProfile port, starboard;
-  float ensonified = 0.0F;  ///< share of elevations at which something is expected within the range
-  float one_sided = 0.0F;   ///< share of elevations at which only one side expects something
+  float ensonified = 0.0F;  ///< share of elevations at which a surface is expected within the range
+  float one_sided = 0.0F;   ///< share of elevations at which only one side expects a surface
   float lines = 0.0F;       ///< range lines over which the expected ranges spread
 };
 
-/// The elevations and the range in which sides are compared, for one ping.
+/// The elevations and the range for the comparison of sides, for one ping.
 struct SideView {
   SideView(float tan_limit, float max_range_m, float line_m);
 
@@ -30,7 +30,7 @@ struct SideView {
   SideProfile secant;  ///< of the probes' elevations: range = secant / w
 };
 
-/// One per thread; keeps its memory.
+/// Computes SliceSides. One per thread; reuses its memory.
 class SideExpectation {
  public:
   void find(const std::vector<VisibleSegment>& visible, float width_rad, const SideView& view,

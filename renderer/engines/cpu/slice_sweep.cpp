@@ -15,7 +15,7 @@ constexpr float never = std::numeric_limits<float>::infinity();
 // Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
 constexpr float touching = 1e-5F;
 
-constexpr float widest_gap_rad = 2 * shortest_rad;  // where segments were left out
+constexpr float widest_gap_rad = 2 * shortest_rad;  // left by dropped segments
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
   close_gaps();
 }
 
-/// Takes out what is seen through a gap in a surface.
+/// Removes segments that are visible only through a gap in a surface.
 void SliceSweep::close_gaps() {
   for (std::size_t k = short_.size(); k-- > 0;) {
     const std::size_t i = short_[k];
@@ -85,8 +85,8 @@ void SliceSweep::close_gaps() {
   }
 }
 
-/// Where two surfaces cross, their segments end along the line in which their planes meet. Its direction e
-/// gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
+/// Sets the runs of segments that end at a crossing: along the line in which the two planes intersect. Its
+/// direction e gives dt / d azimuth = (e_z - t e_h) / e_s, as for the edge of a triangle.
 void SliceSweep::follow_crossings() {
   for (const std::size_t i : crossed_) {
     if (i + 1 >= visible_->size()) {
@@ -98,7 +98,7 @@ void SliceSweep::follow_crossings() {
     const float e_s = before.normal_z * after.normal_h - before.normal_h * after.normal_z;
     const float e_z = before.normal_h * after.normal_s - before.normal_s * after.normal_h;
     const float slope = (e_z - before.high * e_h) / e_s;
-    // It moves no farther than the longer segment reaches.
+    // It moves at most by the length of the longer segment.
     const float reach = std::max(before.high - before.low, after.high - after.low);
     before.high_run = after.low_run = std::isfinite(slope) ? EdgeRun{slope, reach} : EdgeRun{};
   }
@@ -112,8 +112,8 @@ float SliceSweep::start_after_next() const {
   return next_ + 1 < count_ ? start_[next_ + 1] : never;
 }
 
-/// A counting sort into as many buckets as there are segments, then insertion: linear where segments are
-/// spread over the fan, as the triangles of a surface are.
+/// Counting sort into two buckets per segment, then insertion sort: linear if segments are spread over the
+/// fan, like the triangles of a surface.
 void SliceSweep::sort_by_low_end() {
   const std::size_t count = segments_->kept.size();
   const auto buckets = static_cast<std::int32_t>(std::clamp<std::size_t>(2 * count, 16, 65536));
@@ -186,7 +186,7 @@ void SliceSweep::emit(float until, const EdgeRun& run) {
   run_ = run;
 }
 
-/// Nothing is seen here: go on to where something begins.
+/// Nothing is visible here: continues at the next begin of a segment.
 void SliceSweep::step_to_next_start() {
   t_ = next_start();
   const auto first = static_cast<std::size_t>(order_[next_]);
@@ -194,7 +194,7 @@ void SliceSweep::step_to_next_start() {
   take_nearest_waiting();
 }
 
-/// A segment begins while another is seen.
+/// Handles a segment that begins while another is visible.
 void SliceSweep::meet(const Line& line) {
   const auto s = static_cast<std::size_t>(line.segment);
   const float start = std::max(-limit_, segments_->low[s]);
@@ -208,7 +208,7 @@ void SliceSweep::meet(const Line& line) {
     current_ = line;
     find_next_crossing();
   } else if (cross || line.high > current_.high) {
-    // Otherwise it ends behind the current one and is never seen.
+    // Otherwise it ends behind the current one and never becomes visible.
     waiting_.push_back(line);
     if (cross && at < crossing_) {
       crossing_ = at;
@@ -222,7 +222,7 @@ void SliceSweep::step_to_end_of_current() {
   emit(std::min(current_.high, limit_),
        cut_by_limit ? EdgeRun{} : segments_->high_run(static_cast<std::size_t>(current_.segment)));
   if (waiting_.empty() && next_start() <= t_ && start_after_next() > t_) {
-    // The next facet of one surface, with nothing behind it: by far the most common case.
+    // The next facet of one surface, with nothing behind it: the most common case.
     current_ = line(order_[next_++]);
     crossing_ = never;
     return;
@@ -230,7 +230,7 @@ void SliceSweep::step_to_end_of_current() {
   take_nearest_waiting();
 }
 
-/// Makes the nearest of all that have begun and not ended the current one.
+/// Makes the nearest of all segments at t_ the current one.
 void SliceSweep::take_nearest_waiting() {
   while (next_ < count_ && next_start() <= t_) {
     waiting_.push_back(line(order_[next_++]));
@@ -263,8 +263,8 @@ SliceSweep::Line SliceSweep::line(std::int32_t segment) const {
   return {segment, segments_->high[s], segments_->w_at_0[s], segments_->w_slope[s]};
 }
 
-/// Which of two is seen at and after `from`: compared in the middle of what both span, since ends are shared
-/// by neighbours, but where they cross at `from` itself.
+/// True if `a` is visible at and after `from`, before `b`. Compared in the middle of the common span, because
+/// neighbours share ends; if they cross, compared at `from`.
 bool SliceSweep::is_seen_first(const Line& a, const Line& b, float from) {
   float at = never;
   if (crosses(a, b, from, at)) {

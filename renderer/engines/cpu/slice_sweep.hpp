@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is visible in one slice: an exact sweep over its segments from the lowest elevation to the highest.
+// Visibility in one slice: an exact sweep over its segments from the lowest elevation to the highest.
 #pragma once
 
 #include <cstdint>
@@ -9,30 +9,30 @@
 
 namespace sonard::render {
 
-/// Part of a triangle that the sonar sees in a slice, between two elevations.
+/// Visible part of a triangle in a slice, between two elevations.
 struct VisibleSegment {
   float low, high;        ///< t at the ends; low < high
   float w_at_0, w_slope;  ///< see Segments
   EdgeRun low_run, high_run;
   float normal_h, normal_s, normal_z;  ///< of the triangle: along the slice, across it to port, and up
-  std::uint32_t part;  ///< of the triangle: most of what is asked of it, without looking it up
+  std::uint32_t part;                  ///< of the triangle, copied to avoid a look-up
   const FanTriangle* triangle;
 };
 
-/// Finds the nearest segment at every elevation, without sampling elevations: segments end exactly where a
-/// segment ends, where a nearer one begins, or where two cross. One per thread; keeps its memory.
+/// Finds the nearest segment at every elevation, without sampling elevations: a visible segment ends exactly
+/// where it ends, where a nearer one begins, or where two cross. One per thread; reuses its memory.
 class SliceSweep {
  public:
-  /// Segments from -tan_limit to tan_limit in rising order; they do not overlap. Of segments in the same
-  /// place the earlier is seen.
-  /// @param segments what `cutter` cut out of `slice` last.
+  /// Finds the visible segments from -tan_limit to tan_limit, in rising order and without overlap. Of
+  /// segments in the same place, the first is visible.
+  /// @param segments result of the last cutter.cut(), of `slice`
   void run(const SliceCutter& cutter, const Slice& slice, const Segments& segments, float tan_limit,
            std::vector<VisibleSegment>& visible);
 
  private:
-  /// What decides which segment is seen.
+  /// The numbers of a segment that determine visibility.
   struct Line {
-    std::int32_t segment = -1;  ///< -1: none
+    std::int32_t segment = -1;  ///< -1: no segment
     float high = 0.0F;
     float w_at_0 = 0.0F, w_slope = 0.0F;
 
@@ -67,14 +67,14 @@ class SliceSweep {
   std::vector<std::int32_t> bucket_;  ///< of the sort
   std::vector<std::uint32_t> bucket_begin_;
   std::size_t next_ = 0;       ///< in order_
-  std::vector<Line> waiting_;  ///< begun, hidden by the current one, and possibly seen later
+  std::vector<Line> waiting_;  ///< begun, hidden by the current one, and possibly visible later
   Line current_;
-  float t_ = 0.0F;         ///< the sweep is here; the current segment began here
-  EdgeRun run_;            ///< of that beginning
-  float crossing_ = 0.0F;  ///< where a waiting segment comes before the current one
+  float t_ = 0.0F;         ///< position of the sweep, and begin of the current segment
+  EdgeRun run_;            ///< at t_
+  float crossing_ = 0.0F;  ///< next t at which a waiting segment crosses in front of the current one
   std::size_t crosser_ = 0;
-  std::vector<std::size_t> short_;    ///< segments that may lie in a gap
-  std::vector<std::size_t> crossed_;  ///< segments that end where the next one crosses them
+  std::vector<std::size_t> short_;    ///< visible segments that may lie in a gap
+  std::vector<std::size_t> crossed_;  ///< visible segments that end at a crossing with the next one
 };
 
 }  // namespace sonard::render

@@ -7,7 +7,7 @@ namespace sonard::render {
 
 namespace {
 
-/// In the axes of the slice.
+/// `v` in the axes of the slice.
 inline glm::vec3 in_slice(const Slice& slice, const glm::vec3& v) {
   return {slice.cosine * v.x + slice.sine * v.y, -slice.sine * v.x + slice.cosine * v.y, v.z};
 }
@@ -16,7 +16,7 @@ inline glm::vec3 in_slice(const Slice& slice, const glm::vec3& v) {
 
 void VertexNormals::add(const PartSurface& part, const FanTriangle& triangle) {
   const std::size_t block = count_ / lanes, lane = count_ % lanes;
-  // Last the one that is asked: where memory runs out before, both are looked at again.
+  // runs_ grows last: if memory runs out before, the next call tries both again.
   if (block >= runs_.size()) {
     corners_.resize(block + 1);
     runs_.resize(block + 1);
@@ -58,7 +58,7 @@ void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& __restr
     const glm::vec3 grows_to_b = glm::cross(edge_c, across) / nn;
     const glm::vec3 grows_to_c = glm::cross(across, edge_b) / nn;
     const glm::vec3 b_of = in_slice(slice, grows_to_b), c_of = in_slice(slice, grows_to_c);
-    // At the sonar, which the plane may be continued to.
+    // The normal extrapolated to the sonar.
     const glm::vec3 at_sonar = a - by_b * glm::dot(grows_to_b, corner) - by_c * glm::dot(grows_to_c, corner);
     const glm::vec3 depth = in_slice(slice, across) / glm::dot(across, corner);
     for (int axis = 0; axis < 3; ++axis) {

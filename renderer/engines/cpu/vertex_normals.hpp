@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The normals that shade segments, interpolated from those of vertices.
+// The normals that shade segments, interpolated from vertex normals.
 #pragma once
 
 #include <cmath>
@@ -14,9 +14,9 @@
 
 namespace sonard::render {
 
-/// The normal that shades the plane of a triangle, where the ray (1, x, t) of a slice meets it: at + per_x x
-/// + per_t t, of any length and sign. Components are along the slice, across it to port, and up. Weights of
-/// corners go as 1 / depth along a ray, so that this is exact; beside the triangle it goes on as within.
+/// The normal that shades the plane of a triangle at the hit of the ray (1, x, t) of a slice: at + per_x x +
+/// per_t t, of any length and sign. Components are along the slice, across it to port, and up. Exact, because
+/// the weights of corners, divided by the depth, are affine in x and t. Beside the triangle it extrapolates.
 struct NormalRun {
   glm::vec3 at, per_x{0.0F}, per_t{0.0F};
 
@@ -25,22 +25,22 @@ struct NormalRun {
   }
 };
 
-/// Interpolates the normals of many triangles in one loop. One per thread; keeps its memory.
+/// Interpolates the normals of many triangles in one loop. One per thread; reuses its memory.
 class VertexNormals {
  public:
   void clear() { count_ = 0; }
-  /// @param part of the triangle; has normals
+  /// @param part of the triangle; must have vertex normals
   void add(const PartSurface& part, const FanTriangle& triangle);
   std::size_t count() const { return count_; }
 
-  /// Finds all runs, as they are without refraction.
+  /// Finds all runs, without refraction.
   void interpolate(const Slice& slice);
-  /// @param i which of those that were added; not finite where it is no direction
+  /// The run of triangle `i`, in the order of add(); not finite for degenerate triangles.
   NormalRun run(std::size_t i) const;
 
  private:
   static constexpr std::size_t lanes = 16;
-  /// Of so many triangles, an array for each number.
+  /// Corners of `lanes` triangles, one array per number.
   struct Corners {
     float position[3][3][lanes];  ///< [corner][axis], sonar frame
     float normal[3][3][lanes];
@@ -55,7 +55,7 @@ class VertexNormals {
   std::size_t count_ = 0;
 };
 
-/// Turns a run by refraction, as it does at `t` of the slice.
+/// Turns a run by the refraction at `t` of the slice.
 void refract(const PartSurface& part, const VisibleSegment& segment, const Slice& slice, float t,
              NormalRun& run);
 

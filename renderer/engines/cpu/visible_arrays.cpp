@@ -5,7 +5,7 @@ namespace sonard::render {
 
 void VisibleArrays::lay_out(const std::vector<VisibleSegment>& visible) {
   count = visible.size();
-  // Last the one that is asked: where memory runs out before, all are looked at again.
+  // low grows last: if memory runs out before, the next call tries all again.
   if (count > size()) {
     part.resize(count + count / 2);
     for (auto* array : {&high, &low_slope, &high_slope, &low_reach, &high_reach, &w_at_0, &w_slope, &normal_h,

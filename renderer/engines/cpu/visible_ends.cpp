@@ -10,8 +10,8 @@ namespace sonard::render {
 
 namespace {
 
-// Relative difference of 1 / h below which lines are of one surface: a millimetre or two, less than any is
-// long.
+// Relative difference of 1 / h below which segments belong to one surface: a millimetre or two, shorter than
+// a range line.
 constexpr float joined = 1e-4F;
 
 }  // namespace
@@ -66,14 +66,14 @@ void VisibleEnds::find_surfaces(const VisibleArrays& seen) {
   }
 }
 
-/// Keeps the segments first to last, one surface that ends at both, from crossing: from its ends inwards as
-/// far as they do.
+/// Prevents crossings in the segments first to last, one surface that ends at both: from its ends inwards, as
+/// far as there are crossings.
 void VisibleEnds::keep_from_crossing(std::size_t first, std::size_t last, float width_rad,
                                      VisibleArrays& seen) {
   const auto most_of = [&](float length) { return 2 * length / width_rad; };
   const float whole = seen.high_slope[last] - seen.low_slope[first];
   const float most = most_of(seen.high[last] - seen.low[first]);
-  if (std::abs(whole) > most) {  // all of it ends within the wedge
+  if (std::abs(whole) > most) {  // the whole surface ends within the wedge
     const float excess = 0.5F * (whole - std::copysign(most, whole));
     seen.low_slope[first] += excess;
     seen.high_slope[last] -= excess;
