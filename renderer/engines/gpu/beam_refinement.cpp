@@ -11,7 +11,7 @@ namespace sonard::render {
 namespace {
 
 constexpr std::size_t most_even_grids = 8;
-constexpr double most_samples_at_once = 0x1p23;  // what is drawn before it is binned
+constexpr double most_samples_at_once = 0x1p23;  // drawn before they are binned
 
 /// The beams of some runs, one run after the other.
 std::vector<int> beams_of(const std::vector<BeamRun>& runs) {
@@ -38,7 +38,7 @@ BeamRefinement::Grid BeamRefinement::make_grid(GpuBinner& binner, const Aperture
   return grid;
 }
 
-/// Null when there are none.
+/// Null if there are no such grids.
 const BeamRefinement::EvenGrids* BeamRefinement::known_even_grids(const EvenGrids& wanted) {
   const auto known = std::find_if(even_.begin(), even_.end(), [&](const EvenGrids& grids) {
     return grids.density == wanted.density && grids.aperture == wanted.aperture &&
@@ -134,7 +134,7 @@ bool BeamRefinement::Ping::advance() {
   return !is_last;
 }
 
-/// Takes what the GPU has estimated of the beams of the last pass.
+/// Takes the GPU's estimates of the beams of the last pass.
 void BeamRefinement::Ping::learn() {
   const std::vector<BeamEstimate> estimates = binner_.take_estimates();
   const double share = error_of_distance(request_.settings.sampling.preset, pass_);
@@ -160,8 +160,8 @@ void BeamRefinement::Ping::learn() {
   }
 }
 
-/// The runs of the beams on one page of the image. A part of them at a time, so that the memory taken does
-/// not grow with their number.
+/// Samples the runs of the beams on one page of the image, a part of them at a time, so that memory does not
+/// grow with their number.
 void BeamRefinement::Ping::sample_page(const std::vector<BeamChoice>& choices, bool with_estimate) {
   const Aperture& aperture = request_.settings.aperture;
   const std::vector<BeamRun> runs = beam_runs(aperture, choices);

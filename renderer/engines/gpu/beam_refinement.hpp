@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grids of samples that are as fine as each beam needs (docs/accuracy.md).
+// Grids of samples with the density that each beam needs (docs/accuracy.md).
 #pragma once
 
 #include <list>
@@ -17,31 +17,31 @@
 
 namespace sonard::render {
 
-/// Samples the whole fan with an even grid, lets the GPU estimate the error of every beam, and samples those
-/// that may miss the preset's targets again. All passes depend on the request alone, so the image does. One
-/// thread uses it.
+/// Samples the whole fan with an even grid, lets the GPU estimate the error of every beam, and samples beams
+/// again that may miss the preset's targets. All passes, and so the image, depend on the request alone. Only
+/// one thread may use it.
 class BeamRefinement {
  public:
   class Ping;
-  /// That may be in the making at the same time.
+  /// Largest number of pings at the same time.
   static constexpr std::size_t most_pings = 8;
 
-  /// @param sampler outlives this object; its context is current when this ends.
-  /// @param thin_things outlive this object.
+  /// @param sampler must outlive this object; its context must be current in the destructor
+  /// @param thin_things must outlive this object
   BeamRefinement(RasterSampler& sampler, const ThinThings& thin_things)
       : sampler_(sampler), thin_things_(thin_things) {}
 
   /// Gives the first pass of a request to the GPU.
-  /// @param binner has begun the image; it, the request and the statistics outlive the result.
-  /// @param keep_grid the grid of the first pass may be that of an earlier ping, where it is equal; it counts
-  /// as SkipRule::unchanged_settings.
-  /// @throws RequestError when the aperture cannot be gridded.
-  /// @throws RendererError as the sampler.
+  /// @param binner has begun the image; it, the request and the statistics must outlive the result
+  /// @param keep_grid the first pass may reuse an equal grid of an earlier ping; this counts as
+  /// SkipRule::unchanged_settings
+  /// @throws RequestError if the aperture or the sampling are out of range
+  /// @throws RendererError see RasterSampler
   std::unique_ptr<Ping> begin(GpuBinner& binner, const EchoRequest& request, const SurfaceModel& surface,
                               bool keep_grid, PingStatistics& statistics);
 
  private:
-  /// A grid of some beams, and what of it the GPU holds.
+  /// A grid of some beams, and its data on the GPU.
   struct Grid {
     std::shared_ptr<const SampleGrid> samples;
     std::shared_ptr<const GpuGrid> on_gpu;
@@ -61,18 +61,18 @@ class BeamRefinement {
 
   RasterSampler& sampler_;
   const ThinThings& thin_things_;
-  std::list<EvenGrids> even_;  ///< the last used first: heads that share a renderer come in turn
+  std::list<EvenGrids> even_;  ///< last used first; heads that share a renderer alternate
 };
 
-/// One in the making: its image is asked for when advance() says that it is done.
+/// A ping in progress. Its image can be requested when advance() returns false.
 class BeamRefinement::Ping {
  public:
   Ping(RasterSampler& sampler, const ThinThings& thin_things, GpuBinner& binner, const EchoRequest& request,
        const SurfaceModel& surface, PingStatistics& statistics);
 
-  /// Waits for the estimates of the last pass, and gives the next one to the GPU.
-  /// @return whether estimates are still to come.
-  /// @throws RendererError as the sampler.
+  /// Waits for the estimates of the last pass and gives the next pass to the GPU.
+  /// @return true if more estimates will follow
+  /// @throws RendererError see RasterSampler
   bool advance();
 
  private:
@@ -90,9 +90,9 @@ class BeamRefinement::Ping {
   const SurfaceModel surface_;
   PingStatistics& statistics_;
   int pass_ = 0;
-  std::vector<int> least_columns_;  ///< of each beam, for the thin things in it
+  std::vector<int> least_columns_;  ///< per beam, for the thin things in it
   std::vector<BeamState> beams_;
-  // Of the last pass: which beams were sampled, in what grids.
+  // Of the last pass: the sampled beams and their grids.
   std::vector<BeamChoice> choices_;
   std::vector<Grid> grids_;
 };

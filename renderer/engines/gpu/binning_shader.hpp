@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL of GpuBinner: what grid_binner and RangeProfile do, for the samples of a grid, and the sums of
-// it. Sums are whole units of 64 bits in two words. Adding whole numbers has no order, so the image is the
-// same however the work is shared out (docs/physics.md 4.2). What is added up in floating point, for the
-// error estimates, is added in a fixed order.
+// The GLSL of GpuBinner: grid_binner and RangeProfile for the samples of a grid, and its sums. Sums are whole
+// units of 64 bits in two words. Sums of whole numbers do not depend on the order, so the image is the same
+// for any distribution of the work (docs/physics.md 4.2). Floating-point sums, for error estimates, have a
+// fixed order.
 #pragma once
 
 namespace sonard::render {
@@ -32,7 +32,7 @@ enum BinningUniform : int {
   at_paired_rows,
 };
 
-/// What all shaders know.
+/// Begin of all shaders.
 inline constexpr char binning_shader_head[] = R"glsl(
 layout(location = 0) uniform int lines;
 // What the shaders read lies in textures, by unit (GpuBinner knows them): a software OpenGL fetches every word of a
@@ -97,7 +97,7 @@ uvec2 minus(uvec2 a, uvec2 b) {
 }
 )glsl";
 
-/// What looks at samples.
+/// Begin of shaders that read samples.
 inline constexpr char sample_shader_head[] = R"glsl(
 layout(binding = 7) uniform sampler2DArray surface_samples;  // SurfaceSample
 layout(binding = 14) uniform isamplerBuffer views;
@@ -413,8 +413,8 @@ void main() {
 }
 )glsl";
 
-/// One work group per beam: from differences to lines of the image, and how far those of the thinned samples
-/// are off.
+/// One work group per beam: from differences to lines of the image, and the error of the thinned samples'
+/// lines.
 inline constexpr char sum_shader[] = R"glsl(
 layout(local_size_x = BEAM_GROUP) in;
 

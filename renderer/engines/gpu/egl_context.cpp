@@ -31,7 +31,7 @@ EglContext::EglContext(const std::string& device) {
   setState(new osg::State);
   getState()->setGraphicsContext(this);
   getState()->setContextID(osg::GraphicsContext::createNewContextID());
-  // Whoever draws asks for errors; what OpenSceneGraph finds out it only prints.
+  // Drawing code checks for errors itself; OpenSceneGraph would only print them.
   getState()->setCheckForGLErrors(osg::State::NEVER_CHECK_GL_ERRORS);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An OpenGL context without window or display server, as OpenSceneGraph wants it.
+// An OpenGL context without window or display server, for OpenSceneGraph.
 #pragma once
 
 #include <string>
@@ -14,29 +14,29 @@ namespace sonard::render {
 /// objects only. The thread that makes it current owns it.
 class EglContext : public osg::GraphicsContext {
  public:
-  /// @param device as GpuOptions::device.
-  /// @throws RendererError saying what devices there are when no context can be made.
+  /// @param device see GpuOptions::device
+  /// @throws RendererError, with a list of the devices, if no context can be made
   explicit EglContext(const std::string& device);
 
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
 
-  /// Whether a processor does the work, as the driver says.
+  /// True if OpenGL runs on the CPU, according to the driver.
   bool software() const { return software_; }
 
-  /// @throws RendererError when the context is lost.
+  /// @throws RendererError if the context is lost
   void make_current_or_throw();
 
-  /// @throws RendererError when the context is no longer current, or the driver has reset it. What was read
-  /// from it since it was last checked is then worth nothing.
+  /// @throws RendererError if the context is no longer current, or the driver has reset it; data read since
+  /// the last check() are then invalid
   void check() const;
 
-  /// For tests: loses the context, as a driver does that is reset.
+  /// For tests: loses the context, like a reset of the driver.
   void lose();
 
-  /// Builds a program where it will be used; the context is current.
-  /// @param what in the message: "the surface shader".
-  /// @throws RendererError when it does not build.
+  /// Builds a program for this context, which must be current.
+  /// @param what name in the error message: "the surface shader"
+  /// @throws RendererError if it does not build
   osg::ref_ptr<osg::Program> build_program(const std::vector<osg::ref_ptr<osg::Shader>>& shaders,
                                            const std::string& what);
 
@@ -56,7 +56,7 @@ class EglContext : public osg::GraphicsContext {
   ~EglContext() override;
 
  private:
-  void* display_ = nullptr;  // EGLDisplay; kept opaque for those who include this
+  void* display_ = nullptr;  // EGLDisplay; opaque, so that includers do not need EGL
   void* context_ = nullptr;  // EGLContext
   bool software_ = false;
   bool realized_ = false;

@@ -18,7 +18,7 @@ namespace sonard::render {
 
 namespace {
 
-// Of GL_NVX_gpu_memory_info, which drivers of several vendors have.
+// From GL_NVX_gpu_memory_info, which drivers of several vendors support.
 constexpr GLenum dedicated_memory_kib = 0x9047;
 
 template <class Function>
@@ -87,7 +87,7 @@ EGLContext make_egl_context(EGLDisplay display) {
   with_resets.insert(with_resets.end(),
                      {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE});
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, with_resets.data());
-  if (context == EGL_NO_CONTEXT) {  // a driver that does not tell of resets
+  if (context == EGL_NO_CONTEXT) {  // the driver does not report resets
     attributes.push_back(EGL_NONE);
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
   }
@@ -131,7 +131,7 @@ std::string software_gl(const std::string& wanted) {
     const GlDevice& taken = devices[choose_gl_device(devices, wanted).number];
     return taken.software ? taken.description : "";
   } catch (const RendererError&) {
-    return "";  // there is no OpenGL, or not that device: making the engine says so
+    return "";  // no OpenGL, or not that device: the constructor of the engine reports it
   }
 }
 

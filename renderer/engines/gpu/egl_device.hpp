@@ -11,18 +11,18 @@ namespace sonard::render {
 
 struct EglDevice {
   EGLDisplay display = EGL_NO_DISPLAY;
-  std::string node;       ///< "/dev/dri/card0"; empty: it has none
-  bool software = false;  ///< as its driver says
+  std::string node;       ///< "/dev/dri/card0"; empty: no node
+  bool software = false;  ///< according to its driver
 };
 
-/// What EGL lists, in its order; where it cannot list devices, the surfaceless platform.
+/// The devices that EGL lists, in its order; the surfaceless platform if EGL cannot list devices.
 std::vector<EglDevice> egl_devices();
 
-/// OpenGL 4.5, compatibility profile, that tells of resets where the driver can. EGL_NO_CONTEXT when this
-/// display cannot do that.
+/// Context of OpenGL 4.5, compatibility profile, that reports resets if the driver supports it.
+/// EGL_NO_CONTEXT if the display does not support OpenGL 4.5.
 EGLContext make_egl_context(EGLDisplay display);
 
-/// "vendor / renderer / version" of the context that is current.
+/// "vendor / renderer / version" of the current context.
 std::string describe_current_gl();
 
 }  // namespace sonard::render

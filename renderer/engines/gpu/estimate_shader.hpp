@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL with which GpuBinner estimates the error of every beam from the samples that it was made of
-// (docs/accuracy.md). Where a surface goes on, so does the change of its echo from column to column and from
-// row to row; where the change jumps there is an edge, which lies anywhere between the centres of the two.
-// All sums have a fixed order.
+// The GLSL with which GpuBinner estimates the error of every beam from its samples (docs/accuracy.md). Along
+// a surface, the change of the echo from column to column and from row to row is steady. A jump of the change
+// is an edge, at an unknown place between the centres of two columns or rows. All sums have a fixed order.
 #pragma once
 
 namespace sonard::render {
@@ -28,8 +27,8 @@ vec3 echo_of(vec4 seen, float width, float height, float weight) {
 }
 )glsl";
 
-/// One invocation per row of a beam: what the row holds. Cells are worked out here, for what is in a register
-/// need not be fetched for each of them.
+/// One invocation per row of a beam: the sums of the row. Cells are computed here, so that data in registers
+/// need not be fetched for each cell.
 inline constexpr char row_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 // The columns of a beam in a view: GpuSegment.
@@ -77,7 +76,7 @@ void main() {
 }
 )glsl";
 
-/// One invocation per part: the sum of what the invocations of splat_shader have found in it.
+/// One invocation per part: the sum over the invocations of splat_shader.
 inline constexpr char column_shader[] = R"glsl(
 layout(local_size_x = 64) in;
 layout(binding = 8) uniform samplerBuffer partial_columns;

@@ -14,7 +14,7 @@ std::string GlErrors::text(const std::string& doing) const {
 }
 
 GlErrors take_gl_errors() {
-  constexpr int most = 16;  // a context that is lost may complain for ever
+  constexpr int most = 16;  // a lost context may report errors without end
   GlErrors errors;
   for (int i = 0; i < most; ++i) {
     const GLenum error = glGetError();

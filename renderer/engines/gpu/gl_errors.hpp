@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What OpenGL complains of. The context is current.
+// Errors reported by OpenGL. The context must be current.
 #pragma once
 
 #include <string>
 
 namespace sonard::render {
 
-/// Complaints since they were taken last.
+/// Errors since the last take_gl_errors().
 struct GlErrors {
   bool out_of_memory = false;
-  unsigned other = 0;  ///< the last one that is not that; 0: none
+  unsigned other = 0;  ///< the last other error; 0: no other error
 
   bool any() const { return out_of_memory || other != 0; }
   /// "OpenGL error 1282 while binning".
@@ -17,7 +17,7 @@ struct GlErrors {
 };
 GlErrors take_gl_errors();
 
-/// @throws RendererError when there is a complaint.
+/// @throws RendererError if there is an error
 void check_gl_errors(const std::string& doing);
 
 }  // namespace sonard::render

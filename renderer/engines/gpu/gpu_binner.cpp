@@ -32,21 +32,21 @@ namespace sonard::render {
 
 namespace {
 
-// A sum stays below 2^62 whatever the samples hold. That a beam full of unit response makes 2^40, as in
-// RangeProfile, leaves each sample 2^22 times its share of that: specular facets need some of it. Means of
-// mode `paper` divide the little that is seen of a line by its little weight, so they take more digits; their
-// responses are below 1.
+// A sum must stay below 2^62 for any samples. A beam full of unit response makes 2^40, as in RangeProfile.
+// Each sample may then have up to 2^22 times its share, which specular facets need in part. Means of mode
+// `paper` divide the small echo of a line by its small weight, so they need more digits; their responses are
+// below 1.
 constexpr double units_of_fullest_beam = 0x1p40;
 constexpr double units_of_fullest_beam_of_means = 0x1p48;
 constexpr double most_units_of_beam = 0x1p62;
 
-constexpr double least_level = 1e-2;  // of the beam's maximum; errors are taken over bins above it
-constexpr double zone_rest = 0.5;     // of the error that counts as 1, what lies outside of a zone may miss
-// What the shaders know too:
+constexpr double least_level = 1e-2;  // of the beam's maximum; errors are estimated over bins above it
+constexpr double zone_rest = 0.5;     // largest error outside a zone, re the error that counts as 1
+// The shaders have the same values:
 constexpr std::uint32_t start_of_sum = 0x80000000;
 constexpr std::size_t group_size = 64;
-constexpr std::size_t most_groups = 65535;  // in a row, as every OpenGL has them
-// Units of textures; OpenSceneGraph uses the first. The first four of these are what the shader at hand says.
+constexpr std::size_t most_groups = 65535;  // per row; every OpenGL allows as many
+// Texture units; OpenSceneGraph uses the lowest. The use of first_unit to fourth_unit depends on the shader.
 enum TextureUnit : unsigned {
   samples_unit = 7,
   first_unit,
@@ -62,14 +62,14 @@ constexpr std::size_t image_header_bytes = 20;
 constexpr std::size_t most_view_rows = 16384;
 constexpr const char* doing = "binning";
 
-/// The layout in the shaders.
+/// The shaders use the same layout.
 struct ImageHeader {
   std::uint32_t samples = 0, invalid = 0, saturated = 0, additions = 0, pairs = 0;
 };
 static_assert(sizeof(ImageHeader) == image_header_bytes, "must match std430");
 static_assert(sizeof(BeamEstimate) == 10 * 4, "must match std430");
 
-/// `value` as a sum of three floats of which the first two have no more than 12 bits.
+/// `value` as a sum of three floats; the first two have at most 12 bits.
 std::array<float, 3> in_three_parts(double value) {
   const auto twelve_bits = [](double number) {
     auto rounded = static_cast<float>(number);
@@ -93,25 +93,25 @@ GLuint groups_of(std::size_t invocations) {
 struct GpuBinner::Impl {
   EglContext& context;
   osg::GLExtensions& gl;
-  /// By the head of a variant, and the last part of the shader.
+  /// Key: the head of a variant, and the last part of the shader.
   using Programs = std::map<std::pair<std::string, const char*>, osg::ref_ptr<osg::Program>>;
   std::shared_ptr<Programs> programs;
-  // Differences from line to line of the grid at hand; between grids, sums that begin.
+  // Differences between lines of the current grid.
   GpuBuffer echo, weight, thinned, thinned_weight;
   std::vector<std::unique_ptr<GpuBuffer>> pages;  // of the image
   GpuBuffer line_weight, partial_columns, columns, rows, column_misses, estimates;
   GpuReadback estimates_back, image_back;
   std::size_t most_bytes = 0;  // of a buffer
   const int most_view_px;
-  /// Invocations that share a column, or a beam. A processor runs eight at once: each of a column reads what
-  /// the column is, and those of a beam wait for each other.
+  /// Number of invocations per column and per beam. A CPU runs eight at once; more would only cost, because
+  /// each invocation reads its column, and the invocations of a beam wait for each other.
   const std::size_t column_group, beam_group;
   std::vector<float> line_weights;
 
-  std::optional<ImageRequest> request;  // the image at hand
-  std::size_t estimated = 0;            // beams whose estimates have not been asked for
-  std::size_t estimates_asked = 0;      // and that have not been taken
-  Traffic traffic;                      // of that image
+  std::optional<ImageRequest> request;  // the current image
+  std::size_t estimated = 0;            // beams whose estimates have not been requested
+  std::size_t estimates_asked = 0;      // beams whose estimates have been requested and not taken
+  Traffic traffic;                      // of the current image
 
   Impl(EglContext& made_current, int view_px, std::shared_ptr<Programs> shared)
       : context(made_current),
@@ -136,12 +136,12 @@ struct GpuBinner::Impl {
     gl.glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     GLint most_texels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most_texels);
-    most_texels = std::min(most_texels, 1 << 28);  // which shaders count in integers, twice for open water
-    most = std::min<GLint64>(most, GLint64{most_texels} * sizeof(std::uint64_t));  // sums are the smallest
+    most_texels = std::min(most_texels, 1 << 28);  // shaders count them in integers, twice for open water
+    most = std::min<GLint64>(most, GLint64{most_texels} * sizeof(std::uint64_t));  // sums: smallest texels
     // Shaders count words in 32 bits.
     most_bytes = static_cast<std::size_t>(
         std::clamp<GLint64>(most, 0, std::int64_t{4} * std::numeric_limits<std::uint32_t>::max()));
-    // What a preset takes, so that an OpenGL that cannot build it is found out here.
+    // Builds the shaders of presets now, so that the constructor fails if OpenGL cannot build them.
     for (const std::vector<const char*>& shader : {splatting, std::vector{column_shader}, row_summing,
                                                    std::vector{sum_shader}, std::vector{estimate_shader}}) {
       use({}, shader);
@@ -152,17 +152,17 @@ struct GpuBinner::Impl {
   inline static const std::vector<const char*> splatting{sample_shader_head, strip_shader_head, splat_shader};
   inline static const std::vector<const char*> row_summing{sample_shader_head, strip_shader_head, row_shader};
 
-  /// What a shader is compiled for: a software OpenGL runs both sides of every branch.
+  /// Compile-time options of a shader, because a software OpenGL runs both sides of every branch.
   struct Variant {
-    bool weighed = false;   ///< the weights are summed too
-    bool thinned = false;   ///< of the samples every second column and row
-    bool estimate = false;  ///< what the columns hold is summed too
+    bool weighed = false;   ///< weights are summed too
+    bool thinned = false;   ///< uses every second column and row of the samples
+    bool estimate = false;  ///< echoes of columns are summed too
     bool footprint = true;
     bool paired = false;  ///< two samples may be binned as one
     Aperture::Elevation elevation = Aperture::Elevation::top_hat;
   };
 
-  /// Makes the program current. It is built when first asked for.
+  /// Makes a program current; it is built on first use.
   void use(const Variant& variant, const std::vector<const char*>& shader) {
     const std::string head = fmt::format(
         "#version 430\n#define COLUMN_GROUP {}\n#define BEAM_GROUP {}\n#define WEIGHED {:d}\n#define THINNED "
@@ -197,13 +197,13 @@ struct GpuBinner::Impl {
     }
   }
 
-  /// Sums that are as they begin.
+  /// Sets sums to their start value.
   void begin_sums(GpuBuffer& buffer, std::size_t bytes) {
     hold(buffer, bytes, "beams");
     buffer.clear(bytes, {start_of_sum, 0});
   }
 
-  /// What sums are whole multiples of: a power of two of them makes a steradian.
+  /// Units of the sums per steradian, a power of two.
   double units_per_sr(const GpuGrid& grid) const {
     const double fullest = request->options.mean ? units_of_fullest_beam_of_means : units_of_fullest_beam;
     return std::exp2(std::floor(std::log2(fullest / std::max(grid.fullest_beam_sr, 1e-30))));
@@ -267,7 +267,7 @@ struct GpuBinner::Impl {
     }
   }
 
-  /// What is left in buffers is not known.
+  /// Drops the contents of all buffers, which are undefined after an error.
   void forget() {
     for (GpuBuffer* buffer : {&echo, &weight, &thinned, &thinned_weight, &partial_columns, &columns, &rows,
                               &column_misses, &estimates}) {
@@ -293,7 +293,7 @@ struct GpuBinner::Impl {
     check_memory("beams");
   }
 
-  /// What all that looks at samples knows.
+  /// Sets the uniforms of sample_shader_head.
   void set_pattern(const GpuGrid& grid) const {
     const double legacy = request->options.legacy_bin_index ? (lines() - 1.0) / lines() : 1.0;
     const std::array<float, 3> lines_per_m = in_three_parts(legacy / request->range.step_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binning where the samples are: on the GPU that drew them. Read back are the image and a few numbers a beam.
+// Binning on the GPU that drew the samples. Only the image and a few numbers per beam are read back.
 #pragma once
 
 #include <cstdint>
@@ -16,28 +16,29 @@ namespace sonard::render {
 
 struct GpuGrid;
 
-/// An image in the making: grids are added to it, each of some of its beams. Of one grid it does what
-/// bin_echoes() does: the same cells, cut at the same edges, the same trapezoids. Sums are whole numbers, so
-/// on one OpenGL the same samples make the same bits; against bin_echoes(), which has doubles, bins differ by
-/// roundings (docs/accuracy.md). The thread of the sampler uses it.
+/// Makes an image by adding grids, each with some of its beams. One grid is binned like in bin_echoes(): the
+/// same cells, cut at the same edges, and the same trapezoids. Sums are whole numbers, so the same samples
+/// make the same bits on one OpenGL. Compared with bin_echoes(), which uses doubles, bins differ by rounding
+/// (docs/accuracy.md). Only the thread of the sampler may use it.
 class GpuBinner {
  public:
-  /// @param sampler draws the samples; outlives this object.
-  /// @param other of the same sampler, whose shaders this one shares; null: it builds its own.
-  /// @throws RendererError when a shader does not build.
+  /// @param sampler draws the samples; must outlive this object
+  /// @param other binner of the same sampler whose shaders are shared; null: builds its own
+  /// @throws RendererError if a shader does not build
   explicit GpuBinner(RasterSampler& sampler, const GpuBinner* other = nullptr);
   ~GpuBinner();
   GpuBinner(const GpuBinner&) = delete;
   GpuBinner& operator=(const GpuBinner&) = delete;
 
-  /// How many beams of the image that was begun lie on one page of it: a buffer holds no more. The beams of
-  /// a grid all lie on one page, of which the first is that of beams [0, beams_per_page()).
+  /// Number of beams on one page of the current image, limited by the size of a buffer. The first page has
+  /// the beams [0, beams_per_page()). All beams of a grid must be on one page.
   int beams_per_page() const;
 
-  /// @param beams of the image, in the order of those of the grid.
-  /// @param thinned the grid of every second column and row: then add() estimates errors too. Null: it does
-  /// not.
-  /// @return to be given up before this object.
+  /// Loads a grid into GPU memory.
+  /// @param beams beam of the image for each beam of the grid
+  /// @param thinned the grid of every second column and row, from which add() estimates errors; null: no
+  /// estimates
+  /// @return must be destroyed before this object
   std::shared_ptr<const GpuGrid> load(const SampleGrid& grid, const std::vector<int>& beams,
                                       const SampleGrid* thinned = nullptr);
 
@@ -45,43 +46,42 @@ class GpuBinner {
     int beams = 0;
     const RangeLines& range;
     const BinningOptions& options;
-    /// What each line is yet to be multiplied with, which estimates weigh errors by; empty: 1.
+    /// Factor of each line after binning, used as the weight of errors in estimates; empty: 1.
     const std::vector<float>& line_weight;
-    /// The error of a beam that counts as 1 in BeamEstimate::zone_miss.
+    /// The error of a beam at which BeamEstimate::zone_miss is 1.
     BeamError most_error{1.0, 1.0};
-    /// In views of at least so many rows two samples, one above the other, are binned as one where they see
-    /// one plane (SkipRule::coplanar_samples); with footprints. 0: in none.
+    /// In views with at least this many rows, two samples, one above the other, are binned as one if they lie
+    /// on one plane (SkipRule::coplanar_samples); only with footprints. 0: never.
     int paired_rows = 0;
   };
-  /// Begins an image. All that the request refers to outlives its last add().
-  /// @throws RequestError when this OpenGL has no memory for it.
+  /// Begins an image. All objects that the request refers to must outlive the last add().
+  /// @throws RequestError if OpenGL has too little memory for it
   void begin(const ImageRequest& request);
 
-  /// Puts the beams of a grid into the image, in place of what it has of them.
-  /// @param samples what RasterSampler::draw() returned for the grid, or for one with the same views.
-  /// @throws RequestError when the buffers of this OpenGL cannot hold what it takes.
+  /// Puts the beams of a grid into the image and replaces earlier ones.
+  /// @param samples result of RasterSampler::draw() for the grid, or for a grid with the same views
+  /// @throws RequestError if the beams do not fit in the buffers of this OpenGL
   void add(const GpuGrid& grid, unsigned samples);
 
-  /// Has the estimates of all beams that were added since the last call sent back.
+  /// Requests the estimates of all beams added since the last call.
   void ask_estimates();
-  /// Those estimates, in the order of beams. Waits for them, but for nothing that the GPU was given since.
-  /// @throws RendererError when OpenGL fails.
+  /// The requested estimates, in the order of add(). Waits for them, but not for later work of the GPU.
+  /// @throws RendererError if OpenGL fails
   std::vector<BeamEstimate> take_estimates();
 
-  /// Has the image sent back.
+  /// Requests the image.
   void ask_image();
-  /// That image; waits for it in the same way.
-  /// @param memory as of bin_echoes()
-  /// @throws RendererError when OpenGL fails.
+  /// The requested image. Waits for it, but not for later work of the GPU.
+  /// @param memory see bin_beams()
+  /// @throws RendererError if OpenGL fails
   BinningResult take_image(std::vector<float> memory = {});
 
-  /// Of the image at hand.
+  /// Counts for the current image.
   struct Traffic {
     std::uint64_t bytes_read = 0;
-    std::uint64_t synchronisations = 0;  ///< how often something was waited for
+    std::uint64_t synchronisations = 0;  ///< number of waits for the GPU
     std::uint64_t bytes_uploaded = 0;    ///< written into buffers
-    /// How often an invocation has added to a word of the sums: after take_image(), modulo 2^32 for each
-    /// page.
+    /// Additions to words of the sums by invocations; valid after take_image(), modulo 2^32 per page.
     std::uint64_t atomic_additions = 0;
   };
   const Traffic& traffic() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of the GPU that compute shaders see.
+// Buffers of the GPU for compute shaders.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace sonard::render {
 
-/// Made, used and deleted while its context is current.
+/// Its context must be current when it is made, used and deleted.
 class GpuBuffer {
  public:
   explicit GpuBuffer(osg::GLExtensions& gl) : gl_(gl) { gl_.glGenBuffers(1, &name_); }
@@ -28,7 +28,7 @@ class GpuBuffer {
     bytes_ = values.size() * sizeof(T);
     gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes_), values.data(), usage);
   }
-  /// If there are not so many bytes, makes as many, of zeros.
+  /// Replaces a smaller buffer by `bytes` zeros.
   void hold(std::size_t bytes) {
     if (bytes_ < bytes) {
       select();
@@ -37,7 +37,7 @@ class GpuBuffer {
       clear_with(bytes, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
     }
   }
-  /// Over the beginning of what is there.
+  /// Overwrites the beginning.
   template <class T>
   void write(const std::vector<T>& values) {
     select();
@@ -45,10 +45,10 @@ class GpuBuffer {
                         values.data());
   }
   std::size_t bytes() const { return bytes_; }
-  /// The next hold() starts over.
+  /// Makes the next hold() allocate again.
   void forget() { bytes_ = 0; }
   void bind(unsigned binding) const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
-  /// For texelFetch(). Nothing is bound while the buffer is empty.
+  /// Binds the buffer for texelFetch(), unless it is empty.
   /// @param format of a texel
   void bind_texels(unsigned unit, GLenum format) const {
     if (bytes_ == 0) {
@@ -71,7 +71,7 @@ class GpuBuffer {
  private:
   void clear_with(std::size_t bytes, GLenum internal_format, GLenum format, GLenum type,
                   const void* pattern) {
-    // OpenSceneGraph does not load it.
+    // OpenSceneGraph does not load this function.
     using ClearBufferSubData =
         void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLsizeiptr, GLenum, GLenum, const void*);
     static const auto clear =

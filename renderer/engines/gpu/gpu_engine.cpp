@@ -20,9 +20,9 @@ namespace sonard::render {
 
 namespace {
 
-/// The world as it is drawn: with facets small enough to bend with the rays where these are bent, else with
-/// few large facets in the place of many in one plane.
-/// @param merged_facets how many are gone
+/// The world for drawing: with refraction, facets are small enough to bend with the rays; otherwise many
+/// facets in one plane become a few large ones.
+/// @param merged_facets number of facets removed
 World drawn_world(const World& world, const RendererOptions& options, std::uint64_t& merged_facets) {
   if (options.ray_curvature_per_m != 0.0) {
     return refractable(world, options.ray_curvature_per_m);
@@ -57,7 +57,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       thin_things_(world),
       sampler_(drawn_world(world, options, merged_facets_), options.gpu),
       refinement_(sampler_, thin_things_) {
-  binner(0);  // so that an OpenGL that cannot build its shaders is found out here
+  binner(0);  // the constructor must fail if OpenGL cannot build the shaders
 }
 
 GpuEngine::~GpuEngine() {
@@ -77,12 +77,12 @@ void GpuEngine::set_refraction(double bend_per_m) {
   sampler_.set_refraction(bend_per_m);
 }
 
-/// An image in the making.
+/// An image in progress.
 struct GpuEngine::Making {
   const EchoJob& job;
   const BinningOptions options;
   GpuBinner& binner;
-  std::unique_ptr<BeamRefinement::Ping> ping{};  ///< null: there is nothing to come but the image
+  std::unique_ptr<BeamRefinement::Ping> ping{};  ///< null: only the image is pending
 };
 
 void GpuEngine::images(std::span<const EchoJob> jobs) {
@@ -105,7 +105,7 @@ void GpuEngine::images_together(std::span<const EchoJob> jobs) {
     all.push_back({job, binning_options(job.request, skip_, largest_response_), binner(all.size())});
     count(job.statistics, [&] { begin(all.back()); });
   }
-  // While the estimates of one are on their way, the GPU has the passes of the others to make.
+  // While the estimates of one image are read back, the GPU works on passes of the others.
   const auto in_the_making = [](const Making& image) { return image.ping != nullptr; };
   while (std::any_of(all.begin(), all.end(), in_the_making)) {
     for (Making& image : all) {
@@ -117,7 +117,7 @@ void GpuEngine::images_together(std::span<const EchoJob> jobs) {
   }
 }
 
-/// Takes a step of an image, and counts what that takes.
+/// Runs a step of an image and adds its costs to the statistics.
 template <class Step>
 void GpuEngine::count(PingStatistics& statistics, Step step) {
   Stopwatch watch;
@@ -190,7 +190,7 @@ void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool ma
   if (grid_.prepare(request.settings, may_keep) && grid_page_ == beams_per_page) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   } else {
-    grid_page_ = 0;  // until all of it is there
+    grid_page_ = 0;  // invalid until the whole grid is loaded
     grid_on_gpu_.clear();
     for (int begin = 0; begin < beams; begin += beams_per_page) {
       const int end = std::min(begin + beams_per_page, beams);
@@ -211,7 +211,7 @@ void GpuEngine::draw_grid(GpuBinner& binner, const EchoRequest& request, bool ma
   ++statistics.passes;
 }
 
-/// Beams that are told apart by cones: the one image whose samples are read back.
+/// Makes an image with conical beams, the only kind whose samples are read back.
 void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
                                PingStatistics& statistics) {
   constexpr int views = 3;
@@ -219,7 +219,7 @@ void GpuEngine::image_by_cones(const EchoRequest& request, const BinningOptions&
   constexpr int rows = 512;
   SonarSettings settings = request.settings;
   if (!needs_grid(settings)) {
-    // Beams that are sampled again by themselves would miss what their neighbours saw for them.
+    // Refinement of single beams would miss samples of neighbouring azimuths that belong to these beams.
     settings.sampling = Sampling::of_grid(views, columns, rows);
   }
   Stopwatch watch;

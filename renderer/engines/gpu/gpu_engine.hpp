@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that draws with OpenGL and bins where it draws.
+// The engine that draws with OpenGL and bins on the same device.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ namespace sonard::render {
 
 class GpuEngine final : public EchoEngine {
  public:
-  /// @param workers outlives the engine.
-  /// @throws RendererError without OpenGL 4.5 or when a shader does not build.
+  /// @param workers must outlive the engine
+  /// @throws RendererError without OpenGL 4.5, or if a shader does not build
   GpuEngine(const World& world, WorkerPool& workers, const RendererOptions& options);
   ~GpuEngine() override;
 
@@ -55,10 +55,10 @@ class GpuEngine final : public EchoEngine {
   std::uint64_t merged_facets_ = 0;  ///< SkipRule::coplanar_facets
   ThinThings thin_things_;
   RasterSampler sampler_;
-  std::vector<std::unique_ptr<GpuBinner>> binners_;  ///< one for each image in the making
+  std::vector<std::unique_ptr<GpuBinner>> binners_;  ///< one per image in progress
   GridCache grid_, cone_grid_;
-  std::vector<std::shared_ptr<const GpuGrid>> grid_on_gpu_;  ///< one for each page of the image
-  int grid_page_ = 0;                                        ///< beams on such a page
+  std::vector<std::shared_ptr<const GpuGrid>> grid_on_gpu_;  ///< one per page of the image
+  int grid_page_ = 0;                                        ///< beams per page
   BeamRefinement refinement_;
 };
 

@@ -12,7 +12,7 @@ namespace sonard::render {
 
 namespace {
 
-// The layouts in the shaders.
+// The shaders use the same layouts.
 struct GpuPart {
   std::int32_t column, row_begin, row_end, beam;
   float x, x_offset, width, limit_slope;
@@ -29,7 +29,7 @@ struct GpuBeam {
   float solid_angle;
   std::int32_t part_begin, part_end;
   std::int32_t segment_begin, segment_end;
-  std::int32_t rows;  // of which the error is asked for: none where there can be no more of them
+  std::int32_t rows;  // for error estimates; 0 if the beam has finest_rows()
 };
 static_assert(sizeof(GpuBeam) == 7 * 4, "must match std430");
 struct GpuView {
@@ -44,8 +44,8 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 2 * 4 * 4, "is read as texels of four words");
 
-/// The part of the next column to port (-1) or starboard (1), also where another beam begins; the part itself
-/// where there is none.
+/// The part of the next column to port (-1) or starboard (1), even in another beam; the part itself if there
+/// is no next column.
 std::size_t neighbour(const SampleGrid& grid, std::size_t part, int to) {
   const ColumnPart& here = grid.parts[part];
   const double pixel_width = grid.views[static_cast<std::size_t>(here.view)].pixel_width();
@@ -57,7 +57,7 @@ std::size_t neighbour(const SampleGrid& grid, std::size_t part, int to) {
     }
     const double gap = to < 0 ? grid.starboard_rad(there) - grid.port_rad(here)
                               : grid.starboard_rad(here) - grid.port_rad(there);
-    // What was skipped is no wider than a column.
+    // Parts that were skipped are at most one column wide.
     return std::abs(gap) < 1.5 * pixel_width ? p : part;
   }
   return part;
@@ -102,7 +102,7 @@ std::vector<GpuView> gpu_views(const SampleGrid& grid, const ViewLayout& layout)
 
 struct Segments {
   std::vector<GpuSegment> all;
-  std::vector<int> begin{0};  ///< those of beam b are [begin[b], begin[b + 1])
+  std::vector<int> begin{0};  ///< segments of beam b: [begin[b], begin[b + 1])
 };
 
 Segments segments_of(const SampleGrid& grid) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A SampleGrid in the memory of the GPU, in the layouts of binning_shader.hpp and estimate_shader.hpp.
+// A SampleGrid in GPU memory, in the layouts of binning_shader.hpp and estimate_shader.hpp.
 #pragma once
 
 #include <memory>
@@ -13,35 +13,35 @@
 
 namespace sonard::render {
 
-/// What lies where in the views of a grid.
+/// Column parts and views of a grid.
 struct GpuColumns {
   GpuBuffer parts;  ///< in the order of the grid
   GpuBuffer views;
   std::size_t part_count;
   int most_view_rows;  ///< of any view
 
-  /// @param layout of the grid that is drawn.
+  /// @param layout of the drawn grid
   GpuColumns(osg::GLExtensions& gl, const SampleGrid& grid, const ViewLayout& layout);
   std::size_t bytes() const { return parts.bytes() + views.bytes(); }
 };
 
-/// Made, used and deleted while its context is current.
+/// Its context must be current when it is made, used and deleted.
 struct GpuGrid {
   GpuColumns columns;
-  std::unique_ptr<GpuColumns> thinned;  ///< of every second column and row; null: errors are not estimated
+  std::unique_ptr<GpuColumns> thinned;  ///< every second column and row; null: errors are not estimated
   GpuBuffer beams;
   GpuBuffer segments;  ///< the columns of a beam in a view, beam by beam
   int first_beam;      ///< of the image
   std::size_t beam_count;
-  int estimated_rows = 0;  ///< of any beam; 0: all beams have as many as there can be
+  int estimated_rows = 0;  ///< most rows of a beam with row estimates; 0: all beams have finest_rows()
   Aperture::Elevation elevation;
   float pattern_scale;  ///< the elevation pattern is a power of sinc(this * sine of the elevation)
   float tan_limit;      ///< of the elevations
   double fullest_beam_sr = 0.0;
   int most_samples = 1;  ///< of any beam
 
-  /// @param in_image which beam of the image each beam of the grid is.
-  /// @param most_view_px as of lay_out()
+  /// @param in_image beam of the image for each beam of the grid
+  /// @param most_view_px see lay_out()
   GpuGrid(osg::GLExtensions& gl, const SampleGrid& grid, const std::vector<int>& in_image,
           const SampleGrid* thinned_grid, int most_view_px);
 

@@ -6,9 +6,9 @@ namespace sonard::render {
 namespace {
 
 constexpr GLuint64 a_second_ns = 1'000'000'000;
-constexpr int longest_wait_s = 60;  // a software OpenGL may need some; a card that is gone never answers
+constexpr int longest_wait_s = 60;  // for a slow software OpenGL; a lost card never answers
 
-// OpenSceneGraph does not load it.
+// OpenSceneGraph does not load this function.
 using CopyBufferSubData = void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr);
 
 }  // namespace

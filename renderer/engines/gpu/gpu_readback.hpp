@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes back from the GPU, without waiting for what it was given to do later.
+// Reads data back from the GPU without waiting for later work.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,7 @@
 
 namespace sonard::render {
 
-/// Copies of buffers as they were when they were asked for. Made, used and deleted while its context is
-/// current.
+/// Copies of buffers at the time of ask(). Its context must be current when it is made, used and deleted.
 class GpuReadback {
  public:
   explicit GpuReadback(osg::GLExtensions& gl);
@@ -24,15 +23,13 @@ class GpuReadback {
 
   struct Part {
     const GpuBuffer& buffer;
-    std::size_t bytes;  ///< from its beginning
+    std::size_t bytes;  ///< from the beginning of the buffer
   };
-  /// Has the GPU copy all of this, one part behind the other, once it is done with what it was given so far.
+  /// Lets the GPU copy the parts, one behind the other, after all work given to it so far.
   void ask(const std::vector<Part>& parts);
 
-  /// Waits until the parts are there, and hands their bytes on. What the GPU was given after ask() goes on
-  /// meanwhile.
-  /// @return false, and hands on nothing, when they were lost with the context or do not come within a
-  /// minute.
+  /// Waits for the parts and passes their bytes to `take`. Work given to the GPU after ask() continues.
+  /// @return false, without a call of `take`, if the context is lost or after a minute
   bool wait(const std::function<void(std::span<const std::byte>)>& take);
 
  private:

@@ -9,9 +9,9 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double most_samples = 0x1p25;  // of a pass: half a GiB if all were kept
+constexpr double most_samples = 0x1p25;  // of a pass; together they would take half a GiB
 constexpr double most_beam_samples = 0x1p18;
-constexpr int most_pixels = 8192;             // of a view in each direction; every OpenGL 4.5 can draw 16384
+constexpr int most_pixels = 8192;             // of a view in each direction; every OpenGL 4.5 supports 16384
 constexpr int most_columns = 512;             // of a beam, or of its zone
 constexpr double narrowest_column = 0x1p-16;  // of a beam
 constexpr int first_rows_factor = 4;
@@ -20,20 +20,20 @@ constexpr int most_rows_factor = 16;
 // Measured on the scenes of the benchmark (docs/accuracy.md). The error of bins falls with about the 0.6th
 // power of the number of samples.
 constexpr double bin_order = 0.6;
-// The estimated error of a beam falls with the first power of the number of columns (or rows) where
-// there is one edge, faster where there are many; and the beam is hardly ever off by more than twice that.
+// The estimated error of a beam falls with the first power of the number of columns (or rows) if there is one
+// edge, faster if there are many. The real error is rarely more than twice the estimate.
 constexpr double beam_order = 4.0 / 3;
 constexpr double beam_safety = 1.7;
-constexpr double longest_stride = 8;      // in columns or rows; a coarser estimate may do better
-constexpr double last_beam_order = 1.12;  // what is too coarse after the last pass stays
+constexpr double longest_stride = 8;      // largest factor of columns or rows before the last pass
+constexpr double last_beam_order = 1.12;  // smaller, because no later pass corrects the density
 constexpr double zone_stride = 32;
-constexpr double widest_zone = 0.5;  // of what was sampled before; else all of it is sampled again
+constexpr double widest_zone = 0.5;  // of the columns; otherwise the whole beam is sampled again
 constexpr int most_columns_beside = 64;
-constexpr double samples_of_a_view = 0x1p13;  // take as long as to begin another view
-constexpr double worst_beam = 1.1;    // how often the bins of one beam may be off by what all together may
-constexpr int thinnest_columns = 32;  // columns of a beam, to find what may be as thin
+constexpr double samples_of_a_view = 0x1p13;  // samples that cost as much time as another view
+constexpr double worst_beam = 1.1;            // largest error of one beam's bins, re the target of all bins
+constexpr int thinnest_columns = 32;          // columns of a beam that find equally thin objects
 
-/// At the coarsest: a row for every 0.16 degrees of elevation.
+/// Smallest number of rows: one per 0.16 degrees of elevation.
 int least_rows(const Aperture& aperture) {
   constexpr double row_rad = std::numbers::pi / 9 / 128;
   return std::max(16, static_cast<int>(std::lround(2 * aperture.elevation_limit_rad() / row_rad)));
@@ -64,8 +64,8 @@ BeamRun run_of(const Aperture& aperture, int begin, int end, const BeamDensity& 
   return run;
 }
 
-/// The smallest of 1, 1.25, 1.5, 2, 2.5, 3, 4 ... that is at least this: few sizes, so that neighbours share
-/// views.
+/// The smallest of 1, 1.25, 1.5, 2, 2.5, 3, 4 ... that is at least `factor`: few sizes, so that neighbours
+/// can share views.
 double round_up(double factor) {
   const double power = std::exp2(std::floor(std::log2(std::clamp(factor, 1.0, 0x1p20))));
   for (const double step : {1.0, 1.25, 1.5}) {
@@ -76,18 +76,18 @@ double round_up(double factor) {
   return 2 * power;
 }
 
-/// Columns and rows are even in number, so that every second one can be left out.
+/// Numbers of columns and rows are even, so that every second one can be left out.
 int round_up_to_even(double count) {
   return 2 * static_cast<int>(std::ceil(count / 2 - 1e-9));
 }
 
-/// How often the estimated error is what it may be; 1: as large as it may be.
+/// The estimated error re the target.
 double miss(float total, float centroid_lines, const BeamError& target) {
   return beam_safety * std::max(static_cast<double>(total) / target.total,
                                 static_cast<double>(centroid_lines) / target.centroid_lines);
 }
 
-/// The estimated error of a beam's bins.
+/// The estimated relative RMS error of a beam's bins.
 double bin_rms(const BeamState& beam) {
   const BeamEstimate& estimate = beam.estimate;
   return estimate.bins > 0
@@ -95,8 +95,8 @@ double bin_rms(const BeamState& beam) {
              : 0.0;
 }
 
-/// What the bins of every beam may be off by so that all bins together are off by no more than the target:
-/// beams that are better than it let others be worse.
+/// Limit of the RMS error per beam at which the RMS error of all bins meets the target: accurate beams allow
+/// larger errors of others.
 double most_bin_rms(const std::vector<BeamState>& beams, double target) {
   double low = target, high = worst_beam * target;
   for (int i = 0; i < 30; ++i) {
@@ -120,12 +120,12 @@ double finer_factor(double miss, bool is_last) {
                  : std::min(std::pow(miss, 1 / beam_order), longest_stride);
 }
 
-/// An even number of columns for a part of a beam that had so many.
+/// Even number of columns for a part of a beam beside its zone. @param had columns in the last pass
 int columns_beside(int had) {
   return std::min(most_columns_beside, had + had % 2);
 }
 
-/// Where edges are few and near to each other: more columns only there. Without a zone where they are not.
+/// More columns only in the zone, if edges are few and near to each other; otherwise a density without zone.
 BeamDensity with_zone(const Aperture& aperture, int beam, const BeamState& state) {
   const BeamEstimate& estimate = state.estimate;
   BeamDensity zone{0, state.density.rows, state.zone_port_rad, state.zone_starboard_rad, 0, 0};
@@ -144,7 +144,7 @@ BeamDensity with_zone(const Aperture& aperture, int beam, const BeamState& state
   return zone.columns > columns ? zone : BeamDensity{};
 }
 
-/// Takes back what was gained over `now` until no more than `most` samples are left.
+/// Reduces `wanted` towards `now` until it has at most `most` samples.
 BeamDensity capped(BeamDensity wanted, const BeamDensity& now, double most) {
   while (wanted.samples() > most && (wanted.columns > now.columns || wanted.rows > now.rows)) {
     const bool more_columns = 1.0 * wanted.columns / now.columns >= 1.0 * wanted.rows / now.rows;
@@ -154,7 +154,7 @@ BeamDensity capped(BeamDensity wanted, const BeamDensity& now, double most) {
   return wanted;
 }
 
-/// Lets neighbours share views: what they take more samples for than they need costs less than another view.
+/// Lets neighbours share views if the additional samples cost less than another view.
 void share_views(std::vector<BeamChoice>& choices) {
   for (std::size_t first = 0; first < choices.size();) {
     BeamDensity shared = choices[first].density;
@@ -177,7 +177,7 @@ void share_views(std::vector<BeamChoice>& choices) {
   }
 }
 
-/// The density with which a beam is sampled next; unchanged where another pass is not needed or not possible.
+/// Computes the next density of a beam; it is unchanged if another pass is not needed or not possible.
 class NextPass {
  public:
   NextPass(const Aperture& aperture, const std::vector<BeamState>& beams, const GridTargets& targets,
@@ -193,7 +193,7 @@ class NextPass {
     }
   }
 
-  /// @param most samples that the beam may take.
+  /// @param most largest number of samples of the beam
   BeamDensity of(int beam, const BeamState& state, double most) const {
     const BeamDensity& now = state.density;
     const BeamEstimate& estimate = state.estimate;
@@ -212,7 +212,7 @@ class NextPass {
       }
     }
     if (now.has_zone()) {
-      return now;  // as well as it gets
+      return now;  // a zone is not refined further
     }
     BeamDensity wanted = now;
     wanted.columns =

@@ -16,7 +16,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::size_t chunk_triangles = 2048;  // what culling by view and range works on
+constexpr std::size_t chunk_triangles = 2048;  // unit of culling by view and range
 static_assert(3 * chunk_triangles <= std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1,
               "its indices have 16 bits");
 
@@ -89,8 +89,8 @@ class ChunkBuilder {
   }
 
   ChunkBytes content_of(std::span<Triangle> triangles) {
-    // In the order of the mesh, where neighbours mostly follow one another: an OpenGL works out a corner once
-    // for triangles that share it, if they come soon one after the other.
+    // In the order of the mesh, in which neighbours mostly follow one another: OpenGL computes a shared
+    // corner once if its triangles follow soon after each other.
     std::ranges::sort(triangles, {}, &Triangle::number);
     std::vector<std::uint32_t> vertices;       // of the mesh
     std::vector<std::uint32_t> ending_facets;  // of the mesh, for each vertex
@@ -113,7 +113,7 @@ class ChunkBuilder {
         }
         corners[i] = number;
       }
-      // It ends with a corner that no other triangle ends with, or with a copy of one.
+      // The triangle ends with a corner with which no other triangle ends, or with a copy of a corner.
       const auto free =
           std::find_if(corners.begin(), corners.end(), [&](auto i) { return ending_facets[i] == none; });
       if (free != corners.end()) {
@@ -148,7 +148,7 @@ class ChunkBuilder {
     content.attribute_begin[facet_attribute] = append(planes, content.bytes);
   }
 
-  /// Zero: it has no area.
+  /// Plane of a triangle, see facet_attribute; zero if it has no area.
   glm::vec4 plane_of(std::uint32_t triangle, const glm::dvec3& centre) const {
     const std::uint32_t* corner = &mesh_.indices[std::size_t{triangle} * 3];
     const glm::dvec3 a = mesh_.positions[corner[0]];
@@ -172,7 +172,7 @@ class ChunkBuilder {
     content.attribute_begin[attribute] = append(values, content.bytes);
   }
 
-  /// Returns where they begin.
+  /// @return begin of the values in `bytes`
   template <class Value>
   static std::size_t append(const std::vector<Value>& values, std::vector<std::uint8_t>& bytes) {
     const std::size_t begin = bytes.size();
@@ -183,7 +183,7 @@ class ChunkBuilder {
 
   const TriangleMesh& mesh_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> number_in_chunk_;  // of each vertex of the mesh
+  std::vector<std::uint32_t> number_in_chunk_;  // per vertex of the mesh
 };
 
 const void* place_in_buffer(std::size_t byte) {

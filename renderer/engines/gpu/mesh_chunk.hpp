@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Neighbouring triangles of a mesh: what is culled, drawn and held in video memory as a whole.
+// Neighbouring triangles of a mesh, the unit of culling, drawing and video memory.
 #pragma once
 
 #include <array>
@@ -17,18 +17,18 @@
 
 namespace sonard::render {
 
-/// Locations of the attributes of a vertex in surface_shader.hpp: floats, as many as `attribute_floats` says.
+/// Locations of the attributes of a vertex in surface_shader.hpp; `attribute_floats` are their sizes.
 enum VertexAttribute : unsigned {
   position_attribute,
   normal_attribute,
   texcoord_attribute,
   tangent_attribute,
-  facet_attribute  ///< plane of the triangle that ends with the vertex, which is one at most: unit normal n,
-                   ///< and n.p of its points p from the centre of the chunk
+  facet_attribute  ///< plane of the triangle that ends with the vertex, one at most: unit normal n, and n.p
+                   ///< of its points p from the centre of the chunk
 };
 inline constexpr std::array<int, 5> attribute_floats{3, 3, 2, 4, 4};
 
-/// The bytes of a chunk as they are uploaded: array after array, then three 16-bit indices per triangle.
+/// The bytes of a chunk for the upload: array after array, then three 16-bit indices per triangle.
 struct ChunkBytes {
   static constexpr std::size_t none = ~std::size_t{0};
 
@@ -58,11 +58,11 @@ class MeshChunk final : public osg::Drawable, public VideoMemory::Item {
 
   const ChunkBytes content_;
   GLuint buffer_ = 0;
-  GLuint vertex_array_ = 0;  ///< where in the buffer the attributes and the indices are
+  GLuint vertex_array_ = 0;  ///< places of attributes and indices in the buffer
 };
 
 /// Adds the triangles of a mesh to the node of their part.
-/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+/// @param max_range_m must outlive the node; chunks beyond its value are not drawn
 void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part);
 
 }  // namespace sonard::render

@@ -53,7 +53,7 @@ void NormalMapTexture::upload(osg::State& state) {
 void NormalMapTexture::release(osg::State& state) {
   texture_->releaseGLObjects(&state);
   state.haveAppliedTextureAttribute(normal_map_unit, osg::StateAttribute::TEXTURE);
-  osg::flushAllDeletedGLObjects(state.getContextID());  // until then OpenSceneGraph keeps it for others
+  osg::flushAllDeletedGLObjects(state.getContextID());  // else OpenSceneGraph keeps it for reuse
 }
 
 }  // namespace sonard::render

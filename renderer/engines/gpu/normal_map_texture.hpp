@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A normal map as surface_shader.hpp reads it: the texels of all levels in one texture.
+// A normal map for surface_shader.hpp: the texels of all levels in one texture.
 #pragma once
 
 #include <osg/StateSet>
@@ -18,7 +18,7 @@ class NormalMapTexture final : public VideoMemory::Item {
   explicit NormalMapTexture(const NormalPyramid& pyramid);
   ~NormalMapTexture() override { remove(); }
 
-  /// Lets what has this state be drawn with the map.
+  /// Adds the map to a state, so that drawables with this state use it.
   void add_to(osg::StateSet& state) const;
 
  private:
@@ -26,7 +26,7 @@ class NormalMapTexture final : public VideoMemory::Item {
   void release(osg::State& state) override;
 
   osg::ref_ptr<osg::Texture2D> texture_;
-  osg::ref_ptr<osg::Uniform> levels_;  ///< where in the texture they are
+  osg::ref_ptr<osg::Uniform> levels_;  ///< places of the levels in the texture
 };
 
 }  // namespace sonard::render

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of a body as RasterSampler draws it: chunks of its mesh in OpenSceneGraph, and what
-// surface_shader.hpp wants to know of its surface.
+// A part of a body for RasterSampler: chunks of its mesh in OpenSceneGraph, and the input of
+// surface_shader.hpp for its surface.
 #pragma once
 
 #include <memory>
@@ -18,18 +18,18 @@ namespace sonard::render {
 
 osg::Matrixd to_osg(const Pose& T_a_b);
 
-/// What the shader wants to know of the surface of a part. Parts with the same surface share one.
+/// Input of the shader for the surface of a part. Parts with the same surface share one.
 struct Surface {
   osg::ref_ptr<osg::StateSet> state;
   Shading shading;
-  std::unique_ptr<NormalMapTexture> normal_map;  ///< null: none
+  std::unique_ptr<NormalMapTexture> normal_map;  ///< null: no map
 };
 
 Surface make_surface(const BodyPart& part);
 bool same_surface(const BodyPart& a, const BodyPart& b);
 
 /// @param surface of this part
-/// @param max_range_m outlives the node: chunks beyond what it holds are not drawn.
+/// @param max_range_m must outlive the node; chunks beyond its value are not drawn
 osg::ref_ptr<osg::MatrixTransform> make_part(const BodyPart& part, const Surface& surface,
                                              const float* max_range_m);
 

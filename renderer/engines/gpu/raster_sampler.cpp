@@ -44,10 +44,10 @@ osg::ref_ptr<osg::Texture2DArray> make_samples(const ViewLayout& size) {
   return texture;
 }
 
-/// What views are drawn into.
+/// The textures into which views are drawn.
 class ViewTarget {
  public:
-  /// Makes room, unless there is.
+  /// Makes room for a layout, if there is too little or far too much.
   void hold(const ViewLayout& layout, osg::State& state) {
     const bool fits =
         layout.width <= size_.width && layout.height <= size_.height && layout.layers <= size_.layers;
@@ -84,10 +84,10 @@ class ViewTarget {
     }
   }
 
-  /// Draws go into this layer.
+  /// Makes a layer the target of drawing.
   void bind(int layer, osg::State& state) const {
     framebuffers_[static_cast<std::size_t>(layer)]->apply(state);
-    // Which makes its textures the first time.
+    // apply() makes the textures the first time.
     state.haveAppliedTextureAttribute(state.getActiveTextureUnit(), osg::StateAttribute::TEXTURE);
   }
 
@@ -96,16 +96,17 @@ class ViewTarget {
   }
 
  private:
-  // Making textures takes as long as drawing, so they are kept from call to call: so many pixels of 16 bytes.
+  // Textures of up to this many pixels, 16 bytes each, are kept, because making them takes as long as
+  // drawing.
   static constexpr double most_kept_pixels = 0x1p25;
 
-  /// The next pass hardly differs. What OpenGL has at most is a multiple of this, too.
+  /// Rounds up, because the next pass is of similar size. Limits of OpenGL are multiples of 512 too.
   static int roomy(int px) { return (px + 511) / 512 * 512; }
   static double pixels(const ViewLayout& size) { return 1.0 * size.width * size.height * size.layers; }
 
   ViewLayout size_;
   osg::ref_ptr<osg::Texture2DArray> samples_;
-  osg::ref_ptr<osg::RenderBuffer> depths_;                          // of the layer at hand
+  osg::ref_ptr<osg::RenderBuffer> depths_;                          // of the current layer
   std::vector<osg::ref_ptr<osg::FrameBufferObject>> framebuffers_;  // of the layers
 };
 
@@ -119,9 +120,9 @@ struct RasterSampler::Impl {
 
   osg::ref_ptr<EglContext> context;
   std::string description;
-  std::unique_ptr<VideoMemory> video_memory;  // what it holds goes first
+  std::unique_ptr<VideoMemory> video_memory;  // declared before its items, which are destroyed first
   osg::ref_ptr<osg::Group> scene;
-  osg::ref_ptr<osg::StateSet> unseen;  // draws what is not of the scene
+  osg::ref_ptr<osg::StateSet> unseen;  // draws pixels without a surface
   std::unique_ptr<ViewCuller> culler;
   std::vector<BodyNode> bodies;
   std::vector<osg::ref_ptr<osg::MatrixTransform>> parts;  // of all bodies
@@ -146,7 +147,7 @@ struct RasterSampler::Impl {
     culler = std::make_unique<ViewCuller>(*context->getState(), *scene);
     set_up_state(*scene->getOrCreateStateSet());
     set_up_unseen();
-    program(Shading::geometric_normal, {}, false);  // an OpenGL that cannot build it is found out here
+    program(Shading::geometric_normal, {}, false);  // fails here if OpenGL cannot build it
     add_bodies(world);
   }
 
@@ -202,7 +203,7 @@ struct RasterSampler::Impl {
                                "the shader of what is not seen"));
   }
 
-  /// Built when first asked for.
+  /// The program of a kind of surface, built on first use.
   osg::ref_ptr<osg::Program> program(Shading shading, const SurfaceModel& surface, bool bent) {
     const std::string head = surface_shader_head(shading, surface, bent);
     osg::ref_ptr<osg::Program>& known = programs[head];
@@ -227,8 +228,8 @@ struct RasterSampler::Impl {
         ->set(static_cast<float>(surface.attenuation_per_m));
   }
 
-  /// All views of a ping. Does not wait for the drawing to end.
-  /// @return where the views are.
+  /// Draws all views of a ping. Does not wait for the drawing to end.
+  /// @return places of the views
   ViewLayout draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
                   double range_m) {
     context->make_current_or_throw();
@@ -261,7 +262,7 @@ struct RasterSampler::Impl {
     return layout;
   }
 
-  /// Of what holds views.
+  /// Clears the depths of the area with views.
   static void clear_depths(const ViewLayout& layout) {
     glClearDepth(0);
     glEnable(GL_SCISSOR_TEST);
@@ -270,7 +271,7 @@ struct RasterSampler::Impl {
     glDisable(GL_SCISSOR_TEST);
   }
 
-  /// Once all views of the layer are drawn.
+  /// Fills pixels without a surface, after all views of the layer are drawn.
   void draw_unseen(const ViewLayout& layout) const {
     context->getState()->apply(unseen);
     glViewport(0, 0, layout.width, layout.height);
@@ -279,7 +280,7 @@ struct RasterSampler::Impl {
 
   osg::GLExtensions& gl() const { return *context->getState()->get<osg::GLExtensions>(); }
 
-  /// Everything that is drawn is then in video memory.
+  /// Culls all views and uploads everything that will be drawn.
   std::vector<CulledView> cull(const std::vector<SubView>& views) {
     Stopwatch watch;
     std::vector<CulledView> culled;
@@ -306,7 +307,7 @@ struct RasterSampler::Impl {
     return culled;
   }
 
-  /// Into what is bound.
+  /// Draws a view into the bound layer.
   void draw(const SubView& view, const ViewLayout::Place& place, const CulledView& culled,
             const Refraction& bend) const {
     osg::State& state = *context->getState();
@@ -330,14 +331,14 @@ struct RasterSampler::Impl {
         }
       }
       state.applyModelViewMatrix(leaf.body_to_eye.get());
-      const osg::Matrixd rounded = osg::Matrixf(*leaf.body_to_eye);  // as the shader has it
+      const osg::Matrixd rounded = osg::Matrixf(*leaf.body_to_eye);  // as in the shader
       const osg::Vec3 eye = osg::Matrixd::inverse(rounded).getTrans() - leaf.chunk->centre();
       gl().glUniform3f(at_eye, eye.x(), eye.y(), eye.z());
       leaf.chunk->drawImplementation(info);
     }
   }
 
-  /// Waits for the drawing to end.
+  /// Waits for the drawing to end and reads the samples.
   void read(const std::vector<SubView>& views, const ViewLayout& layout) {
     read_samples.resize(std::max(read_samples.size(), views.size()));
     for (std::size_t v = 0; v < views.size(); ++v) {

@@ -20,54 +20,53 @@ namespace sonard::render {
 class EglContext;
 class VideoMemory;
 
-/// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar:
-/// the subtraction of world positions happens in double on the CPU, once per body and ping.
+/// Owns an EGL context and the world's copy on the GPU. All coordinates on the GPU are relative to the sonar;
+/// the CPU subtracts world positions in double, once per body and ping.
 class RasterSampler {
  public:
-  /// @param device as GpuOptions::device.
-  /// @throws RendererError without OpenGL 4.5, or when a shader does not compile.
+  /// @throws RendererError without OpenGL 4.5, or if a shader does not compile
   explicit RasterSampler(const World& world, const GpuOptions& options = {});
   ~RasterSampler();
   RasterSampler(const RasterSampler&) = delete;
   RasterSampler& operator=(const RasterSampler&) = delete;
 
-  /// The samples of view i, row after row as SubView orders them. They stay valid until the next call of
-  /// draw() or sample(). Surfaces beyond `max_range_m` may be reported or not.
-  /// @throws RequestError when a view is larger than a texture can be, or what is to be drawn takes more
-  /// video memory than the options allow.
-  /// @throws RendererError when OpenGL fails.
+  /// The samples of each view, row after row in the order of SubView; valid until the next call of draw() or
+  /// sample(). Surfaces beyond `max_range_m` may be missing.
+  /// @throws RequestError if a view exceeds the size of textures, or if drawing takes more video memory than
+  /// the options allow
+  /// @throws RendererError if OpenGL fails
   std::vector<const SurfaceSample*> sample(const Pose& T_world_sonar, const SampleGrid& grid,
                                            const SurfaceModel& surface, double max_range_m);
 
-  // These three do what EchoEngine says.
+  // For these three, see EchoEngine.
   void set_body_pose(std::size_t body, const Pose& T_world_body);
   void set_part_meshes(std::span<const PartMesh> changes);
   void set_refraction(double bend_per_m);
 
-  /// Meshes and normal maps; what views take is not in it.
+  /// Video memory of meshes and normal maps, without views.
   const VideoMemory& video_memory() const;
 
   /// "gpu, vendor / renderer / version"
   const std::string& description() const;
 
-  /// How much has been drawn since the beginning, and what culling took.
+  /// Sums since construction.
   struct Drawn {
     std::uint64_t views = 0, pixels = 0, draw_calls = 0, triangles = 0;
     double culling_s = 0.0;
   };
   const Drawn& drawn() const;
 
-  /// What lay_out() is told.
+  /// The argument `most_px` of lay_out().
   int most_view_px() const;
   /// Like sample(), but the samples stay on the GPU.
-  /// @return name of an array of textures (RGBA32F, a SurfaceSample each texel), in which the views are as
-  /// lay_out() says. Stays valid until the next call of draw() or sample().
+  /// @return name of an array of textures (RGBA32F, one SurfaceSample per texel) with the views at the places
+  /// of lay_out(); valid until the next call of draw() or sample()
   unsigned draw(const Pose& T_world_sonar, const SampleGrid& grid, const SurfaceModel& surface,
                 double max_range_m);
-  /// Where the texture is, made current.
-  /// @throws RendererError when the context is lost.
+  /// Makes the context of the texture current and returns it.
+  /// @throws RendererError if the context is lost
   EglContext& current_context();
-  /// For what ends: does nothing when the context is lost.
+  /// For destructors: does nothing if the context is lost.
   void make_current_if_alive();
 
  private:

@@ -2,8 +2,8 @@
 // The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the
 // shader.
 //
-// Each kind of surface has a program of its own, which begins with surface_shader_head() and holds only what
-// that kind takes: a software OpenGL runs both sides of every branch.
+// Each kind of surface has its own program, which begins with surface_shader_head() and has only the code for
+// that kind, because a software OpenGL runs both sides of every branch.
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@
 
 namespace sonard::render {
 
-/// What of a surface decides which program draws it: where the normal comes from that its echo is taken by.
+/// Kind of a surface, which selects its program: the source of the normal for its echo.
 enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
 
-/// Locations of the uniforms that belong to a view or, at_eye, to a chunk in it; OpenSceneGraph has the
-/// others.
+/// Locations of the uniforms of a view or, at_eye, of a chunk in it; OpenSceneGraph sets the others.
 enum ViewUniform : int { at_tan_half, at_pixel, at_refraction, at_corner, at_eye };
 
-/// The beginning of both shaders. FACETS: 0 none, 1 near normal incidence, 2 everywhere. BENT: rays are.
+/// The beginning of both shaders. FACETS: 0 no facets, 1 near normal incidence, 2 everywhere. BENT: rays
+/// bend.
 inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   return fmt::format(
       "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
@@ -29,10 +29,10 @@ inline std::string surface_shader_head(Shading shading, const SurfaceModel& surf
       static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
 
-// The plane of a triangle comes with its last corner, which no other triangle ends with, and not from what
-// the GPU interpolates between the corners: that is rounded as the GPU likes, and off by per cents where a
-// triangle of a hundred metres passes a metre from the eye and is clipped there (docs/accuracy.md). How far
-// the plane is from the eye comes from the chunk's centre, because corners may be far away.
+// The plane of a triangle is an attribute of its last corner, with which no other triangle ends. Positions
+// that the GPU interpolates between corners are less accurate: they are off by per cents if a triangle of a
+// hundred metres passes a metre from the eye and is clipped there (docs/accuracy.md). The distance of the
+// plane from the eye is computed from the chunk's centre, because corners may be far away.
 inline constexpr char surface_vertex_shader[] = R"glsl(
 layout(location = 0) in vec4 position;  // VertexAttribute
 layout(location = 1) in vec3 normal;
@@ -93,9 +93,9 @@ void main() {
 )glsl";
 
 // Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1)
-// with tangents t. On the plane n.p = d seen along p = depth * q the inverse depth is n.q / d, so it is
-// affine in t, and with it come the exact range derivatives (docs/physics.md 2.3, equation 2), without
-// differences of positions and without trouble where the plane is seen edge-on.
+// with tangents t. On the plane n.p = d, with p = depth * q, the inverse depth is n.q / d, which is affine in
+// t. This gives the exact range derivatives (docs/physics.md 2.3, equation 2), without differences of
+// positions, even for planes seen edge-on.
 inline constexpr char surface_fragment_shader[] = R"glsl(
 flat in vec4 plane;
 #if SHADING != 0
@@ -242,8 +242,8 @@ void main() {
 }
 )glsl";
 
-// What is seen where there is no surface: drawn last, over the depth that was there to begin with. To clear
-// samples takes a card two fifths of what drawing takes.
+// Fills pixels without a surface: drawn last, at pixels that still have the initial depth. Clearing all
+// samples instead would take two fifths of the time of drawing.
 inline constexpr char unseen_vertex_shader[] = R"glsl(#version 450 compatibility
 void main() {
   gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0.0, 1.0);

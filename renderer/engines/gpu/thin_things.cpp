@@ -18,11 +18,11 @@ namespace sonard::render {
 
 namespace {
 
-constexpr double widest_m = 0.5;  // 120 m away a column of the coarsest grid is 0.2 m wide
+constexpr double widest_m = 0.5;  // at 120 m a column of the coarsest grid is 0.2 m wide
 constexpr std::size_t most_triangles = 200'000;
-constexpr double columns_across = 8.0;  // of a square bar 5.6: its echo is within 1 dB
+constexpr double columns_across = 8.0;  // 5.6 for a square bar, whose echo is then accurate to 1 dB
 
-/// Sets of corners, each of which knows one of its own.
+/// Disjoint sets of corners.
 class Islands {
  public:
   explicit Islands(std::size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -39,7 +39,7 @@ class Islands {
   std::vector<std::uint32_t> parent_;
 };
 
-/// The corners of each island of connected triangles in a mesh. Corners at the same place are one.
+/// The corners of each island of connected triangles in a mesh. Corners at the same place count as one.
 std::vector<std::vector<glm::dvec3>> islands_of(const TriangleMesh& mesh) {
   Islands islands(mesh.positions.size());
   std::map<std::tuple<float, float, float>, std::uint32_t> first_at;
@@ -69,7 +69,7 @@ glm::dvec3 farthest_from(const glm::dvec3& place, const std::vector<glm::dvec3>&
   });
 }
 
-/// nullopt: it is wider than half a metre.
+/// nullopt if the island is wider than half a metre.
 std::optional<ThinThing> thin_thing(std::size_t body, const std::vector<glm::dvec3>& corners) {
   const glm::dvec3 from_m = farthest_from(corners.front(), corners);
   const glm::dvec3 to_m = farthest_from(from_m, corners);
@@ -82,7 +82,7 @@ std::optional<ThinThing> thin_thing(std::size_t body, const std::vector<glm::dve
                                             : std::nullopt;
 }
 
-/// An even number, at least this.
+/// The smallest even number that is at least `wanted`.
 int even_columns(double wanted) {
   return 2 * static_cast<int>(std::ceil(std::min(wanted, 1e6) / 2));
 }
@@ -142,7 +142,7 @@ std::vector<int> ThinThings::least_columns(const Pose& T_world_sonar, const Aper
     const double port_rad = std::max(one_rad, other_rad) + around_rad;
     const double starboard_rad = std::min(one_rad, other_rad) - around_rad;
     if (port_rad - starboard_rad - 2 * around_rad > std::numbers::pi) {
-      continue;  // it lies across the backward azimuth, where no fan looks
+      continue;  // it lies behind the sonar, outside every fan
     }
     // Beams whose port edge is beyond the starboard end, and whose starboard edge is not beyond the port end.
     const auto end = std::upper_bound(edges_rad.begin(), edges_rad.end(), starboard_rad, std::greater<>());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What may be thinner than a column of samples, so that a grid might miss it: posts, bars, cables, stones.
+// Things thinner than a column of samples, which a grid may miss: posts, bars, cables, stones.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,26 @@
 
 namespace sonard::render {
 
-/// An island of a mesh, whose triangles share corners: the two of its corners that are far apart, and how far
-/// the others lie from the straight line between them.
+/// An island of a mesh, whose triangles share corners: two corners that are far apart, and the largest
+/// distance of the others from the straight line between them.
 struct ThinThing {
   std::size_t body = 0;
   glm::dvec3 from_m, to_m;  ///< in the frame of the body
-  double width_m = 0.0;     ///< from that of a round bar up to 1.5 times that of a square one
+  double width_m = 0.0;     ///< 1 (round bar) to 1.5 (square bar) times the width of the bar
 };
 
-/// The thin things of a world: found by their triangles when the world is loaded, and placed for each ping.
+/// The thin things of a world: found in the meshes when the world is loaded, and placed for each ping.
 class ThinThings {
  public:
-  /// Looks at each island of each mesh that is at most half a metre wide. Left out are terrains, and meshes
-  /// of more than 200,000 triangles.
+  /// Finds all islands of meshes that are at most half a metre wide, without terrains and meshes of more than
+  /// 200,000 triangles.
   explicit ThinThings(const World& world);
 
   void set_body_pose(std::size_t body, const Pose& T_world_body);
 
-  /// Columns that each beam needs, so that eight of them lie across each thin thing in it; 0: no thin thing
-  /// is in the beam.
-  /// @param range_m how far the sonar looks
+  /// Columns that each beam needs so that eight lie across each thin thing in it; 0 if the beam has no thin
+  /// thing.
+  /// @param range_m range of the sonar
   std::vector<int> least_columns(const Pose& T_world_sonar, const Aperture& aperture, double range_m) const;
 
   const std::vector<ThinThing>& all() const { return things_; }
@@ -43,8 +43,8 @@ class ThinThings {
   std::vector<Pose> T_world_body_;
 };
 
-/// Which posts and bars engine `gpu` may lose in single pings, since nobody looks for them: a sentence for
-/// the user. Empty: none.
+/// A sentence for the user about posts and bars that engine `gpu` may miss in some pings, because thin things
+/// are not searched for there; empty if there are no such limits.
 std::string thin_things_not_looked_for(const World& world, const SonarSettings& settings);
 
 }  // namespace sonard::render

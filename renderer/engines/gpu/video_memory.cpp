@@ -23,7 +23,7 @@ void VideoMemory::hold(const std::vector<Item*>& items) {
   std::uint64_t missing_bytes = 0;
   for (Item* item : items) {
     if (item->last_hold_ == holds_) {
-      continue;  // seen in another view
+      continue;  // listed for another view too
     }
     item->last_hold_ = holds_;
     needed_bytes += item->bytes_;
@@ -40,7 +40,7 @@ void VideoMemory::hold(const std::vector<Item*>& items) {
                     "allows {} ({} MiB): raise it, or choose engine: cpu",
                     needed_bytes, bound_bytes_, bound_bytes_ >> 20));
   }
-  // What is wanted now is at the front and fits, so that this ends before it.
+  // Items of this call are at the front and fit, so the loop ends before them.
   while (bytes_ + missing_bytes > bound_bytes_) {
     assert(items_.back()->last_hold_ != holds_);
     release(*items_.back());

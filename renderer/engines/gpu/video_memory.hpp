@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the world lies in video memory, and the bound that it keeps.
+// The part of the world in video memory, and its bound.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,24 @@
 
 namespace sonard::render {
 
-/// Uploads what is about to be drawn and releases what was not drawn for the longest time, so that no more
-/// bytes lie in video memory than the bound allows. The context is current in every call but where it says
-/// otherwise.
+/// Uploads items before they are drawn and releases the least recently drawn ones, so that video memory stays
+/// within the bound. The context must be current in every call, unless stated otherwise.
 class VideoMemory {
  public:
-  /// What is uploaded and released as a whole: a chunk of a mesh, a normal map. It is in one VideoMemory or
-  /// in none.
+  /// A unit of upload and release: a chunk of a mesh, a normal map. It is in one VideoMemory at most.
   class Item {
    public:
     Item(const Item&) = delete;
     Item& operator=(const Item&) = delete;
 
-    /// As many as OpenGL is given; what a driver adds to each is not known.
+    /// Bytes given to OpenGL, without the unknown overhead of the driver.
     std::uint64_t bytes() const { return bytes_; }
 
    protected:
     explicit Item(std::uint64_t bytes) : bytes_(bytes) {}
     /// @pre not in video memory: see remove().
     virtual ~Item() = default;
-    /// For the destructors of items that may go before their VideoMemory does.
+    /// Removes the item; for destructors of items that may be destroyed before their VideoMemory.
     void remove();
 
    private:
@@ -42,27 +40,26 @@ class VideoMemory {
     const std::uint64_t bytes_;
     VideoMemory* memory_ = nullptr;  ///< null: not in video memory
     std::list<Item*>::iterator place_;
-    std::uint64_t last_hold_ = 0;  ///< number of the call of hold() that wanted it last
+    std::uint64_t last_hold_ = 0;  ///< number of the last hold() with this item
   };
 
-  /// @param state of the context; outlives this.
+  /// @param state of the context; must outlive this object
   VideoMemory(osg::State& state, std::uint64_t bound_bytes) : state_(state), bound_bytes_(bound_bytes) {}
   VideoMemory(const VideoMemory&) = delete;
   VideoMemory& operator=(const VideoMemory&) = delete;
 
-  /// Afterwards all of these are in video memory. An item may be listed more than once.
-  /// @throws RequestError when they do not fit, however much else is released; nothing is uploaded or
-  /// released then.
-  /// @throws RendererError when OpenGL has no room for them.
+  /// Puts all of these items into video memory. An item may be listed more than once.
+  /// @throws RequestError if they exceed the bound; then nothing is uploaded or released
+  /// @throws RendererError if OpenGL has no room for them
   void hold(const std::vector<Item*>& items);
 
   void release_all();
-  /// Without OpenGL, when the context is lost and all that was in it with it.
+  /// Releases all items without OpenGL, after the context was lost.
   void forget_all();
 
-  /// In use now.
+  /// Bytes in use.
   std::uint64_t bytes() const { return bytes_; }
-  /// Uploaded so far, what was uploaded again included.
+  /// Bytes uploaded so far, including repeated uploads.
   std::uint64_t bytes_uploaded() const { return bytes_uploaded_; }
 
  private:
@@ -71,7 +68,7 @@ class VideoMemory {
 
   osg::State& state_;
   const std::uint64_t bound_bytes_;
-  std::list<Item*> items_;  ///< the last drawn first
+  std::list<Item*> items_;  ///< last drawn first
   std::uint64_t bytes_ = 0;
   std::uint64_t bytes_uploaded_ = 0;
   std::uint64_t holds_ = 0;

@@ -13,9 +13,9 @@ namespace sonard::render {
 
 namespace {
 
-/// Reversed depth without a far plane: depth = near / distance, so that float resolution is even in relative
-/// terms and loses nothing by a small near distance (docs/physics.md 4.2). Visibility only; ranges never come
-/// from the depth buffer. Views lie on their side (ViewLayout): x of the eye is y of the screen.
+/// Reversed depth without a far plane: depth = near / distance. The relative resolution of floats is then
+/// even, and a small near distance costs no accuracy (docs/physics.md 4.2). For visibility only; ranges never
+/// come from the depth buffer. Views lie on their side (ViewLayout): x of the eye is y of the screen.
 osg::Matrixd projection_matrix(const SubView& view) {
   return osg::Matrixd(0, 1 / view.tan_half_width, 0, 0,   //
                       1 / view.tan_half_height, 0, 0, 0,  //
@@ -25,7 +25,7 @@ osg::Matrixd projection_matrix(const SubView& view) {
 
 void collect(const osgUtil::RenderBin& bin, CulledView& view) {
   for (const osgUtil::RenderLeaf* leaf : bin.getRenderLeafList()) {
-    view.leaves.push_back({static_cast<MeshChunk*>(leaf->_drawable.get()),  // nothing else is drawn
+    view.leaves.push_back({static_cast<MeshChunk*>(leaf->_drawable.get()),  // all drawables are MeshChunks
                            leaf->_parent->getStateSet(), leaf->_modelview});
     view.projection = leaf->_projection;
   }
@@ -63,7 +63,7 @@ CulledView ViewCuller::cull(const SubView& view, bool bent) {
   camera.setViewport(0, 0, view.rows, view.columns);
   camera.setViewMatrix(view_matrix(view));
   camera.setProjectionMatrix(projection_matrix(view));
-  // Only the sides cull: there is no far plane, and small features are echoes too.
+  // Only the sides cull: there is no far plane, and small objects have echoes too.
   const osg::CullSettings::CullingMode culling =
       bent ? osg::CullSettings::NO_CULLING : osg::CullSettings::VIEW_FRUSTUM_SIDES_CULLING;
   scene_view_->setCullingMode(culling);

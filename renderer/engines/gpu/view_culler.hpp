@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenSceneGraph finds out what is in a view.
+// Culling of a view with OpenSceneGraph.
 #pragma once
 
 #include <vector>
@@ -15,10 +15,11 @@
 
 namespace sonard::render {
 
-/// Sonar frame (x forward, y port, z up) to the eye frame of a view (x starboard, y up, -z forward).
+/// Transform from the sonar frame (x forward, y port, z up) to the eye frame of a view (x starboard, y up,
+/// -z forward).
 osg::Matrixd view_matrix(const SubView& view);
 
-/// What a view draws.
+/// The chunks that a view draws.
 struct CulledView {
   struct Leaf {
     MeshChunk* chunk;
@@ -26,15 +27,15 @@ struct CulledView {
     osg::ref_ptr<osg::RefMatrix> body_to_eye;
   };
   osg::ref_ptr<osg::RefMatrix> projection;
-  std::vector<Leaf> leaves;  ///< the nearest first: what they hide is not shaded
+  std::vector<Leaf> leaves;  ///< nearest first, so that hidden surfaces are not shaded
 };
 
 class ViewCuller {
  public:
-  /// @param scene holds MeshChunks below the nodes of make_part().
+  /// @param scene has MeshChunks below the nodes of make_part()
   ViewCuller(osg::State& state, osg::Node& scene);
 
-  /// @param bent rays are. Boxes are not, so that nothing is dropped but what lies beyond the range.
+  /// @param bent true if rays bend: then only chunks beyond the range are culled, because boxes do not bend
   CulledView cull(const SubView& view, bool bent);
 
  private:

@@ -12,7 +12,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int step_px = 4;  // GPUs work on small squares of pixels: no view shares one with another
+constexpr int step_px = 4;  // GPUs work on small squares of pixels, which views must not share
 
 /// Views lie on their side.
 int width_px(const SubView& view) {
@@ -40,7 +40,7 @@ ViewLayout lay_out(const std::vector<SubView>& views, int most_px) {
   }
   layout.width = std::min(most_px, rounded_up(std::max(layout.width, static_cast<int>(std::sqrt(pixels)))));
 
-  // On shelves, the highest first.
+  // Views are put on shelves, the highest first.
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

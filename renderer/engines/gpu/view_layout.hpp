@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many views in one texture: changing textures costs a GPU more than a small view takes. They lie on their
-// side: what bins a column has its samples one after the other in memory.
+// Many views in one texture, because changing textures takes a GPU longer than a small view. Views lie on
+// their side, so that the samples of a column are contiguous in memory for binning.
 #pragma once
 
 #include <vector>
@@ -9,19 +9,19 @@
 
 namespace sonard::render {
 
-/// Where the views of a grid lie in an array of textures of one size, in pixels: the sample of column c and
-/// row r at (x + r, y + c). A function of the sizes of the views alone.
+/// Places of the views of a grid in an array of textures of one size, in pixels: the sample of column c and
+/// row r is at (x + r, y + c). They depend on the sizes of the views alone.
 struct ViewLayout {
   struct Place {
     int x = 0, y = 0;  ///< of the lower left corner
     int layer = 0;
   };
   int width = 0, height = 0, layers = 0;
-  std::vector<Place> places;  ///< of each view
+  std::vector<Place> places;  ///< one per view
 };
 
-/// @param most_px sides of a texture that OpenGL can have
-/// @throws RequestError when a view is larger than that.
+/// @param most_px largest side of a texture in OpenGL
+/// @throws RequestError if a view is larger
 ViewLayout lay_out(const std::vector<SubView>& views, int most_px);
 
 }  // namespace sonard::render
