@@ -65,13 +65,14 @@ void EngineSwitch::retry_gpu() {
   try {
     make_gpu();
   } catch (const RendererError&) {
-    return;  // what the log says of the loss still holds
+    return;  // the loss was already reported
   }
   describe();
   report("the GPU is back: the engine is " + description_);
 }
 
-/// @param too_large gets what there is too much of, where the GPU cannot hold it.
+/// @param too_large gets the message if a request does not fit on the GPU
+/// @return false if the GPU did not make the images; their statistics are then unchanged
 bool EngineSwitch::images_by_gpu(std::span<const EchoJob> jobs, std::string& too_large) {
   std::vector<PingStatistics> before;
   for (const EchoJob& job : jobs) {
@@ -100,7 +101,7 @@ void EngineSwitch::images(std::span<const EchoJob> jobs) {
     return;
   }
   if (!too_large.empty() && jobs.size() > 1) {
-    for (const EchoJob& job : jobs) {  // which of them it is makes no difference to the others
+    for (const EchoJob& job : jobs) {  // one by one, so that only the request that does not fit uses the CPU
       images({&job, 1});
     }
     return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that was asked for and, where that fails, the other.
+// The selected engine and, if the GPU fails, the CPU engine.
 #pragma once
 
 #include <memory>
@@ -14,27 +14,28 @@
 
 namespace sonard::render {
 
-/// Images come from the GPU until it fails; those at which it does, and all that follow, come from the CPU.
-/// Each engine is made when it is first used, of the world as it is by then.
+/// Images come from the GPU until it fails. The images at which it fails, and all later ones, come from the
+/// CPU, until the GPU is back (GpuOptions::retry_s). Each engine is made on first use, from the current
+/// world.
 class EngineSwitch final : public EchoEngine {
  public:
-  /// @param index where the world is moved; it and the workers outlive this object.
-  /// @throws RendererError when `gpu` is asked for and cannot be had.
+  /// @param index moves the world; it and the workers must outlive this object
+  /// @throws RendererError if `gpu` is selected and not available
   EngineSwitch(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options);
 
   /// The engine of the next image.
   EngineKind kind() const { return gpu_ ? EngineKind::gpu : EngineKind::cpu; }
-  /// Takes this one from the next image on, and gives the GPU up when it is `cpu`.
+  /// Selects the engine from the next image on; `cpu` releases the GPU.
   /// @param engine not `automatic`
-  /// @throws RendererError when it cannot be had; the one in use stays.
+  /// @throws RendererError if it is not available; the current one stays
   void use(EngineKind engine);
-  /// Where the GPU fails, all of them come from the CPU; where it cannot hold what one of them takes, that
-  /// one.
+  /// If the GPU fails, all these images come from the CPU. If one image does not fit on the GPU, only that
+  /// one comes from the CPU.
   void images(std::span<const EchoJob> jobs) override;
   void set_body_pose(std::size_t body, const Pose& T_world_body) override;
   void set_part_meshes(std::span<const PartMesh> changes) override;
   void set_refraction(double bend_per_m) override;
-  /// Of the engine in use; where the GPU was lost, with the reason.
+  /// Description of the current engine, with the reason if the GPU was lost.
   const std::string& description() const override { return description_; }
 
  private:
@@ -50,8 +51,8 @@ class EngineSwitch final : public EchoEngine {
   WorkerPool& workers_;
   const RendererOptions options_;
   double bend_per_m_ = 0.0;
-  std::unique_ptr<EchoEngine> cpu_, gpu_;  ///< null: not made yet, or given up
-  bool wants_gpu_ = false;                 ///< without `gpu_` it is lost
+  std::unique_ptr<EchoEngine> cpu_, gpu_;  ///< null: not made yet, or released
+  bool wants_gpu_ = false;                 ///< true without `gpu_`: the GPU is lost
   bool told_too_large_ = false;
   std::string lost_because_;
   Stopwatch watch_;
