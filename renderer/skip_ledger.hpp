@@ -17,6 +17,7 @@ enum class SkipRule : std::uint8_t {
   unchanged_scene,
   unchanged_settings,
   culled_clusters,
+  hidden_faces,
   empty_beams,
   geometric_normals,
   absent_normal_map,
@@ -68,6 +69,11 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::culled_clusters, "culled_clusters",
                   "the bounding sphere is beyond the range, the azimuths or the elevations of the fan",
                   "clusters", 1e-3},
+    SkipRuleEntry{
+        SkipRule::hidden_faces, "hidden_faces",
+        "the face turns its inner side to the sonar, which is outside of the box of its closed surface, or "
+        "above its bed; rays are straight",
+        "triangles", 1e-3},
     SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "nothing is seen in the beam", "beams", 0},
     SkipRuleEntry{SkipRule::geometric_normals, "geometric_normals",
                   "the part has no vertex normals, or all are within 1e-4 rad of their facet's", "parts",

@@ -12,7 +12,6 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int share_count = 32;  // jobs; fixed, so that the order of triangles does not depend on the threads
 constexpr float thin_ratio = 3.0F;      // angular height over width
 constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges have little effect
 constexpr auto half_turn = static_cast<float>(std::numbers::pi);
@@ -149,6 +148,18 @@ void bound(const Fan& fan, std::size_t count, Bounds& out) {
   }
 }
 
+/// Whether a triangle turns its inner side to the sonar, by more than rounding can change.
+/// @param outwards as Shell::outwards; 0 if either side may be seen
+bool turned_away(const Corners& at, std::size_t i, std::size_t j, std::size_t k, float outwards) {
+  constexpr float least_sine = 1e-5F;
+  const glm::vec3 a(at.x[i], at.y[i], at.z[i]);
+  const glm::vec3 b(at.x[j], at.y[j], at.z[j]);
+  const glm::vec3 c(at.x[k], at.y[k], at.z[k]);
+  const glm::vec3 across = glm::cross(b - a, c - a);
+  const float away = outwards * glm::dot(across, a);
+  return away > 0 && away * away > least_sine * least_sine * glm::dot(across, across) * glm::dot(a, a);
+}
+
 /// True if a whole cluster may lie between two slices: a stone, a plate.
 bool is_small(const Fan& fan, std::size_t count, const Bounds& bounds) {
   const float low = *std::min_element(bounds.low_azimuth.begin(), bounds.low_azimuth.begin() + count);
@@ -167,8 +178,10 @@ std::uint64_t FanTriangles::clusters_culled() const {
 }
 
 void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
-                        WorkerPool& workers, bool cull) {
-  cull_ = cull;
+                        WorkerPool& workers, const SkipSwitches& skip) {
+  cull_ = skip.on(SkipRule::culled_clusters);
+  // Bent rays may reach a face from behind.
+  find_hiding_shells(parts, bend.straight() && skip.on(SkipRule::hidden_faces));
   part_starts_.assign(1, 0);
   for (const PlacedPart& part : parts) {
     part_starts_.push_back(part_starts_.back() + static_cast<std::uint32_t>(part.clusters->clusters.size()));
@@ -182,12 +195,33 @@ void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, co
     share.triangles.clear();
     share.beams.clear();
     share.per_beam.assign(beams, 0);
-    share.culled = 0;
+    share.culled = share.hidden = 0;
     collect(parts, fan, bend, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count,
             share);
   });
   make_room_for_lists(beams);
   workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
+}
+
+std::uint64_t FanTriangles::faces_hidden() const {
+  std::uint64_t hidden = 0;
+  for (const Share& share : shares_) {
+    hidden += share.hidden;
+  }
+  return hidden;
+}
+
+/// @param may_hide false: no shell hides its inner side
+void FanTriangles::find_hiding_shells(const std::vector<PlacedPart>& parts, bool may_hide) {
+  hiding_.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::span<const Shell> shells = parts[i].clusters->shells.all();
+    const glm::vec3 sonar_m = glm::transpose(parts[i].R_sonar_part) * -parts[i].t_sonar_part_m;
+    hiding_[i].resize(shells.size());
+    std::ranges::transform(shells, hiding_[i].begin(), [&](const Shell& shell) {
+      return may_hide && shell.hides_inner_side(sonar_m) ? shell.outwards : 0.0F;
+    });
+  }
 }
 
 void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
@@ -228,12 +262,18 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
       const std::size_t i = part.clusters->corners[0][t];
       const std::size_t j = part.clusters->corners[1][t];
       const std::size_t k = part.clusters->corners[2][t];
+      const std::uint32_t shell = part.clusters->shell[t];
+      if (shell != Shells::none && turned_away(at, i, j, k, hiding_[part_number][shell])) {
+        ++share.hidden;
+        continue;
+      }
       const bool whole_turn = bounds.high_azimuth[n] - bounds.low_azimuth[n] > half_turn;
       add({{at.x[i], at.x[j], at.x[k]},
            {at.y[i], at.y[j], at.y[k]},
            {at.z[i], at.z[j], at.z[k]},
            static_cast<std::uint32_t>(part_number),
            part.clusters->mesh_triangle[t],
+           0,
            !out && (small || bounds.thin[n] != 0),
            bounds.upright[n] != 0,
            whole_turn ? -half_turn : bounds.low_azimuth[n],
@@ -289,11 +329,17 @@ void FanTriangles::make_room_for_lists(std::size_t beams) {
   }
   first_of_beam_[beams] = next;
   listed_.resize(next);
+  count_ = 0;
+  for (Share& share : shares_) {
+    share.first = count_;
+    count_ += share.triangles.size();
+  }
 }
 
 void FanTriangles::list(Share& share) {
   for (std::size_t i = 0; i < share.triangles.size(); ++i) {
-    const FanTriangle& triangle = share.triangles[i];
+    FanTriangle& triangle = share.triangles[i];
+    triangle.number = static_cast<std::uint32_t>(share.first + i);
     for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
       listed_[share.per_beam[static_cast<std::size_t>(b)]++] = {&triangle, triangle.low_azimuth_rad,
                                                                 triangle.high_azimuth_rad};

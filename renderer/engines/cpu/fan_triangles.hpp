@@ -15,6 +15,7 @@
 #include "renderer/engines/cpu/fan.hpp"
 #include "renderer/engines/cpu/mesh_clusters.hpp"
 #include "renderer/scene/refraction.hpp"
+#include "renderer/skip_ledger.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
@@ -32,6 +33,7 @@ struct FanTriangle {
   float x[3], y[3], z[3];
   std::uint32_t part = 0;           ///< index of the PlacedPart
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
+  std::uint32_t number = 0;         ///< among the triangles of the ping, from 0
   /// Much taller than wide, as seen from the sonar, or part of a small object: the leg of a frame, a stone. A
   /// slice beside it misses it.
   bool thin = false;
@@ -55,17 +57,27 @@ struct ListedTriangle {
 /// are listed for every beam that their azimuths touch. A superfluous triangle costs time but makes no error.
 class FanTriangles {
  public:
+  static constexpr int share_count =
+      32;  ///< jobs; fixed, so that the order of triangles depends on no thread
+
   /// Fills the lists, which are the same for any number of threads.
-  /// @param cull false: no cluster is culled, all triangles are tested
+  /// @param skip culled_clusters: clusters out of the fan are dropped as a whole; hidden_faces: so are
+  /// triangles
+  ///   of which only the inner side of a Shell is turned to the sonar
   void find(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend, WorkerPool& workers,
-            bool cull = true);
+            const SkipSwitches& skip);
 
   /// Triangles of a beam in the order of the world; of surfaces in the same place, the first is visible.
   std::span<const ListedTriangle> of_beam(int beam) const {
     const auto b = static_cast<std::size_t>(beam);
     return {listed_.data() + first_of_beam_[b], first_of_beam_[b + 1] - first_of_beam_[b]};
   }
+  std::size_t count() const { return count_; }  ///< of triangles
+  std::span<const FanTriangle> of_share(int share) const {
+    return shares_[static_cast<std::size_t>(share)].triangles;
+  }
   std::uint64_t clusters_culled() const;
+  std::uint64_t faces_hidden() const;  ///< triangles, of those that are not in culled clusters
 
  private:
   /// The triangles that one job finds in its range of clusters.
@@ -73,11 +85,13 @@ class FanTriangles {
     std::vector<FanTriangle> triangles;
     std::vector<Fan::BeamRange> beams;    ///< of each triangle
     std::vector<std::uint32_t> per_beam;  ///< number of triangles; later the place of the next one in listed_
-    std::uint64_t culled = 0;
+    std::uint64_t culled = 0, hidden = 0;
+    std::size_t first = 0;  ///< number of its first triangle
 
     void add(const FanTriangle& triangle, Fan::BeamRange range);
   };
 
+  void find_hiding_shells(const std::vector<PlacedPart>& parts, bool may_hide);
   void collect(const std::vector<PlacedPart>& parts, const Fan& fan, const Refraction& bend,
                std::size_t begin, std::size_t end, Share& share) const;
   static void add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
@@ -90,7 +104,10 @@ class FanTriangles {
   std::vector<ListedTriangle> listed_;
   std::vector<std::size_t> first_of_beam_;
   std::size_t cluster_count_ = 0;
+  std::size_t count_ = 0;
   bool cull_ = true;
+  /// Shell::outwards of each shell of each part whose inner side is hidden now; 0 if it may be seen.
+  std::vector<std::vector<float>> hiding_;
 };
 
 }  // namespace sonard::render

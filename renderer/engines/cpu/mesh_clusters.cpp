@@ -56,7 +56,8 @@ std::vector<std::uint32_t> morton_order(const TriangleMesh& mesh) {
 
 }  // namespace
 
-MeshClusters::MeshClusters(const TriangleMesh& mesh) {
+MeshClusters::MeshClusters(const TriangleMesh& mesh, bool find_shells)
+    : shells(find_shells ? Shells(mesh) : Shells()) {
   const std::vector<std::uint32_t> order = morton_order(mesh);
   for (auto& corner : corners) {
     corner.reserve(order.size());
@@ -65,6 +66,11 @@ MeshClusters::MeshClusters(const TriangleMesh& mesh) {
   std::vector<std::int32_t> local_of_vertex(mesh.positions.size(), not_in_cluster);
   for (std::size_t next = 0; next < order.size();) {
     add_cluster(mesh, order, next, local_of_vertex);
+  }
+  shell.resize(mesh_triangle.size(), Shells::none);
+  if (find_shells) {
+    std::ranges::transform(mesh_triangle, shell.begin(),
+                           [&](std::uint32_t triangle) { return shells.of_triangle(triangle); });
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "renderer/engines/cpu/shells.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -31,8 +32,11 @@ struct MeshClusters {
   std::vector<float> x, y, z;                        ///< vertices, cluster after cluster
   std::array<std::vector<std::uint8_t>, 3> corners;  ///< of each triangle, within its cluster's vertices
   std::vector<std::uint32_t> mesh_triangle;          ///< its number in the mesh
+  Shells shells;
+  std::vector<std::uint32_t> shell;  ///< of each triangle, Shells::none if both of its sides may be seen
 
-  explicit MeshClusters(const TriangleMesh& mesh);
+  /// @param find_shells false: no triangle is of a shell
+  MeshClusters(const TriangleMesh& mesh, bool find_shells);
 
  private:
   void add_cluster(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, std::size_t& next,

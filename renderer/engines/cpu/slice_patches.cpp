@@ -84,13 +84,11 @@ void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
   shaded_.clear();
-  vertex_normals_.clear();
-  for (std::size_t i = 0; request.any_vertex_normals && i < visible_->size(); ++i) {
+  for (std::size_t i = 0; request.vertex_normals != nullptr && i < visible_->size(); ++i) {
     const VisibleSegment& segment = (*visible_)[i];
     const PartSurface& part = request.parts[segment.part];
     if (part.vertex_normals && !part.mesh->normals.empty() && !is_mapped(request, segment)) {
       shaded_.push_back(static_cast<std::uint32_t>(i));
-      vertex_normals_.add(part, *segment.triangle);
     }
   }
   if (shaded_.empty() && !request.any_facets) {
@@ -101,11 +99,10 @@ void SlicePatcher::see_normals(const Request& request) {
     runs_.push_back({{segment.normal_h, segment.normal_s, segment.normal_z}});
     original_.push_back(static_cast<std::uint32_t>(i));
   }
-  vertex_normals_.interpolate(request.slice);
   for (std::size_t k = 0; k < shaded_.size(); ++k) {
     const VisibleSegment& segment = (*visible_)[shaded_[k]];
     const PartSurface& part = request.parts[segment.part];
-    NormalRun run = vertex_normals_.run(k);
+    NormalRun run = request.vertex_normals->run(*segment.triangle, request.slice);
     if (!part.refraction_in_part.straight()) {
       refract(part, segment, request.slice, 0.5F * (segment.low + segment.high), run);
     }

@@ -54,8 +54,8 @@ class SlicePatcher {
     bool any_mapped;  ///< some part has a normal map
     /// With a normal map, segments are at most this many lines long, so that bumps appear at their ranges.
     float mapped_lines;
-    bool any_vertex_normals;  ///< some part is shaded by vertex normals
-    bool any_facets;          ///< some part has facets
+    const VertexNormals* vertex_normals;  ///< null: no part is shaded by vertex normals
+    bool any_facets;                      ///< some part has facets
     /// Segments that spread over lines are divided until the direction of their echo, re the direction of a
     /// mirror, turns by at most this many rms slopes of their facets.
     float facet_slopes;
@@ -97,8 +97,7 @@ class SlicePatcher {
   /// Normals of each segment of the request; empty if all are shaded by their planes and have no facets.
   std::vector<NormalRun> runs_;
   std::vector<std::uint32_t> original_, divided_original_;  ///< per segment: its index in `runs_`
-  VertexNormals vertex_normals_;
-  std::vector<std::uint32_t> shaded_;  ///< segments of the request that vertex_normals_ interpolates
+  std::vector<std::uint32_t> shaded_;  ///< segments of the request that vertex normals shade
   NormalArrays normals_;               ///< `runs_` per segment, if not empty
   FacetArrays facets_;
   VisibleArrays seen_;

@@ -38,7 +38,7 @@ struct SliceSampler::Prepared {
   std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< unchanged (false) or merged (true)
   std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
 
-  const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge) {
+  const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge, const SkipSwitches& skip) {
     Shape& shape = shapes[{mesh.get(), merge}];
     if (!shape.mesh) {
       shape.mesh = mesh;
@@ -49,7 +49,7 @@ struct SliceSampler::Prepared {
           shape.mesh = std::make_shared<const TriangleMesh>(std::move(merged));
         }
       }
-      shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh);
+      shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh, skip.on(SkipRule::hidden_faces));
     }
     return shape;
   }
@@ -94,7 +94,7 @@ void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
   }
   // Of a facet that is shaded by its own normal, only the plane matters.
   const bool merge = !surface.vertex_normals && !surface.normal_map && skip_.on(SkipRule::coplanar_facets);
-  const Prepared::Shape& shape = prepared.shape(part.mesh, merge);
+  const Prepared::Shape& shape = prepared.shape(part.mesh, merge, skip_);
   skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
   surface.mesh = shape.mesh;
   parts_.push_back({T_world_body_.size(), part.T_body_part});
@@ -115,7 +115,7 @@ void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
     Replacement& replacement = replacements[static_cast<std::size_t>(i)];
     if (!replacement.clusters) {
       const bool plain = skip_.on(SkipRule::geometric_normals) && has_plain_facets(mesh);
-      replacement = {std::make_shared<const MeshClusters>(mesh), !plain};
+      replacement = {std::make_shared<const MeshClusters>(mesh, /*find_shells=*/false), !plain};
     }
   });
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -184,7 +184,10 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
       surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
       static_cast<float>(range.step_m),
       SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))});
-  triangles_.find(placed_, fan, bend_, workers_, skip_.on(SkipRule::culled_clusters));
+  triangles_.find(placed_, fan, bend_, workers_, skip_);
+  if (setting_->any_vertex_normals) {
+    vertex_normals_.find(triangles_, surfaces_, workers_);
+  }
   lay_first_slices(*setting_);
   std::vector<std::size_t> fresh = order_;
   do {
@@ -196,6 +199,7 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   }
   skipped_ = skipped_parts_;
   skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
+  skipped_.add(SkipRule::hidden_faces, triangles_.faces_hidden());
   skipped_.add(SkipRule::flat_elevation, setting_->pattern.flat() ? 1 : 0);
   return cells;
 }
@@ -244,22 +248,23 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
 std::uint64_t SliceSampler::make_patches(const SliceCell& cell, std::vector<EchoPatch>& patches) const {
   thread_local SlicePatcher patcher;
   const Setting& setting = *setting_;
-  const std::uint64_t without_facets = patcher.make({.slice = cell.slice,
-                                                     .visible = cell.visible,
-                                                     .parts = setting.parts,
-                                                     .surface = setting.surface,
-                                                     .pattern = setting.pattern,
-                                                     .tan_limit = setting.fan.tan_limit(),
-                                                     .linearity = setting.accuracy.linearity,
-                                                     .any_mapped = setting.any_mapped,
-                                                     .mapped_lines = setting.accuracy.mapped_lines,
-                                                     .any_vertex_normals = setting.any_vertex_normals,
-                                                     .any_facets = setting.any_facets,
-                                                     .facet_slopes = setting.accuracy.facet_slopes,
-                                                     .facet_lines = setting.accuracy.facet_lines,
-                                                     .line_m = setting.line_m,
-                                                     .max_range_m = setting.fan.max_range_m()},
-                                                    patches);
+  const std::uint64_t without_facets =
+      patcher.make({.slice = cell.slice,
+                    .visible = cell.visible,
+                    .parts = setting.parts,
+                    .surface = setting.surface,
+                    .pattern = setting.pattern,
+                    .tan_limit = setting.fan.tan_limit(),
+                    .linearity = setting.accuracy.linearity,
+                    .any_mapped = setting.any_mapped,
+                    .mapped_lines = setting.accuracy.mapped_lines,
+                    .vertex_normals = setting.any_vertex_normals ? &vertex_normals_ : nullptr,
+                    .any_facets = setting.any_facets,
+                    .facet_slopes = setting.accuracy.facet_slopes,
+                    .facet_lines = setting.accuracy.facet_lines,
+                    .line_m = setting.line_m,
+                    .max_range_m = setting.fan.max_range_m()},
+                   patches);
   return setting.surface.facets == Facets::near_normal ? without_facets : 0;
 }
 

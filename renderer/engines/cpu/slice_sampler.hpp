@@ -116,6 +116,7 @@ class SliceSampler {
   bool any_facets_ = false;  ///< some material has facets
   Refraction bend_;          ///< in the sonar frame of this ping
   FanTriangles triangles_;
+  VertexNormals vertex_normals_;                   ///< of triangles_, if a part is shaded by them
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< kept for reuse; the first cells_used_ are in use
   std::size_t cells_used_ = 0;
   std::vector<std::size_t> order_;  ///< cells from port to starboard

@@ -200,7 +200,7 @@ void SliceSweep::meet(const Line& line) {
   const float start = std::max(-limit_, segments_->low[s]);
   float at = never;
   const bool cross = crosses(line, current_, start, at);
-  if (is_seen_first(line, current_, start)) {
+  if (is_seen_first(line, current_, start, cross)) {
     emit(start, segments_->low_run(s));
     if (cross || current_.high > line.high) {
       waiting_.push_back(current_);
@@ -242,7 +242,9 @@ void SliceSweep::take_nearest_waiting() {
       continue;
     }
     waiting_[kept] = candidate;
-    if (kept > 0 && is_seen_first(waiting_[kept], waiting_[best], t_)) {
+    float at = never;
+    if (kept > 0 &&
+        is_seen_first(candidate, waiting_[best], t_, crosses(candidate, waiting_[best], t_, at))) {
       best = kept;
     }
     ++kept;
@@ -265,9 +267,9 @@ SliceSweep::Line SliceSweep::line(std::int32_t segment) const {
 
 /// True if `a` is visible at and after `from`, before `b`. Compared in the middle of the common span, because
 /// neighbours share ends; if they cross, compared at `from`.
-bool SliceSweep::is_seen_first(const Line& a, const Line& b, float from) {
-  float at = never;
-  if (crosses(a, b, from, at)) {
+/// @param cross crosses(a, b, from)
+bool SliceSweep::is_seen_first(const Line& a, const Line& b, float from, bool cross) {
+  if (cross) {
     return a.w(from) > b.w(from);
   }
   const float middle = 0.5F * (from + std::min(a.high, b.high));

@@ -49,7 +49,7 @@ class SliceSweep {
   void take_nearest_waiting();
   void emit(float until, const EdgeRun& run);
   Line line(std::int32_t segment) const;
-  static bool is_seen_first(const Line& a, const Line& b, float from);
+  static bool is_seen_first(const Line& a, const Line& b, float from, bool cross);
   static bool crosses(const Line& a, const Line& b, float from, float& at);
   void find_next_crossing();
   float next_start() const;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/cpu/vertex_normals.hpp"
 
+#include <array>
+#include <cstdint>
+
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -14,42 +17,61 @@ inline glm::vec3 in_slice(const Slice& slice, const glm::vec3& v) {
 
 }  // namespace
 
-void VertexNormals::add(const PartSurface& part, const FanTriangle& triangle) {
-  const std::size_t block = count_ / lanes, lane = count_ % lanes;
-  // runs_ grows last: if memory runs out before, the next call tries both again.
-  if (block >= runs_.size()) {
-    corners_.resize(block + 1);
-    runs_.resize(block + 1);
-  }
-  Corners& to = corners_[block];
+void VertexNormals::Corners::set(std::size_t lane, const PartSurface& part, const FanTriangle& triangle) {
   const std::uint32_t* vertex = &part.mesh->indices[std::size_t{triangle.mesh_triangle} * 3];
   for (std::size_t k = 0; k < 3; ++k) {
-    const glm::vec3 normal = part.mesh->normals[vertex[k]] * part.R_part_sonar;
-    to.position[k][0][lane] = triangle.x[k];
-    to.position[k][1][lane] = triangle.y[k];
-    to.position[k][2][lane] = triangle.z[k];
-    to.normal[k][0][lane] = normal.x;
-    to.normal[k][1][lane] = normal.y;
-    to.normal[k][2][lane] = normal.z;
+    const glm::vec3 at = part.mesh->normals[vertex[k]] * part.R_part_sonar;
+    position[k][0][lane] = triangle.x[k];
+    position[k][1][lane] = triangle.y[k];
+    position[k][2][lane] = triangle.z[k];
+    normal[k][0][lane] = at.x;
+    normal[k][1][lane] = at.y;
+    normal[k][2][lane] = at.z;
   }
-  ++count_;
 }
 
-void VertexNormals::interpolate(const Slice& slice) {
-  for (std::size_t block = 0; block * lanes < count_; ++block) {
-    interpolate_lanes(slice, corners_[block], runs_[block]);
+void VertexNormals::find(const FanTriangles& triangles, const std::vector<PartSurface>& parts,
+                         WorkerPool& workers) {
+  fields_.resize(triangles.count());
+  workers.run(FanTriangles::share_count, [&](int share) { find_some(triangles.of_share(share), parts); });
+}
+
+void VertexNormals::find_some(std::span<const FanTriangle> triangles, const std::vector<PartSurface>& parts) {
+  std::array<const FanTriangle*, lanes> some{};
+  std::size_t count = 0;
+  Corners corners{};
+  Fields fields{};
+  const auto finish = [&] {
+    interpolate_lanes(corners, fields);
+    for (std::size_t i = 0; i < count; ++i) {
+      glm::mat3& field = fields_[some[i]->number];
+      for (int k = 0; k < 3; ++k) {
+        field[k] = {fields.column[k][0][i], fields.column[k][1][i], fields.column[k][2][i]};
+      }
+    }
+    count = 0;
+  };
+  for (const FanTriangle& triangle : triangles) {
+    const PartSurface& part = parts[triangle.part];
+    if (part.vertex_normals && !part.mesh->normals.empty()) {
+      corners.set(count, part, triangle);
+      some[count++] = &triangle;
+      if (count == lanes) {
+        finish();
+      }
+    }
   }
+  finish();
 }
 
 SONARD_SIMD_CLONES
-void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& __restrict from,
-                                      Runs& __restrict to) {
+void VertexNormals::interpolate_lanes(const Corners& __restrict from, Fields& __restrict to) {
   for (std::size_t i = 0; i < lanes; ++i) {
     const auto position = [&](std::size_t k) {
       return glm::vec3(from.position[k][0][i], from.position[k][1][i], from.position[k][2][i]);
     };
     const auto normal = [&](std::size_t k) {
-      return in_slice(slice, {from.normal[k][0][i], from.normal[k][1][i], from.normal[k][2][i]});
+      return glm::vec3(from.normal[k][0][i], from.normal[k][1][i], from.normal[k][2][i]);
     };
     const glm::vec3 corner = position(0), edge_b = position(1) - corner, edge_c = position(2) - corner;
     const glm::vec3 across = glm::cross(edge_b, edge_c);
@@ -57,24 +79,24 @@ void VertexNormals::interpolate_lanes(const Slice& slice, const Corners& __restr
     const float nn = glm::dot(across, across);
     const glm::vec3 grows_to_b = glm::cross(edge_c, across) / nn;
     const glm::vec3 grows_to_c = glm::cross(across, edge_b) / nn;
-    const glm::vec3 b_of = in_slice(slice, grows_to_b), c_of = in_slice(slice, grows_to_c);
     // The normal extrapolated to the sonar.
     const glm::vec3 at_sonar = a - by_b * glm::dot(grows_to_b, corner) - by_c * glm::dot(grows_to_c, corner);
-    const glm::vec3 depth = in_slice(slice, across) / glm::dot(across, corner);
+    const glm::vec3 depth = across / glm::dot(across, corner);
     for (int axis = 0; axis < 3; ++axis) {
-      to.at[axis][i] = at_sonar[axis] * depth.x + by_b[axis] * b_of.x + by_c[axis] * c_of.x;
-      to.per_x[axis][i] = at_sonar[axis] * depth.y + by_b[axis] * b_of.y + by_c[axis] * c_of.y;
-      to.per_t[axis][i] = at_sonar[axis] * depth.z + by_b[axis] * b_of.z + by_c[axis] * c_of.z;
+      to.column[0][axis][i] =
+          at_sonar[axis] * depth.x + by_b[axis] * grows_to_b.x + by_c[axis] * grows_to_c.x;
+      to.column[1][axis][i] =
+          at_sonar[axis] * depth.y + by_b[axis] * grows_to_b.y + by_c[axis] * grows_to_c.y;
+      to.column[2][axis][i] =
+          at_sonar[axis] * depth.z + by_b[axis] * grows_to_b.z + by_c[axis] * grows_to_c.z;
     }
   }
 }
 
-NormalRun VertexNormals::run(std::size_t i) const {
-  const Runs& of = runs_[i / lanes];
-  const std::size_t k = i % lanes;
-  return {{of.at[0][k], of.at[1][k], of.at[2][k]},
-          {of.per_x[0][k], of.per_x[1][k], of.per_x[2][k]},
-          {of.per_t[0][k], of.per_t[1][k], of.per_t[2][k]}};
+NormalRun VertexNormals::run(const FanTriangle& triangle, const Slice& slice) const {
+  const glm::mat3& field = fields_[triangle.number];
+  return {in_slice(slice, field[0] * slice.cosine + field[1] * slice.sine),
+          in_slice(slice, field[1] * slice.cosine - field[0] * slice.sine), in_slice(slice, field[2])};
 }
 
 void refract(const PartSurface& part, const VisibleSegment& segment, const Slice& slice, float t,

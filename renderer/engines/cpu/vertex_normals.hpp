@@ -4,13 +4,17 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "renderer/engines/cpu/fan_triangles.hpp"
 #include "renderer/engines/cpu/part_surface.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
+#include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
 
@@ -25,18 +29,15 @@ struct NormalRun {
   }
 };
 
-/// Interpolates the normals of many triangles in one loop. One per thread; reuses its memory.
+/// Interpolates the normals of all triangles of a ping, once, for all slices that see them.
 class VertexNormals {
  public:
-  void clear() { count_ = 0; }
-  /// @param part of the triangle; must have vertex normals
-  void add(const PartSurface& part, const FanTriangle& triangle);
-  std::size_t count() const { return count_; }
+  /// Triangles of parts without vertex normals are left out.
+  void find(const FanTriangles& triangles, const std::vector<PartSurface>& parts, WorkerPool& workers);
 
-  /// Finds all runs, without refraction.
-  void interpolate(const Slice& slice);
-  /// The run of triangle `i`, in the order of add(); not finite for degenerate triangles.
-  NormalRun run(std::size_t i) const;
+  /// The run of a triangle of find() in a slice, without refraction; not finite if the triangle is
+  /// degenerate.
+  NormalRun run(const FanTriangle& triangle, const Slice& slice) const;
 
  private:
   static constexpr std::size_t lanes = 16;
@@ -44,15 +45,17 @@ class VertexNormals {
   struct Corners {
     float position[3][3][lanes];  ///< [corner][axis], sonar frame
     float normal[3][3][lanes];
-  };
-  struct Runs {
-    float at[3][lanes], per_x[3][lanes], per_t[3][lanes];
-  };
-  static void interpolate_lanes(const Slice& slice, const Corners& from, Runs& to);
 
-  std::vector<Corners> corners_;
-  std::vector<Runs> runs_;
-  std::size_t count_ = 0;
+    void set(std::size_t lane, const PartSurface& part, const FanTriangle& triangle);
+  };
+  /// The normal at the hit of a ray d is column[0] d.x + column[1] d.y + column[2] d.z, in the sonar frame.
+  struct Fields {
+    float column[3][3][lanes];  ///< [column][axis]
+  };
+  void find_some(std::span<const FanTriangle> triangles, const std::vector<PartSurface>& parts);
+  static void interpolate_lanes(const Corners& from, Fields& to);
+
+  std::vector<glm::mat3> fields_;  ///< by FanTriangle::number
 };
 
 /// Turns a run by the refraction at `t` of the slice.

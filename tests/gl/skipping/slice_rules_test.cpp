@@ -165,6 +165,45 @@ TEST(SliceRules, ClustersOutsideTheFanAreCulled) {
             0u);
 }
 
+/// A ping that looks at the box and the bed of divided_bed_and_box() from above and ahead of both.
+PingRequest over_the_bed() {
+  PingRequest request = small_request();
+  request.T_world_sonar.position_m = {2.5, 0, 3};
+  return request;
+}
+
+// Half of a box or ball, and stones with either winding on a bed that is seen from above it.
+TEST(SliceRules, FacesThatNobodyCanSeeAreDropped) {
+  const World ball = ball_alone(make_sphere(0.5F, 16));
+  const std::size_t triangles = ball.bodies[0].parts[0].mesh->triangle_count();
+  const Comparison half = compare(SkipRule::hidden_faces, ball, small_request());
+  EXPECT_GT(half.skipped, triangles * 2 / 5);
+  EXPECT_LT(half.skipped, triangles * 3 / 5);
+  for (const PingRequest& request : {small_request(), over_the_bed()}) {
+    World world = divided_bed_and_box();
+    const Comparison outwards = compare(SkipRule::hidden_faces, world, request, {SkipRule::coplanar_facets});
+    EXPECT_GT(outwards.skipped, 100u);
+    TriangleMesh turned = *world.bodies[1].parts[0].mesh;
+    for (std::size_t t = 0; t < turned.indices.size(); t += 3) {
+      std::swap(turned.indices[t + 1], turned.indices[t + 2]);
+    }
+    world.bodies[1].parts[0].mesh = std::make_shared<const TriangleMesh>(std::move(turned));
+    EXPECT_EQ(compare(SkipRule::hidden_faces, world, request, {SkipRule::coplanar_facets}).skipped,
+              outwards.skipped);
+    EXPECT_GE(compare(SkipRule::hidden_faces, world, request).skipped, 6u) << "merged, three of six faces";
+  }
+}
+
+// From inside a ball all faces are seen from their inner side, and an open bowl shows both.
+TEST(SliceRules, FacesThatSomebodyCanSeeStay) {
+  World inside = ball_alone(make_sphere(5.0F, 16));
+  inside.bodies[0].T_world_body.position_m = small_request().T_world_sonar.position_m;
+  EXPECT_EQ(compare(SkipRule::hidden_faces, inside, small_request()).skipped, 0u);
+  TriangleMesh bowl = make_sphere(0.5F, 16);
+  bowl.indices.resize(bowl.indices.size() / 2);
+  EXPECT_EQ(compare(SkipRule::hidden_faces, ball_alone(std::move(bowl)), small_request()).skipped, 0u);
+}
+
 // A ball of clean steel on a bed without facets: facets are looked at near the ball's nearest point only. Of
 // rough stone they are heard nearly everywhere, and of a bed seen under 70 degrees nowhere.
 TEST(SliceRules, FacetsAreLookedAtNearNormalIncidence) {
