@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A .dat whose writer went away at any byte, and what is left of it (docs/logs.md 1.7).
+// Logs whose writer stopped at any byte, and the records that can still be read (docs/logs.md 1.7).
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 struct SmallLog {
   std::vector<Bytes> parts{encode(patterned_image(1)), encode(small_image()), encode(small_status()),
                            encode(patterned_image(2))};
-  /// Where records end, the first being where the first one starts.
+  /// Offsets of the record boundaries: the start of the first record, then the end of each record.
   std::vector<std::size_t> ends{0};
 
   SmallLog() {
@@ -80,7 +80,7 @@ TEST(Crash, tails_say_why_and_where) {
   EXPECT_EQ(LogView::open(dat)->index().tail_error,
             (WireError{WireErrorReason::truncated, start + 51, "pixels"}));
   dat.resize(start);
-  dat.insert(dat.end(), 1000, 0);  // a file system that had grown the file and not yet written it
+  dat.insert(dat.end(), 1000, 0);  // the file system had extended the file, but not written the data
   EXPECT_EQ(LogView::open(dat)->index().tail_error, (WireError{WireErrorReason::bad_value, start, "id"}));
   EXPECT_EQ(LogView::open(dat)->index().tail_size, 1000U);
 }
@@ -97,7 +97,8 @@ TEST(Crash, archives_that_were_cut_are_refused) {
 TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
   const SmallLog log;
   const Bytes whole = packed(small_dat());
-  // Behind both local headers, the .cfg and the header of the first block; all records are in that block.
+  // The records start after both local headers, the .cfg and the first block's header. One block holds them
+  // all.
   const auto first = std::search(whole.begin(), whole.end(), log.parts[0].begin(), log.parts[0].end());
   ASSERT_NE(first, whole.end());
   const auto start = static_cast<std::size_t>(first - whole.begin());
@@ -118,7 +119,7 @@ TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
 TEST(Crash, of_several_blocks_none_is_lost) {
   std::vector<Bytes> parts;
   for (int i = 0; i < 40; ++i) {
-    parts.push_back(encode(patterned_image(i), 0));  // 3.8 kB each, as they are: three blocks
+    parts.push_back(encode(patterned_image(i), 0));  // 3.8 kB each, uncompressed: three blocks
   }
   Bytes dat = joined(parts);
   dat.insert(dat.end(), dat_terminator.begin(), dat_terminator.end());

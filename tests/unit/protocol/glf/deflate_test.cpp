@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What logs need of zlib, and no more memory for it than the bytes can ask for.
+// The zlib functions that logs use. They allocate no more memory than the bytes can fill.
 #include <gtest/gtest.h>
 
 #include "protocol/glf/deflate.hpp"
@@ -39,7 +39,7 @@ TEST(Inflate, refuses_a_stream_that_is_cut_or_wrong) {
   EXPECT_FALSE(inflate_exactly(wrong, 1, DeflateForm::zlib)) << "its checksum is that of 'a'";
 }
 
-// There is no machine with that much memory, so that asking for it would throw.
+// No machine has that much memory, so allocating it would throw.
 TEST(Inflate, asks_for_no_memory_that_the_stream_cannot_fill) {
   EXPECT_FALSE(inflate_exactly(stored_a, std::uint64_t{1} << 62, DeflateForm::zlib));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// glf_tool write DIR    writes the log of the test to DIR: log.glf, log.dat, log.json (what was meant),
-// log.pixels glf_tool read FILE    says as JSON what the library reads in a log
+// glf_tool write DIR    writes the test log to DIR: log.glf, log.dat, log.json (expected values), log.pixels
+// glf_tool read FILE    prints as JSON the values that the library reads from a log
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -65,7 +65,7 @@ ImageRecord image(int number) {
     image.platform = Platform::gemini_1200ik;
   }
   std::mt19937 random{static_cast<unsigned>(number)};
-  const bool noise = number == 6 || number == 7;  // one for each sonar
+  const bool noise = number == 6 || number == 7;  // one image of each sonar
   for (unsigned line = 0; line < image.lines; ++line) {
     for (unsigned beam = 0; beam < image.beams; ++beam) {
       const unsigned pattern = 7U * static_cast<unsigned>(number) + 3U * line + 5U * beam;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs of other programs, damaged ones and ones made to hurt.
+// Logs of other programs, damaged logs and malicious logs.
 #include <algorithm>
 #include <random>
 
@@ -51,7 +51,7 @@ TEST(Hostile, other_types_of_impossible_length_cost_themselves) {
             (WireError{WireErrorReason::truncated, 115 + 21, "body"}));
 }
 
-// Real images are said to carry 168 there.
+// Real images are reported to carry 168 there.
 TEST(Hostile, wrong_lengths_of_images_do_not_matter) {
   Bytes image = encode(patterned_image(1));
   patch<std::uint32_t>(image, 2, 168);
@@ -67,7 +67,7 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
     const auto view = LogView::open(dat);
     ASSERT_TRUE(view);
     const DatIndex& index = view->index();
-    // More raw lines than pixels are found only when the image is decoded.
+    // The index does not detect more raw lines than pixels; decoding the image does.
     const bool found_later = offset == 31;
     EXPECT_EQ(index.records.size(), found_later ? 3U : 2U) << offset;
     EXPECT_EQ(index.damaged.size(), found_later ? 0U : 1U) << offset;
@@ -80,7 +80,7 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
   }
 }
 
-// If the length leads to what only looks like a header, the next whole record counts, and no noise before it.
+// If the length leads to bytes that only look like a header, the next whole record counts as the next one.
 TEST(Hostile, damaged_images_whose_length_leads_nowhere_do_not_hide_what_comes_after_them) {
   constexpr std::size_t next = 60;  // inside the bearings
   Bytes image = encode(small_image());
@@ -125,8 +125,8 @@ TEST(Hostile, archive_without_a_dat) {
             (WireError{WireErrorReason::bad_value, archive.size(), "dat_entry"}));
 }
 
-/// The archive of small_dat() with a value of the central header of its .dat changed: 22 bytes of end record,
-/// 26 of name and 46 of header before the end.
+/// The archive of small_dat() with one value changed in the central header of its .dat. Before the end of the
+/// archive are 22 bytes of end record, 26 bytes of name and 46 bytes of header.
 template <class Value>
 Bytes with_central(std::size_t offset, Value value) {
   Bytes archive = packed(small_dat());
@@ -150,7 +150,7 @@ TEST(Hostile, directories_that_lie) {
   EXPECT_EQ(LogView::open(with_central<std::uint16_t>(10, 0)).error().field, "size") << "method 0, two sizes";
 }
 
-// Every bit of the header of the first block of the .dat, which stands behind the .cfg of 14 bytes.
+// Every bit of the header of the first block of the .dat, which follows the .cfg of 14 bytes.
 TEST(Hostile, broken_block_headers_are_refused) {
   constexpr std::size_t block = 30 + 25 + 14 + 10 + 30 + 26;
   const Bytes archive = packed(small_dat());
@@ -159,8 +159,8 @@ TEST(Hostile, broken_block_headers_are_refused) {
     Bytes broken = archive;
     broken[block + bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
     const auto view = LogView::open(broken);
-    // The lowest bit makes it the final block, which may hold data, too; the upper five of the first byte
-    // mean nothing before a stored block.
+    // The lowest bit marks the final block, which may hold data too. The upper five bits of the first byte
+    // have no meaning before a stored block.
     const bool harmless = bit == 0 || (bit >= 3 && bit < 8);
     ASSERT_EQ(view.has_value(), harmless) << bit;
     if (!harmless) {
@@ -181,7 +181,7 @@ Bytes deflated_zeros(std::uint64_t size) {
   return {zlib.begin() + 2, zlib.end() - 4};  // without the header and the checksum of zlib
 }
 
-/// An archive whose .dat is the deflate stream `stream`, said to unpack to `size` bytes.
+/// An archive whose .dat is the deflate stream `stream`, with `size` bytes as its stated unpacked size.
 Bytes compressed_archive(const Bytes& stream, std::uint32_t size, std::uint32_t crc) {
   Bytes local = from_hex("50 4B 03 04 14 00 00 00 08 00 00 00 00 00");
   Bytes entry(16);
@@ -208,7 +208,8 @@ TEST(Hostile, bombs_are_held_to_the_limit) {
   EXPECT_EQ(view->index().tail_size, size);
   EXPECT_EQ(LogView::open(archive, size - 1).error(), (WireError{WireErrorReason::bad_length, 35, "size"}));
   EXPECT_EQ(LogView::open(compressed_archive(zeros, size, 0)).error().field, "crc");
-  // More than the stream holds, less than it holds, and more than any stream of that many bytes can hold.
+  // Stated sizes: more than the stream holds, less than it holds, more than any stream of its length can
+  // hold.
   EXPECT_EQ(LogView::open(compressed_archive(zeros, size + 1, crc.value())).error().field, "entry_data");
   EXPECT_EQ(LogView::open(compressed_archive(zeros, size - 1, crc.value())).error().field, "entry_data");
   EXPECT_EQ(LogView::open(compressed_archive(zeros, 1'000'000'000, crc.value())).error().field, "entry_data");
@@ -228,7 +229,7 @@ TEST(Hostile, compressed_logs_are_unpacked) {
   EXPECT_EQ(*moved.image(moved.index().records[3]), patterned_image(2));
 }
 
-// No outcome but one that is said; the sanitizers watch the rest.
+// Each file either opens or returns an error. The sanitizers check the rest.
 TEST(Hostile, flipped_bits_never_do_more_than_damage) {
   std::mt19937 random{4};
   const std::vector<Bytes> wholes{small_dat(), packed(small_dat())};

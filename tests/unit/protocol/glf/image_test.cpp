@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images: every byte where the tables of docs/logs.md 1.3 and 1.4 put it, written out here by hand; the rules
-// for packing; what is refused.
+// Images: every byte at its place in the tables of docs/logs.md 1.3 and 1.4, written out by hand; when images
+// are packed; which images are refused.
 #include <random>
 #include <stdexcept>
 
@@ -59,7 +59,7 @@ TEST(Image, packed_ones_have_the_size_that_the_layout_says) {
   }
 }
 
-// A reader takes data of the size of the image for pixels whatever the type says, so zlib must be shorter.
+// A reader takes data as long as the image for raw pixels, whatever the type says, so zlib must be shorter.
 TEST(Image, noise_is_stored_as_it_is) {
   ImageRecord image = patterned_image(0);
   std::mt19937 random{1};
@@ -73,7 +73,7 @@ TEST(Image, noise_is_stored_as_it_is) {
   EXPECT_EQ(*decode_image(record), image);
 }
 
-// Between pixels that shrink to nothing and noise, over every size that zlib can come to.
+// Images from zeros, which shrink well, to noise, so that zlib returns every size.
 TEST(Image, zlib_is_never_as_long_as_the_image) {
   std::mt19937 random{2};
   int raw = 0;
@@ -103,7 +103,7 @@ TEST(Image, empty_ones_are_records_too) {
   EXPECT_EQ(*decode_image(record), image);
 }
 
-// Without the field for the packing, all that follows moves by two, and the size says what is raw (1.4).
+// Without the field for the packing, all later fields move by two bytes, and the size shows raw pixels (1.4).
 TEST(Image, other_versions_lack_the_packing) {
   Bytes record = encode(small_image());
   patch<std::uint16_t>(record, 21 + 4, 2);
@@ -154,7 +154,7 @@ TEST(Image, what_makes_no_sense_is_refused_with_its_place) {
   EXPECT_EQ(error_after<std::uint16_t>(113, 0xDEDF), (WireError{bad_value, 113, "end_tag"}));
 }
 
-// Lines that the data cannot hold: refused before there is memory for them.
+// More lines than the data can hold are refused before memory is allocated for them.
 TEST(Image, bombs_are_refused) {
   const Bytes record = encode(patterned_image(1));
   EXPECT_EQ(error_after<std::uint32_t>(31, 51, record),

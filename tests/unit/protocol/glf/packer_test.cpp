@@ -55,7 +55,7 @@ TEST(Packer, archive_is_what_readers_expect) {
                     from_hex("50 4B 05 06 00 00 00 00 02 00 02 00 8F 00 00 00 90 00 00 00 00 00")}));
 }
 
-// Where a reader looks for a byte of the .dat: dataStart + (off / 65531) * 65536 + 5 + off % 65531.
+// A reader finds a byte of the .dat at dataStart + (off / 65531) * 65536 + 5 + off % 65531.
 TEST(Packer, positions_follow_the_formula) {
   std::mt19937 random{3};
   for (const std::size_t size : {1U, 65'530U, 65'531U, 65'532U, 131'062U, 200'000U}) {

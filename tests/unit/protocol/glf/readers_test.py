@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Two readers that share no code, on logs of two writers that share none.
+"""Tests two independent readers on the logs of two independent writers.
 
     readers_test.py --tool GLF_TOOL
 """
@@ -29,7 +29,7 @@ def run_tool(*arguments):
 
 
 class Written(unittest.TestCase):
-    """What the library wrote: twenty images of two sonars and four statuses."""
+    """A log of the library: twenty images of two sonars and four statuses."""
 
     @classmethod
     def setUpClass(cls):
@@ -82,7 +82,7 @@ class Written(unittest.TestCase):
         self.assertEqual(at, len(self.pixels))
 
     def test_images_are_those_of_the_recipe(self):
-        """Worked out here, not by the writer: times, ranges, and (7f + 3r + 5b) mod 256 except in two of noise."""
+        """Calculated here: times, ranges, pixels (7f + 3r + 5b) mod 256 except in two noise images."""
         for number, image in enumerate(self.log.images):
             second = number % 2 == 1
             self.assertEqual(image.header.time_s, START_S + number / 8)
@@ -119,7 +119,7 @@ class Written(unittest.TestCase):
 
 
 class Unseekable(io.RawIOBase):
-    """Makes zipfile write data descriptors."""
+    """A stream without seek(), so that zipfile writes data descriptors."""
 
     def __init__(self):
         self.bytes = bytearray()
@@ -133,7 +133,7 @@ class Unseekable(io.RawIOBase):
 
 
 class Read(unittest.TestCase):
-    """Logs that are not of the library's making, in every container that readers were seen to take."""
+    """Logs made here without the library, in every container that readers are known to accept."""
 
     CONFIG = ("a.cfg", b"<x><logHeader><creationTime>5.5</creationTime></logHeader>"
                        b"<logTerminator><closeTime> 6.25 </closeTime></logTerminator></x>")

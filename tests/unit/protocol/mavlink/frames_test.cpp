@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes worked out by hand from the guide's description of frames, and by a second implementation of the
-// checksum (tests/support/mavlink_bytes.hpp).
+// Frames laid out by hand from the guide's description, with checksums from a second implementation
+// (tests/support/mavlink_bytes.hpp).
 #include "protocol/mavlink/frames.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using test::operator+;
 using testing::ElementsAre;
 
 struct Read {
-  Bytes datagram;  // which the frames view
+  Bytes datagram;  // the frames view these bytes
   std::vector<Frame> frames;
   FrameCounters counters;
 };
@@ -35,7 +35,7 @@ Read read(Bytes datagram) {
 }
 
 TEST(MavlinkChecksum, IsThatOfTheCatalogue) {
-  // CRC-16/MCRF4XX of "123456789" in the catalogue of parametrised CRC algorithms.
+  // Check value of CRC-16/MCRF4XX for "123456789", from the catalogue of parametrised CRC algorithms.
   const std::string_view text = "12345678";
   EXPECT_EQ(checksum({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, '9'), 0x6F91);
 }
@@ -122,7 +122,7 @@ TEST(MavlinkFrames, AnyOtherByteBreaksTheChecksum) {
     FrameCounters counters;
     FrameReader reader(bad, counters);
     while (const auto frame = reader.next()) {
-      EXPECT_EQ(frame->kind, nullptr) << "byte " << i;  // another message number cannot be checked
+      EXPECT_EQ(frame->kind, nullptr) << "byte " << i;  // other message numbers cannot be checked
     }
   }
   Bytes bad = good;
@@ -150,7 +150,7 @@ TEST(MavlinkFrames, GarbageTakesNoNeighbourAlong) {
 }
 
 TEST(MavlinkFrames, MessagesThatAreNotKnownArePassedOverWhole) {
-  // SYS_STATUS, whose payload holds what looks like a heartbeat.
+  // SYS_STATUS whose payload contains the bytes of a heartbeat.
   const Bytes unknown = test::mavlink_frame(1, 124, Bytes{1, 2} + test::heartbeat_frame() + Bytes{3});
   const Read got = read(test::heartbeat_frame() + unknown + test::heartbeat_frame() + unknown);
   ASSERT_EQ(got.frames.size(), 4U);

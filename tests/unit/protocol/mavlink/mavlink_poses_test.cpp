@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of a vehicle become poses. Expected values are geometry worked out by hand: where a wall is from
-// where the vehicle is.
+// Messages of a vehicle become poses. The expected values are geometry by hand: the distance of a wall from
+// the vehicle's position.
 #include "server/pose/mavlink_poses.hpp"
 
 #include <gmock/gmock.h>
@@ -49,7 +49,7 @@ struct MavlinkPosesTest : testing::Test {
   std::vector<pose::PoseSample> samples;
 };
 
-/// How far ahead, along the x axis of the vehicle, the plane {p: normal . p = offset_m} of the world is.
+/// Distance to the world plane {p: normal . p = offset_m} along the vehicle's x axis, in metres.
 double range_ahead_m(const pose::PoseSample& sample, const Vec3& normal, double offset_m) {
   const Vec3 ahead = rotate(sample.T_world_vehicle.orientation, {1, 0, 0});
   const Vec3& p = sample.T_world_vehicle.position_m;
@@ -74,7 +74,7 @@ TEST_F(MavlinkPosesTest, AWallToTheEastIsAheadAtHeading90) {
   take(LocalPositionNed{10, 4, 2, 3});
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_NEAR(range_ahead_m(samples[0], east, 10), 8, 1e-5);
-  // Its left is north, and its top is up.
+  // The vehicle's left is north, and its top is up.
   EXPECT_THAT(rotate(samples[0].T_world_vehicle.orientation, {0, 1, 0}), IsVec3(north, 1e-6));
   EXPECT_THAT(rotate(samples[0].T_world_vehicle.orientation, {0, 0, 1}), IsVec3(up, 1e-6));
 }
@@ -86,20 +86,20 @@ TEST_F(MavlinkPosesTest, PositivePitchLooksUpAndPositiveRollLowersStarboard) {
   take(Attitude{20, static_cast<float>(angle), 0, 0});
   take(LocalPositionNed{20, 0, 0, 3});
   ASSERT_EQ(samples.size(), 2U);
-  // From 3 m deep the surface, z = 0, is 3 m / sin away.
+  // At 3 m depth the distance to the surface, z = 0, is 3 m / sin(angle).
   EXPECT_NEAR(range_ahead_m(samples[0], up, 0), 3 / std::sin(angle), 1e-5);
   EXPECT_THAT(rotate(samples[1].T_world_vehicle.orientation, {0, -1, 0}),
               IsVec3(Vec3{std::cos(angle), 0, -std::sin(angle)}, 1e-6));
 }
 
 TEST_F(MavlinkPosesTest, AnglesAreTurnedInTheOrderYawPitchRoll) {
-  // Heading east, nose straight up, then rolled by 90 degrees about what now is the vertical.
+  // Heading east, nose straight up, then rolled by 90 degrees about the x axis, which is now vertical.
   take(Attitude{10, quarter, quarter, quarter});
   take(LocalPositionNed{10, 0, 0, 0});
   ASSERT_EQ(samples.size(), 1U);
   const pose::Quat& q = samples[0].T_world_vehicle.orientation;
   EXPECT_THAT(rotate(q, {1, 0, 0}), IsVec3(up, 1e-6));
-  // Starboard was south; it goes where the belly was, which looked east.
+  // Starboard pointed south. It turns to the direction of the belly, which pointed east.
   EXPECT_THAT(rotate(q, {0, -1, 0}), IsVec3(east, 1e-6));
 }
 
@@ -116,7 +116,7 @@ TEST_F(MavlinkPosesTest, TheQuaternionSaysTheSameAsTheAngles) {
 }
 
 TEST_F(MavlinkPosesTest, VelocityOfThePositionIsThatOfTheWorldInAxesOfTheVehicle) {
-  // Heads east, drifts north at 1 m/s, sinks at 0.5 m/s: to port, and down. Turns to starboard.
+  // Heads east, drifts north at 1 m/s (to port), sinks at 0.5 m/s, and turns to starboard.
   take(Attitude{10, 0, 0, quarter, 0, 0, 0.2F});
   take(LocalPositionNed{10, 0, 0, 0, 1, 0, 0.5F});
   ASSERT_TRUE(samples.size() == 1 && samples[0].twist);
@@ -136,7 +136,7 @@ TEST_F(MavlinkPosesTest, VelocityOfOdometryIsInTheAxesThatItNames) {
   for (const std::size_t body : {0U, 1U}) {
     EXPECT_THAT(samples[body].twist.value().linear_mps, IsVec3(Vec3{1, -2, -3}, 1e-6));
   }
-  // 1 north, 2 east, 3 down: 2 ahead, 1 to port.
+  // 1 m/s north, 2 east, 3 down is 2 ahead, 1 to port, 3 down.
   EXPECT_THAT(samples[2].twist.value().linear_mps, IsVec3(Vec3{2, 1, -3}, 1e-6));
   EXPECT_THAT(samples[2].twist.value().angular_radps, IsVec3(Vec3{0.1, -0.2, -0.3}, 1e-6));
   EXPECT_FALSE(samples[3].twist);
@@ -153,7 +153,7 @@ TEST_F(MavlinkPosesTest, FramesWithoutAPlaceInTheWorldAreDropped) {
 }
 
 TEST_F(MavlinkPosesTest, TheOriginPutsALocalFrameIntoTheWorld) {
-  // LOCAL_FRD with its x axis along east of the world: x is read as north, so a quarter turn to starboard.
+  // LOCAL_FRD with its x axis along the world's east. x is read as north, so a quarter turn to starboard.
   MavlinkPoseInput input;
   input.T_world_local.position_m = {100, 200, -10};
   input.T_world_local.orientation = glm::angleAxis(-std::numbers::pi / 2, glm::dvec3(0, 0, 1));
@@ -172,7 +172,7 @@ TEST_F(MavlinkPosesTest, APositionWaitsForTheNextAttitudeAndTakesWhatIsBetween) 
   EXPECT_TRUE(samples.empty());
   take(Attitude{200, 0, 0, 0.6F, 0, 0, 3});
   ASSERT_EQ(samples.size(), 1U);
-  // A quarter of the way: heading 0.3 rad from north; the rate 1.5 rad/s.
+  // At a quarter of the interval the heading is 0.3 rad from north and the rate 1.5 rad/s.
   EXPECT_THAT(samples[0].T_world_vehicle.orientation,
               IsRotation(pose::yaw(std::numbers::pi / 2 - 0.3), 1e-6));
   EXPECT_NEAR(samples[0].twist.value().angular_radps.z, -1.5, 1e-6);
@@ -228,8 +228,8 @@ TEST_F(MavlinkPosesTest, AClockThatBeginsAgainForgetsWhatWasBefore) {
   };
   follow(Attitude{90'000, 0, 0, 0});
   follow(LocalPositionNed{90'000, 5, 0, 0});
-  follow(LocalPositionNed{90'020, 5, 0, 0});  // waits, and is forgotten
-  follow(LocalPositionNed{1'000, 0, 7, 0});   // no attitude of this life yet
+  follow(LocalPositionNed{90'020, 5, 0, 0});  // waits, and is dropped at the restart
+  follow(LocalPositionNed{1'000, 0, 7, 0});   // no attitude since the restart yet
   follow(Attitude{1'010, 0, 0, 0});
   follow(LocalPositionNed{1'010, 0, 7, 0});
   EXPECT_EQ(poses.counters().clock_restarts, 1U);
@@ -285,7 +285,7 @@ TEST_F(MavlinkPosesTest, ASpeedThatIsNotKnownIsNone) {
   EXPECT_FALSE(samples[0].twist);
 }
 
-/// Metres to a degree of latitude and of longitude on WGS 84, by the radii of curvature of its ellipsoid.
+/// Metres per degree of latitude and longitude on WGS 84, from the radii of curvature of its ellipsoid.
 Vec3 metres_per_degree(double latitude_deg) {
   constexpr double a_m = 6378137.0, e2 = 0.00669437999014;
   const double latitude = latitude_deg * std::numbers::pi / 180.0;
@@ -307,7 +307,7 @@ TEST_F(MavlinkPosesTest, AGlobalPositionIsMetresEastAndNorthOfTheOriginOfTheWorl
   EXPECT_NEAR(p.x, -1e-3 * per_degree.x, 5e-3);
   EXPECT_NEAR(p.y, 1e-3 * per_degree.y, 5e-3);
   EXPECT_NEAR(p.z, -5.0, 5e-3);
-  // Heads east, at 1 m/s to the north and 0.5 m/s down: to port, and down.
+  // Heads east, moves north at 1 m/s (to port), and sinks at 0.5 m/s.
   EXPECT_NEAR(range_ahead_m(samples[0], east, 0), 1e-3 * per_degree.x, 1e-2);
   EXPECT_THAT(samples[0].twist->linear_mps, IsVec3(Vec3{0, 1, -0.5}, 1e-6));
 }
@@ -359,7 +359,7 @@ TEST_F(MavlinkPosesTest, WhoAsksForGlobalPositionsGetsNoneOfAVehicleThatDoesNotK
   take(GlobalPositionInt{10, 0, 0, -5000});
   EXPECT_EQ(samples.size(), 0U);
   EXPECT_EQ(poses.counters().without_place, 1U);
-  input.world_origin = {0.0, 0.0, 0.0};  // a simulator's own
+  input.world_origin = {0.0, 0.0, 0.0};  // the simulator's own origin
   use(input);
   take(Attitude{10});
   take(GlobalPositionInt{10, 0, 0, -5000});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages against bytes laid out by hand after common.xml, and against two frames that another library made.
+// Messages against bytes laid out by hand from common.xml, and against two frames that another library made.
 #include "protocol/mavlink/messages.hpp"
 
 #include <gmock/gmock.h>
@@ -30,8 +30,8 @@ Content content_of(const Bytes& datagram) {
   return message && std::holds_alternative<Content>(*message) ? std::get<Content>(*message) : Content{};
 }
 
-/// What node-mavlink 2.3.0 sends for time_boot_ms 1000, x 1, y 2, z 3, at rest, sequence 0, system and
-/// component 1: by version 2, which cuts the zeros off, and by version 1.
+/// Frames of node-mavlink 2.3.0 for time_boot_ms 1000, x 1, y 2, z 3, at rest, sequence 0, system and
+/// component 1. Version 2 cuts trailing zeros off; version 1 does not.
 const Bytes third_party_2{0xFD, 0x10, 0x00, 0x00, 0x00, 0x01, 0x01, 0x20, 0x00, 0x00, 0xE8, 0x03, 0x00, 0x00,
                           0x00, 0x00, 0x80, 0x3F, 0x00, 0x00, 0x00, 0x40, 0x00, 0x00, 0x40, 0x40, 0x26, 0x2E};
 const Bytes third_party_1{0xFE, 0x1C, 0x00, 0x01, 0x01, 0x20, 0xE8, 0x03, 0x00, 0x00, 0x00, 0x00,
@@ -117,7 +117,7 @@ TEST(MavlinkMessages, Odometry) {
 
 TEST(MavlinkMessages, ZerosThatWereCutOffComeBack) {
   const Bytes frame = test::position_frame(0, 0, 0, 0);
-  ASSERT_EQ(frame.size(), 10U + 1U + 2U);  // one byte of payload always stays
+  ASSERT_EQ(frame.size(), 10U + 1U + 2U);  // at least one byte of payload stays
   EXPECT_EQ(content_of<LocalPositionNed>(frame), LocalPositionNed{});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are wrong in one place, and in any.
+// Files with one damaged byte at a known place, and files with random damage.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,11 +10,11 @@
 namespace sonard::mcap::testing {
 namespace {
 
-constexpr std::size_t first_chunk = 8 + 9 + 12;  // behind magic and a header that holds "test"
+constexpr std::size_t first_chunk = 8 + 9 + 12;  // after the magic and a header that holds "test"
 
 TEST(McapBroken, a_wrong_byte_in_a_chunk_costs_its_messages_and_names_its_crc) {
   Bytes file = finished_file();
-  file[first_chunk + 9 + 40 + 20] ^= 1;  // among the records
+  file[first_chunk + 9 + 40 + 20] ^= 1;  // inside the records
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
   MessageCursor cursor = reader->messages();
@@ -100,8 +100,7 @@ TEST(McapBroken, a_summary_whose_chunks_overlap_is_not_used) {
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
-// Every error must lie inside the file, and every message too; the sanitizers see the rest.
-/// Its last chunk is open.
+/// A file whose last chunk is open.
 Bytes growing_file() {
   Writer writer{"test", 100};
   const auto channel =
@@ -134,6 +133,7 @@ void flip_bits(const Bytes& whole) {
   }
 }
 
+// Every error and every message must lie inside the file. The sanitizers check the rest.
 TEST(McapBroken, flipped_bits_never_crash) {
   flip_bits(finished_file());
   flip_bits(growing_file());

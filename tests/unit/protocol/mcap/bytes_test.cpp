@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file byte by byte, written out by hand from the MCAP specification (mcap.dev/spec). Its three CRCs
-// were worked out with Python's zlib.crc32 from the bytes of this listing.
+// A whole file byte by byte, written out by hand from the MCAP specification (mcap.dev/spec). Python's
+// zlib.crc32 gave its three CRCs.
 #include <gtest/gtest.h>
 
 #include "tests/unit/protocol/mcap/files.hpp"
@@ -18,7 +18,7 @@ const Bytes channel{0x04, 32, 0, 0, 0, 0, 0, 0, 0,
                     12, 0, 0, 0,  2, 0, 0, 0, 'k', 'k',  2, 0, 0, 0, 'v', 'v'};
 const Bytes message{0x05, 24, 0, 0, 0, 0, 0, 0, 0,
                     1, 0,  0, 0, 0, 0,  0x2A, 0, 0, 0, 0, 0, 0, 1,  0x29, 0, 0, 0, 0, 0, 0, 1,  0xAB, 0xCD};
-// Of schema, channel and message, 103 bytes.
+// Chunk of schema, channel and message, 103 bytes.
 const Bytes chunk_head{0x06, 143, 0, 0, 0, 0, 0, 0, 0,
                        0x2A, 0, 0, 0, 0, 0, 0, 1,  0x2A, 0, 0, 0, 0, 0, 0, 1,  103, 0, 0, 0, 0, 0, 0, 0};
 const Bytes chunk_middle{0, 0, 0, 0,  103, 0, 0, 0, 0, 0, 0, 0};
@@ -28,14 +28,14 @@ const Bytes statistics{0x0B, 56, 0, 0, 0, 0, 0, 0, 0,
                        1, 0, 0, 0, 0, 0, 0, 0,  1, 0,  1, 0, 0, 0,  0, 0, 0, 0,  0, 0, 0, 0,  1, 0, 0, 0,
                        0x2A, 0, 0, 0, 0, 0, 0, 1,  0x2A, 0, 0, 0, 0, 0, 0, 1,
                        10, 0, 0, 0,  1, 0,  1, 0, 0, 0, 0, 0, 0, 0};
-// The chunk starts at 26 and has 152 bytes, so the message index stands at 178.
+// The chunk starts at 26 and has 152 bytes, so the message index starts at 178.
 const Bytes chunk_index{0x08, 74, 0, 0, 0, 0, 0, 0, 0,
                         0x2A, 0, 0, 0, 0, 0, 0, 1,  0x2A, 0, 0, 0, 0, 0, 0, 1,
                         26, 0, 0, 0, 0, 0, 0, 0,  152, 0, 0, 0, 0, 0, 0, 0,
                         10, 0, 0, 0,  1, 0,  178, 0, 0, 0, 0, 0, 0, 0,
                         31, 0, 0, 0, 0, 0, 0, 0,  0, 0, 0, 0,
                         103, 0, 0, 0, 0, 0, 0, 0,  103, 0, 0, 0, 0, 0, 0, 0};
-// Behind the message index schema and channel are repeated. DataEnd stands at 279 and has 13 bytes: schema at 292,
+// Schema and channel are repeated after the message index. DataEnd is at 279 and has 13 bytes: schema at 292,
 // channel at 321, statistics at 362, chunk index at 427, summary offsets at 510.
 const Bytes offsets{0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x03,  0x24, 1, 0, 0, 0, 0, 0, 0,  29, 0, 0, 0, 0, 0, 0, 0,
                     0x0E, 17, 0, 0, 0, 0, 0, 0, 0,  0x04,  0x41, 1, 0, 0, 0, 0, 0, 0,  41, 0, 0, 0, 0, 0, 0, 0,
@@ -89,7 +89,7 @@ TEST(McapBytes, reader_reads_what_the_specification_says) {
   EXPECT_EQ(all_of(reader->messages()), (std::vector<Said>{{1, 0, log_time, "\xAB\xCD"}}));
 }
 
-// The check value of CRC32 for "123456789", and two parts of it.
+// The check value of CRC32 for "123456789", in one and in two parts.
 TEST(McapBytes, crc32_is_that_of_zip) {
   EXPECT_EQ(crc32(bytes_of("123456789")), 0xCBF43926U);
   EXPECT_EQ(crc32(bytes_of("56789"), crc32(bytes_of("1234"))), 0xCBF43926U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks that are compressed when they are closed: what is read, how files grow, and broken ones.
+// Chunks are compressed when they are closed: reading them, growing files, and broken chunks.
 #include "protocol/mcap/compression.hpp"
 
 #include <gtest/gtest.h>
@@ -14,15 +14,15 @@ std::string text_of(int i) {
   return std::string(400, static_cast<char>('a' + i));
 }
 
-/// Changes a file as the writer asks for.
+/// Applies a piece of the writer to the bytes of a file.
 void change(const Piece& piece, Bytes& bytes) {
   FileInMemory file{std::move(bytes)};
   piece.apply_to(file);
   bytes = std::move(file.bytes);
 }
 
-/// Nine messages in chunks of three; taken after each, so that the open chunk is in the file when it is
-/// closed.
+/// A file of up to nine messages in chunks of three. The piece is taken after each message, so the open chunk
+/// is already in the file when it is closed.
 Bytes grown_file(Writer& writer, int messages) {
   Bytes file;
   const auto channel = writer.add_channel(0, "/x", "json");
@@ -52,7 +52,7 @@ TEST(McapCompression, a_file_that_grew_holds_every_message_and_is_shorter) {
   Bytes file = grown_file(writer, 9);
   writer.finish();
   change(writer.take(), file);
-  EXPECT_LT(file.size(), 2000U);  // of 3600 bytes of text
+  EXPECT_LT(file.size(), 2000U);  // 3600 bytes of text
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader && reader->finished());
   expect_messages(*reader, 9);
@@ -110,7 +110,7 @@ TEST(McapCompression, a_writer_that_is_killed_between_two_pieces_loses_nothing) 
   }
 }
 
-// Between writing the shorter chunk over the open one and cutting off what is left of that.
+// The writer has written the shorter chunk over the open one, but not yet cut off the rest of the open one.
 TEST(McapCompression, a_writer_that_is_killed_before_the_cut_loses_nothing_of_the_chunk) {
   Writer writer{"test", 100'000, Compression::zstd};
   Bytes file = grown_file(writer, 2);

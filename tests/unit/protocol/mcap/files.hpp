@@ -30,7 +30,7 @@ inline Bytes bytes_of(std::string_view text) {
   return {text.begin(), text.end()};
 }
 
-/// What a reader is to give back.
+/// A message that a reader must return.
 struct Said {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;

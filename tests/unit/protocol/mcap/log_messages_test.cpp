@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of log files: their description goes with them, and images that do not add up are told.
+// Messages of log files: their schema describes them, and inconsistent images are reported.
 #include "protocol/log/log_messages.hpp"
 
 #include <google/protobuf/descriptor.pb.h>
@@ -28,7 +28,7 @@ TEST(LogMessages, schema_alone_is_enough_to_read_a_message) {
   google::protobuf::FileDescriptorSet set;
   const auto bytes = schema_data(*SonarImage::descriptor());
   ASSERT_TRUE(set.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
-  google::protobuf::DescriptorPool pool;  // one that knows nothing of ours
+  google::protobuf::DescriptorPool pool;  // an empty pool, without the project's own messages
   for (const auto& file : set.file()) {
     ASSERT_NE(pool.BuildFile(file), nullptr) << file.name() << " comes before what it imports";
   }

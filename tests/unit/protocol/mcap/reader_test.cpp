@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of overlapping chunks in the order of their times, by channel, and by either way to the summary.
+// Messages of overlapping chunks in order of time, by channel, and by both ways to the summary.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ TEST(McapReader, pieces_make_the_same_file) {
   Bytes pieces = writer.take().append;
   const auto channel = writer.add_channel(0, "/x", "json");
   for (std::uint64_t i = 0; i < 5; ++i) {
-    writer.add_message(channel, 10 - i, 10 - i, bytes_of("{}"));  // a clock that goes back
+    writer.add_message(channel, 10 - i, 10 - i, bytes_of("{}"));  // the clock goes back
     append(pieces, writer.take().append);
     EXPECT_EQ(pieces.size(), writer.file_size());
   }
@@ -98,7 +98,7 @@ TEST(McapReader, a_file_without_messages_is_whole) {
 TEST(McapReader, records_of_later_versions_are_skipped) {
   Bytes file = finished_file();
   const Bytes foreign{0x8F, 3, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
-  file.insert(file.begin() + 8 + 9 + 12, foreign.begin(), foreign.end());  // behind the header of 21 bytes
+  file.insert(file.begin() + 8 + 9 + 12, foreign.begin(), foreign.end());  // after the header of 21 bytes
   file.resize(file.size() - 8);                                            // so that the summary is not used
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);

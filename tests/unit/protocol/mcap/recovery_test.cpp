@@ -16,7 +16,7 @@ Bytes recovered(const Bytes& cut, const Recovery& recovery) {
   return file;
 }
 
-/// Where the chunks of the file end, by going through its summary.
+/// Offsets of the ends of the file's chunks.
 std::vector<std::uint64_t> chunk_ends(const Bytes& file) {
   std::vector<std::uint64_t> ends;
   const auto summary = read_summary(file);
@@ -72,7 +72,7 @@ TEST(McapRecovery, says_how_much_is_lost) {
   EXPECT_EQ(recovery->summary.chunks.size(), 1U);
 }
 
-/// A file as it grows, message by message, in chunks of three.
+/// A file that grows message by message, in chunks of three messages.
 struct GrowingFile {
   Writer writer{"test", 100'000};
   std::uint16_t channel =
@@ -124,7 +124,7 @@ TEST(McapRecovery, a_chunk_that_grows_keeps_every_message_whenever_its_writer_is
     SCOPED_TRACE(i);
     const Piece piece = growing.next();
     const std::size_t before = growing.messages - 1;
-    for (std::size_t size = 0; size <= piece.append.size(); ++size) {  // killed while it appends
+    for (std::size_t size = 0; size <= piece.append.size(); ++size) {  // killed while appending
       Bytes file = growing.file;
       file.insert(file.end(), piece.append.begin(), piece.append.begin() + static_cast<std::ptrdiff_t>(size));
       const std::size_t found = messages_after_recovery(file);
@@ -133,10 +133,10 @@ TEST(McapRecovery, a_chunk_that_grows_keeps_every_message_whenever_its_writer_is
     }
     append(growing.file, piece.append);
     EXPECT_EQ(messages_after_recovery(growing.file), growing.messages);
-    for (std::size_t size = 0; size < piece.rewrite.size(); ++size) {  // killed while it writes over
+    for (std::size_t size = 0; size < piece.rewrite.size(); ++size) {  // killed while overwriting
       Bytes file = growing.file;
       GrowingFile::rewrite(file, piece, size);
-      const std::size_t crc = 33;  // until the first byte of a CRC is there the chunk is open
+      const std::size_t crc = 33;  // the chunk is open until the first byte of its CRC is written
       if (size <= crc || i % 3 != 2) {
         ASSERT_EQ(messages_after_recovery(file), growing.messages) << size;
       }

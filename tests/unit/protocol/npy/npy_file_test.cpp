@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes as the documentation of numpy.lib.format gives them for version 1.0, written out by hand.
+// Bytes as in the documentation of numpy.lib.format for version 1.0, written out by hand.
 #include "protocol/npy/npy_file.hpp"
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file byte by byte, written out by hand from draft-ietf-opsawg-pcapng 3 and 4, and files cut
-// anywhere.
+// A whole file byte by byte, written out by hand from draft-ietf-opsawg-pcapng 3 and 4, and files cut at any
+// byte.
 #include "protocol/pcapng/blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 // clang-format off
 const Bytes by_hand{
-    // section header: magic, version 1.0, length not said, application "w"
+    // section header: magic, version 1.0, length unspecified, application "w"
     0x0A, 0x0D, 0x0D, 0x0A,  40, 0, 0, 0,  0x4D, 0x3C, 0x2B, 0x1A,  1, 0, 0, 0,
     0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF,  4, 0, 1, 0, 'w', 0, 0, 0,  0, 0, 0, 0,  40, 0, 0, 0,
     // interface: link type 101, no limit, name "bow", resolution 10^-9
@@ -77,7 +77,7 @@ TEST(PcapngRecovery, a_block_that_contradicts_itself_ends_the_good_part) {
   captured[80 + 20] = 200;  // more than the block holds
   EXPECT_EQ(recover(captured)->keep_size, 80U);
   Bytes interface = two_packets();
-  interface[80 + 8] = 1;  // there is only one
+  interface[80 + 8] = 1;  // there is only one interface
   EXPECT_EQ(recover(interface)->keep_size, 80U);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets byte by byte. The checksums were worked out by hand: sums of 16-bit words in one's complement.
+// Packets byte by byte. The checksums were calculated by hand: one's complement sums of 16-bit words.
 #include "protocol/pcapng/packets.hpp"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ TEST(UdpPacket, bytes) {
 }
 
 TEST(UdpPacket, a_checksum_of_zero_is_written_as_ones) {
-  // Without the payload the words sum up to 0A00 + 0001 + 0A00 + 0002 + 0011 + 000A + 1234 + 5678 + 000A =
-  // 7CD4; with FFFF - 7CD4 = 832B as payload they sum up to FFFF, which inverted is 0.
+  // Without the payload the words sum to 0A00 + 0001 + 0A00 + 0002 + 0011 + 000A + 1234 + 5678 + 000A =
+  // 7CD4. With FFFF - 7CD4 = 832B as payload they sum to FFFF, whose inverse is 0.
   const Bytes packet = udp_packet(a, b, Bytes{0x83, 0x2B});
   EXPECT_EQ(packet[26], 0xFF);
   EXPECT_EQ(packet[27], 0xFF);
@@ -44,7 +44,7 @@ Segment read(const Bytes& packet) {
   return {be32(24), be32(28), packet[33], packet.size() - 40};
 }
 
-// As RFC 9293 has it: SYN and FIN count as one byte each.
+// In RFC 9293, SYN and FIN count as one byte each.
 TEST(TcpConversation, numbers_run_on_from_open_to_close) {
   TcpConversation conversation{a, b};
   std::vector<Segment> segments;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose stream against bytes that this project's encoder did not make: written by hand after the protobuf
-// wire format, and made or read by protoc.
+// The pose stream against bytes from other sources than this project's encoder: written by hand from the
+// protobuf wire format, and made or read by protoc.
 #include "protocol/pose/pose_codec.hpp"
 
 #include <gmock/gmock.h>
@@ -27,8 +27,7 @@ using testing::HasSubstr;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Writes the protobuf wire format, by hand: tag = field << 3 | type; type 0 varint, 1 64-bit, 2
-/// length-delimited.
+/// Writes the protobuf wire format: tag = field << 3 | type; type 0 varint, 1 64-bit, 2 length-delimited.
 class Wire {
  public:
   Wire& varint(int field, std::uint64_t value) {
@@ -115,7 +114,7 @@ TEST(PoseCodec, DecodesWhatProtocEncodes) {
   const auto sample = decode(bytes);
   ASSERT_TRUE(sample) << to_string(sample.error());
   EXPECT_EQ(sample->time_ns, -1'500'000'000);
-  // The message speaks NED and FRD; nose north is a quarter turn left of east.
+  // The message is in NED and FRD; nose north is a quarter turn left of east.
   EXPECT_THAT(sample->T_world_vehicle.position_m, IsVec3(Vec3{20, 10, -30}, 0));
   EXPECT_THAT(sample->T_world_vehicle.orientation, IsRotation(yaw(1.5707963267948966), 1e-15));
   ASSERT_TRUE(sample->twist);
@@ -124,13 +123,13 @@ TEST(PoseCodec, DecodesWhatProtocEncodes) {
   ASSERT_EQ(sample->bodies.size(), 2U);
   EXPECT_EQ(sample->bodies[0].name, "gate");
   EXPECT_THAT(sample->bodies[0].T_world_body.position_m, IsVec3(Vec3{0, -1, -5}, 0));
-  // This rotation takes forward to y (east), right to z (down) and down to x (north).
+  // This rotation maps forward to y (east), right to z (down) and down to x (north).
   EXPECT_THAT(rotate(sample->bodies[0].T_world_body.orientation, {1, 0, 0}), IsVec3(Vec3{1, 0, 0}, 1e-15));
   EXPECT_THAT(rotate(sample->bodies[0].T_world_body.orientation, {0, 1, 0}), IsVec3(Vec3{0, 0, 1}, 1e-15));
   EXPECT_EQ(sample->bodies[1].name, "buoy");
 }
 
-/// What protoc makes of a message.
+/// The text that protoc prints for a message.
 std::string read_by_protoc(const Bytes& bytes) {
   const std::string path = testing::TempDir() + "sonard_pose_message_" + std::to_string(getpid());
   std::ofstream{path, std::ios::binary}.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
@@ -285,7 +284,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return tested.param.name; });
 
 TEST(PoseCodec, NoPrefixOfAMessageIsTakenForAnother) {
-  // A prefix that ends between two fields is a message of its own; all others are malformed. None may crash.
+  // A prefix that ends between two fields decodes to a message without a vehicle. All prefixes must be
+  // refused.
   const Bytes whole = joined(Wire{}.varint(1, 9).varint(2, 1), good_vehicle);
   for (std::size_t length = 0; length < whole.size(); ++length) {
     EXPECT_FALSE(decode(std::span{whole}.first(length))) << length;
@@ -332,7 +332,7 @@ TEST(PoseFraming, LengthIsAVarint) {
   EXPECT_EQ(frame_message(large).size(), length);
 }
 
-/// The messages in a stream that arrives in pieces of `piece` bytes.
+/// The messages in a stream that arrives in pieces of `piece` bytes each.
 std::vector<Bytes> messages_of(const Bytes& stream, std::size_t piece) {
   std::vector<Bytes> messages;
   Bytes buffer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparing poses in tests.
+// Matchers that compare poses in tests.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 
 namespace sonard::pose {
 
-/// Every coordinate within `tolerance`.
+/// Every coordinate is within `tolerance` of the expected one.
 MATCHER_P2(IsVec3, expected, tolerance, "") {
   *result_listener << arg.x << ", " << arg.y << ", " << arg.z;
   return std::abs(arg.x - expected.x) <= tolerance && std::abs(arg.y - expected.y) <= tolerance &&

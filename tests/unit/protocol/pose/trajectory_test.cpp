@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trajectory files: what is read, how it is played, and the line each mistake is reported at.
+// Trajectory files: parsing, playback, and the line number in each error.
 #include "protocol/pose/trajectory.hpp"
 
 #include <gmock/gmock.h>
@@ -44,7 +44,7 @@ TEST(TrajectoryFile, ReadsTum) {
       "1305031102.1753 1.0 2.0 3.0 0 0 0 1\n"
       "1305031102.2116\t1.5  2.5 3.5 0 0 0 1\n");
   ASSERT_EQ(trajectory.points().size(), 2U);
-  // A double holds such a time to 0.24 us.
+  // A double holds such a time with a resolution of 0.24 us.
   EXPECT_NEAR(static_cast<double>(trajectory.start_ns() - 1'305'031'102'175'300'000), 0.0, 500.0);
   EXPECT_THAT(trajectory.points()[1].T_world_vehicle.position_m, IsVec3(Vec3{1.5, 2.5, 3.5}, 0));
 }
@@ -163,7 +163,7 @@ TEST(TrajectoryState, GoesBetweenPoints) {
   const TrajectoryState state = turning_then_resting().at(5 * second_ns + second_ns / 4);
   EXPECT_THAT(state.T_world_vehicle.position_m, IsVec3(Vec3{0.5, 0, 0}, 1e-15));
   EXPECT_THAT(state.T_world_vehicle.orientation, IsRotation(yaw(0.25), 1e-15));
-  // Moving east at 2 m/s as seen by a vehicle that heads 0.25 rad to the left of east: partly to starboard.
+  // The vehicle moves east at 2 m/s and heads 0.25 rad to the left of east, so it moves partly to starboard.
   EXPECT_THAT(state.twist.linear_mps, IsVec3(Vec3{2 * std::cos(0.25), -2 * std::sin(0.25), 0}, 1e-14));
   EXPECT_THAT(state.twist.angular_radps, IsVec3(Vec3{0, 0, 1}, 1e-14));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid motion against closed forms.
+// Rigid motion against closed-form solutions.
 #include "protocol/pose/transform.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ TEST(Transform, PositivePitchPointsTheNoseDown) {
 
 TEST(Transform, ProductRotatesByTheRightFactorFirst) {
   const Quat turn_then_roll = from_rotation_vector({pi / 2, 0, 0}) * yaw(pi / 2);
-  // yaw takes x to y, then roll takes y to z.
+  // The yaw maps x to y, then the roll maps y to z.
   EXPECT_THAT(rotate(turn_then_roll, {1, 0, 0}), IsVec3(Vec3{0, 0, 1}, 1e-15));
 }
 
@@ -85,7 +85,7 @@ TEST(Transform, ConstantTwistMakesAHelix) {
 }
 
 TEST(Transform, TwistIsInTheAxesOfTheBody) {
-  // Heading along world y, moving forward: along world y.
+  // Heading along world y and moving forward is motion along world y.
   const Transform moved = advance({{5, 5, 5}, yaw(pi / 2)}, {{2, 0, 0}, {}}, 3.0);
   EXPECT_THAT(moved.position_m, IsVec3(Vec3{5, 11, 5}, 1e-14));
 }
@@ -93,7 +93,7 @@ TEST(Transform, TwistIsInTheAxesOfTheBody) {
 TEST(Transform, AdvanceAgreesWithSmallStepsAboutASkewAxis) {
   const Transform start{{1, 2, 3}, from_rotation_vector({0.3, -0.4, 1.2})};
   const Velocity twist{{0.5, -0.2, 0.1}, {0.6, 0.3, -0.9}};
-  // Midpoint rule; its error is of the second order in the step, about 1e-9 here.
+  // Midpoint rule, with a second-order error in the step, about 1e-9 here.
   Transform stepped = start;
   const int steps = 20'000;
   const double dt = 2.0 / steps;
@@ -108,7 +108,7 @@ TEST(Transform, AdvanceAgreesWithSmallStepsAboutASkewAxis) {
 }
 
 TEST(Transform, AdvanceHasNoSeamWhereItsSeriesEnd) {
-  // Exact to the fourth power of the turn, which is 1e-12 on either side of 1e-3 rad.
+  // Exact to the fourth power of the turn, which is 1e-12 just below and just above 1e-3 rad.
   const Velocity twist{{1, 2, 3}, {0, 0, 1}};
   for (const double t : {1e-3 * (1 - 1e-9), 1e-3 * (1 + 1e-9)}) {
     const double s = std::sin(t);
@@ -117,7 +117,7 @@ TEST(Transform, AdvanceHasNoSeamWhereItsSeriesEnd) {
   }
 }
 
-// Norms of quaternions are 1 up to rounding only, and to normalise them once more may turn a last bit.
+// Quaternions have norm 1 up to rounding only. To normalise them again may change a last bit.
 TEST(Transform, WhatRestsKeepsEveryBit) {
   for (int i = 0; i < 1000; ++i) {
     const double x = 0.001 * i;
@@ -144,7 +144,7 @@ TEST(Transform, NedHeadingIsClockwiseFromNorth) {
 }
 
 TEST(Transform, FrdPitchUpIsNoseUp) {
-  // In FRD a positive pitch lifts the nose.
+  // In FRD a positive pitch raises the nose.
   const double pitch = 0.2;
   const Transform up = enu_flu_from_ned_frd({{}, from_rotation_vector({0, pitch, 0})});
   EXPECT_THAT(rotate(up.orientation, {1, 0, 0}), IsVec3(Vec3{0, std::cos(pitch), std::sin(pitch)}, 1e-15));
@@ -157,7 +157,7 @@ TEST(Transform, FrdTwistBecomesFlu) {
 }
 
 TEST(Transform, ConversionCommutesWithMotion) {
-  // Moving first and converting after is converting first and moving after.
+  // Motion followed by conversion equals conversion followed by motion.
   const Transform ned{{1, 2, 3}, from_rotation_vector({0.1, 0.2, 0.3})};
   const Velocity frd{{1, 0.5, -0.2}, {0.1, -0.3, 0.4}};
   const Transform one = enu_flu_from_ned_frd(advance(ned, frd, 1.5));
