@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against the values printed in docs/protocols/gemini.md 6.5.
+// Bearings against the values printed in docs/protocols/gemini.md 6.5.
 #include "protocol/gemini/bearings.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace sonard::gemini {
 namespace {
 
-/// The radians were printed from a single-precision table: half a unit in its last place at 1.04.
+/// The printed radians come from a single-precision table. Half a unit in the last place at 1.04 rad.
 constexpr double single_precision = 6e-8;
 
 double degrees(double radians) {

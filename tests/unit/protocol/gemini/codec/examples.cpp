@@ -10,7 +10,7 @@ constexpr Header from_601{.sonar_id = 601};
 constexpr Header later_client_to_601{.sonar_id = 601, .destination = 2, .source = 1};
 constexpr Header later_client_to_1234{.sonar_id = 1234, .destination = 2, .source = 1};
 
-/// Counts up modulo 256, as the data of the fixtures do.
+/// Counts up modulo 256, like the data of the fixtures.
 template <std::size_t N>
 std::array<std::uint8_t, N> counting() {
   std::array<std::uint8_t, N> bytes;
@@ -92,7 +92,7 @@ PingConfig observed_ping_config_mk2() {
   return config;
 }
 
-/// Section 3.6 defaults, and the 0x0100 and 10000 that later clients were seen to send.
+/// Defaults of section 3.6, and the values 0x0100 and 10000 that later clients send.
 NetworkConfig network_config(const Header& header) {
   NetworkConfig config;
   config.header = header;
@@ -118,7 +118,7 @@ NetworkConfig network_config_early() {
   return config;
 }
 
-/// Section 10, in the words above its bytes.
+/// The status that section 10 describes above its bytes.
 Status status() {
   Status status;
   status.header = from_601;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every fixture beside the values that its source says it holds.
+// Each fixture with the values that its source gives for it.
 #pragma once
 
 #include <string>

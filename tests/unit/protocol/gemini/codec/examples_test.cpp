@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte examples, both ways: what the bytes mean, and which bytes the values become.
+// The byte examples in both directions: bytes to values, and values to bytes.
 #include "tests/unit/protocol/gemini/codec/examples.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(Examples, cover_every_message_of_both_directions) {
   for (const auto& example : report_examples()) {
     reports.insert(example.value.index());
   }
-  // All but Unknown, which is no message of its own.
+  // All but Unknown, which is no message.
   EXPECT_EQ(commands.size(), std::variant_size_v<Command> - 1);
   EXPECT_EQ(reports.size(), std::variant_size_v<Report> - 1);
 }

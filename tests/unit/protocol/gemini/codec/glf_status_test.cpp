@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expectations are worked out by hand from docs/protocols/gemini.md and docs/logs.md 1.5.
+// The expected values were calculated by hand from docs/protocols/gemini.md and docs/logs.md 1.5.
 #include "protocol/gemini/glf_status.hpp"
 
 #include <array>
@@ -32,7 +32,7 @@ TEST(GlfStatus, SaysHowTheHeadIs) {
   EXPECT_NEAR(record.die_c, 45.0, 0.25);
   EXPECT_EQ(record.fpga_time_us, 123'456'789'012U);
   EXPECT_EQ(record.shutdown_status, 0x0004);
-  EXPECT_EQ(record.link_type, 0x1100);  // negotiated Ethernet of 100 Mb/s
+  EXPECT_EQ(record.link_type, 0x1100);  // the link has negotiated Ethernet at 100 Mb/s
 }
 
 TEST(GainLaw, PercentIsWhatTheEarlyLibraryTurnsIntoSpreading) {

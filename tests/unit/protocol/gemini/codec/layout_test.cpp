@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each field at its documented offset. The examples leave most fields zero or equal to a neighbour, so that a
-// swapped pair would pass them; here every byte of the datagram holds its own offset and no two fields agree.
+// Each field at its documented offset. In the examples most fields are zero or equal to a neighbour, so they
+// cannot detect a swapped pair. Here every byte of the datagram holds its own offset, so all fields differ.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -11,7 +11,7 @@
 namespace sonard::gemini::testing {
 namespace {
 
-/// Byte i of the datagram is i, but for the type.
+/// Byte i of the datagram is i, except byte 0, which holds the type.
 Bytes counting_datagram(MessageType type, std::size_t size) {
   Bytes bytes(size);
   std::iota(bytes.begin(), bytes.end(), std::uint8_t{0});
@@ -19,7 +19,7 @@ Bytes counting_datagram(MessageType type, std::size_t size) {
   return bytes;
 }
 
-/// What a little-endian integer at `offset` of such a datagram reads as.
+/// The value of a little-endian integer at `offset` of a counting datagram.
 constexpr std::uint64_t at(std::size_t offset, std::size_t width) {
   std::uint64_t value = 0;
   for (std::size_t i = width; i-- > 0;) {

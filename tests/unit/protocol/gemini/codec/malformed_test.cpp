@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a socket may bring: cut, padded, foreign and contradictory datagrams.
+// Bad datagrams that a socket may receive: cut, padded, foreign and contradictory ones.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,7 +12,7 @@
 namespace sonard::gemini::testing {
 namespace {
 
-/// Shortest datagram that still is the message, where that is not all of it (sections 3.6, 3.10, 6.2).
+/// Length of the shortest datagram that decodes as the message, if it may be cut (sections 3.6, 3.10, 6.2).
 std::size_t shortest_form(const std::string& fixture, std::size_t size) {
   static const std::map<std::string, std::size_t> shorter{
       {"network_config", 20}, {"observed_network_config", 20}, {"production_test", 20}, {"ping_head", 46}};
@@ -20,7 +20,7 @@ std::size_t shortest_form(const std::string& fixture, std::size_t size) {
   return found == shorter.end() ? size : found->second;
 }
 
-/// A copy on the heap of exactly this length, so that sanitizers see a read beyond it.
+/// A copy on the heap with exactly this length, so that sanitizers detect a read beyond it.
 Bytes cut(const Bytes& bytes, std::size_t length) {
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
 }
@@ -89,7 +89,7 @@ TEST(Malformed, trailing_bytes_change_nothing) {
   }
   for (const auto& example : report_examples()) {
     if (example.fixture == "serial_data") {
-      continue;  // its length is its count
+      continue;  // its length gives its count
     }
     Bytes bytes = load_fixture(example.fixture);
     for (int extra = 1; extra <= 64; ++extra) {
@@ -132,7 +132,7 @@ TEST(Malformed, exactly_the_documented_types_are_known) {
   for (int type = 0; type < 256; ++type) {
     Bytes bytes(2048, 0);
     bytes[0] = static_cast<std::uint8_t>(type);
-    bytes[8] = 2;  // keeps the MDIO length and the bank of an info block in order
+    bytes[8] = 2;  // a valid MDIO length and a valid bank of an info block
     if (const auto command = decode_command(bytes); command && !std::holds_alternative<Unknown>(*command)) {
       EXPECT_EQ(type_of(*command), type);
       known[true].push_back(type);
@@ -189,7 +189,7 @@ TEST(Malformed, serial_data_with_a_broken_block_is_refused) {
 
 TEST(Malformed, line_data_follow_the_word_count) {
   Bytes bytes = load_fixture("ping_line");
-  bytes[14] = 0x84;  // one word more than there is
+  bytes[14] = 0x84;  // one word more than the datagram holds
   const auto longer = decode_report(bytes);
   ASSERT_FALSE(longer);
   EXPECT_EQ(longer.error(), (WireError{WireErrorReason::truncated, 16, "data"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the raw integers of the messages mean.
+// Meaning of the raw integers in the messages.
 #include "protocol/gemini/messages.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(PingConfig, run_mode_is_two_bits) {
   PingConfig config;
   config.run_mode = 0x8002;
   EXPECT_EQ(config.mode(), RunMode::external_trigger);
-  config.run_mode = 0x0011;  // later clients set further bits
+  config.run_mode = 0x0011;  // later clients set more bits
   EXPECT_EQ(config.mode(), RunMode::continuous);
 }
 

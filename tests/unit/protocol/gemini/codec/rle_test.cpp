@@ -108,7 +108,7 @@ TEST(RleDecode, nothing_in_nothing_out) {
   EXPECT_EQ(rle_decode(Bytes{1, 0, 5, 9}, {}), 0U);
 }
 
-/// Lines of every density of echoes, from empty to full, at every threshold.
+/// Lines with every density of echoes, from empty to full, at every threshold.
 TEST(RleProperty, decoding_gives_back_the_line_with_small_values_zeroed) {
   std::mt19937 generator{20240501};
   for (int trial = 0; trial < 4000; ++trial) {

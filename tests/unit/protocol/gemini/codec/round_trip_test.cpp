@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// decode(encode(x)) == x for values nobody thought of, and encode(decode(bytes)) == bytes for bytes nobody
-// thought of.
+// decode(encode(x)) == x for random values, and encode(decode(bytes)) == bytes for random bytes.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -59,7 +58,7 @@ class Random {
     fill(byte.value);
   }
 
-  /// Every member that the layout table names.
+  /// Fills every member that the layout table names.
   template <HasLayout Message>
   void fill_fields(Message& message) {
     std::apply([&](const auto&... field) { (fill_field(message, field), ...); }, Layout<Message>::fields);
@@ -155,7 +154,7 @@ TEST(RoundTrip, every_report) {
   round_trip_all<Report>(static_cast<const Report*>(nullptr));
 }
 
-/// Whatever decodes is stable: encoding it again gives a datagram that means the same.
+/// If random bytes decode, encoding the result again gives a datagram with the same meaning.
 TEST(RoundTrip, random_bytes_of_every_type) {
   Random random{77};
   int understood = 0;

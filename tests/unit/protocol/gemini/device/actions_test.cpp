@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head wants done beside its datagrams: log lines, a renderer left in peace, figures.
+// Actions of a head besides datagrams: log lines, cancelled jobs, statistics.
 #include <algorithm>
 #include <string_view>
 
@@ -53,7 +53,7 @@ TEST(Notices, TellOfATopsideThatRebootsTheHead) {
             (Texts{"topside 192.168.2.5 connected",
                    "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));
   bench.run_until(6s);
-  bench.command(to_head<Reboot>());  // its first command is its last
+  bench.command(to_head<Reboot>());  // the first command of this topside, and its last
   EXPECT_EQ(texts(bench.last.notices),
             (Texts{"topside 192.168.2.5 connected",
                    "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head on a bench: virtual time, a renderer that takes a set time, everything sent written down.
+// A head in virtual time, with a renderer that takes a set time. The bench records everything sent.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline constexpr Ipv4 head_address = 0xC0A802C9;     // 192.168.2.201
 inline constexpr Ipv4 topside_address = 0xC0A80205;  // 192.168.2.5
 inline constexpr Ipv4 other_topside = 0xC0A80206;    // 192.168.2.6
 
-/// "20 01 59" -> bytes. Everything but hexadecimal digits is skipped.
+/// The bytes of hexadecimal text such as "20 01 59". All other characters are skipped.
 inline std::vector<std::uint8_t> from_hex(std::string_view text) {
   std::vector<std::uint8_t> bytes;
   int digits = 0;
@@ -61,7 +61,7 @@ inline DeviceConfig example_config() {
   return config;
 }
 
-/// Addressed to the head of the examples.
+/// A message addressed to the head of the examples.
 template <class Message>
 Message to_head(Message message = {}) {
   message.header.sonar_id = 601;
@@ -87,7 +87,7 @@ inline RetryRequest retry_of(RetryKind kind, int first = 0, int count = 1) {
   return request;
 }
 
-/// Any values that tell pings, lines and beams apart.
+/// Arbitrary values that differ between pings, lines and beams.
 inline std::uint8_t test_sample(std::uint64_t ping, int line, int beam) {
   return static_cast<std::uint8_t>(ping * 31 + static_cast<std::uint64_t>(line) * 7 +
                                    static_cast<std::uint64_t>(beam));
@@ -123,17 +123,17 @@ class Bench {
 
   explicit Bench(const DeviceConfig& config = example_config()) : device(config, 0ns) { step(TimePassed{}); }
 
-  // What a test sets.
+  // Set by tests.
   std::chrono::nanoseconds render_time{0};
   std::function<PingImage(const PingJob&)> render = test_image;
   bool renderer_answers = true;  ///< false: the test answers the jobs itself
   bool renderer_fails = false;
-  /// How late each timer of the head runs out.
+  /// Delay of each timer of the head after its due time.
   std::function<std::chrono::nanoseconds()> lateness = [] { return 0ns; };
-  /// Sees each datagram as it is sent; may not call the bench.
+  /// Called for each datagram as it is sent. It must not call the bench.
   std::function<void(const Sent&)> on_sent;
 
-  // What a test looks at.
+  // Read by tests.
   Device device;
   TimePoint now{};
   std::vector<Sent> sent;
@@ -150,7 +150,7 @@ class Bench {
   void trigger() { step(TriggerEdge{}); }
   void set_out_of_water(bool out) { step(WaterChanged{out}); }
 
-  /// When something happens next of itself.
+  /// Time of the next event without input from the test.
   TimePoint next_event() const {
     TimePoint next = timer_;
     return image_ ? std::min(next, image_->first) : next;

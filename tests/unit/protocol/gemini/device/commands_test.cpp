@@ -5,7 +5,7 @@
 namespace sonard::gemini {
 namespace {
 
-/// The bytes answered to the topside by one command, one entry per datagram.
+/// The answers of the head to one command of the topside, one entry per datagram.
 std::vector<std::vector<std::uint8_t>> answers(Bench& bench, std::span<const std::uint8_t> command) {
   const std::size_t before = bench.sent.size();
   bench.raw(command);
@@ -70,7 +70,7 @@ TEST(Commands, TestsSerialAndModemGetTheirHarmlessAnswers) {
   EXPECT_EQ(bench.device.counters().bad_datagrams, 0U);
 }
 
-/// 0x45 for an address, with these bytes in front of erased memory.
+/// The message 0x45 for an address, with these bytes followed by erased memory.
 std::vector<std::uint8_t> readback(std::string_view address_bytes, std::string_view content) {
   auto expected = from_hex("45 01 59 02 00 00 00 00");
   const auto address = from_hex(address_bytes);
@@ -120,7 +120,7 @@ TEST(Commands, InfoBlocksAreReadAtTheirAddresses) {
   EXPECT_TRUE(answers(bench, "25 01 59 02 00 00 00 00 03 00 00 00").empty());
 }
 
-/// 0x24 as a later client sends it, for 192.168.2.77/24: see tests/data/gemini/notes.md.
+/// The message 0x24 as a later client sends it, for 192.168.2.77/24 (tests/data/gemini/notes.md).
 std::vector<std::uint8_t> write_address_77() {
   auto command = from_hex("24 01 59 02 00 00 02 01 02 00 00 00 00 00 00 00 4d 02 a8 c0 00 ff ff ff");
   command.resize(152, 0);

@@ -15,7 +15,7 @@ TEST(GainLaw, MainGainIsBasePlusVariable) {
   EXPECT_NEAR(main_gain_db(1000), 8.0, epsilon_db);
   EXPECT_NEAR(main_gain_db(0), 8.0, epsilon_db);
   EXPECT_NEAR(main_gain_db(0x83E8), 11.0 + 8.0, epsilon_db);  // both libraries at short range
-  EXPECT_NEAR(main_gain_db(0xC3E8), 16.5 + 8.0, epsilon_db);  // and beyond
+  EXPECT_NEAR(main_gain_db(0xC3E8), 16.5 + 8.0, epsilon_db);  // both libraries beyond it
   EXPECT_NEAR(main_gain_db(3700), 50.0, epsilon_db);
   EXPECT_NEAR(main_gain_db(4095), 50.0, epsilon_db);
   EXPECT_NEAR(main_gain_db(2350), 29.0, epsilon_db);  // half way
@@ -26,7 +26,7 @@ TEST(GainLaw, EarlyLibraryPercentIsLinearInDecibel) {
   const GainLaw law;
   for (int percent = 10; percent <= 100; percent += 10) {
     const auto spreading = static_cast<std::uint16_t>(500.0 * std::exp((percent - 100) / 25.0));
-    // trunc() of the library moves it by up to one unit of about 13 at 10 percent.
+    // The library truncates the value to an integer. At 10 percent that is up to one unit of about 13.
     EXPECT_NEAR(spreading_gain_db(spreading, law), 0.4 * (percent - 50), 0.8) << percent;
   }
   EXPECT_NEAR(spreading_gain_db(67, law), 0.0, epsilon_db);

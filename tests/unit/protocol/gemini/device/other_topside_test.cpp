@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Each command that reads and changes nothing, with its answer.
+/// Each command that reads and changes nothing, with the type of its answer.
 const std::vector<std::pair<Command, MessageType>> readings{
     {to_head<StatusRequest>(), MessageType::acknowledge},
     {to_head<FlashRead>(), MessageType::flash_readback},
@@ -18,7 +18,7 @@ const std::vector<std::pair<Command, MessageType>> readings{
     {to_head<GpioRead>(), MessageType::gpi_data},
     {to_head<DiagnosticRequest>(), MessageType::diagnostic}};
 
-/// What was sent to an address from index `from` on.
+/// The datagrams sent to an address, from index `from` on.
 std::vector<Bench::Sent> to_address(const Bench& bench, Ipv4 address, std::size_t from = 0) {
   std::vector<Bench::Sent> found;
   for (std::size_t i = from; i < bench.sent.size(); ++i) {
@@ -77,7 +77,7 @@ TEST(OtherTopside, DoesNotMakeAPausedProgrammeGoOnByReading) {
     EXPECT_EQ(heard[0].type(), static_cast<std::uint8_t>(answer));
     EXPECT_TRUE(bench.ping_datagrams(before).empty());
 
-    bench.command(command);  // of the topside whose programme it is
+    bench.command(command);  // from the topside that started the programme
     bench.run_for(1s);
     EXPECT_EQ(bench.device.topside(), topside_address);
     EXPECT_FALSE(bench.ping_datagrams(before).empty());
@@ -91,7 +91,7 @@ TEST(OtherTopside, DoesNotMakeAPausedProgrammeGoOnByAnOrder) {
   bench.run_until(10s);
   const std::size_t before = bench.sent.size();
   bench.command(to_head<NetworkConfig>(), other_topside);
-  bench.run_for(10s);  // it falls silent, too
+  bench.run_for(10s);  // the other topside falls silent too
   EXPECT_TRUE(bench.ping_datagrams(before).empty());
   bench.command(to_head<StatusRequest>());
   bench.run_for(1s);
@@ -149,7 +149,7 @@ TEST(OtherTopside, TakesALockedHeadWhenTheFirstIsSilentForItsTimeout) {
   bench.run_until(3s);
   bench.command(ping_of(100), other_topside);
   EXPECT_EQ(bench.device.topside(), other_topside);
-  bench.command(to_head<StatusRequest>());  // now it is the other
+  bench.command(to_head<StatusRequest>());  // the topside is now the other one
   EXPECT_EQ(bench.device.counters().locked_out, 2U);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the datagrams of a ping leave (docs/protocols/gemini.md 8.5, 3.6).
+// Times at which the datagrams of a ping are sent (docs/protocols/gemini.md 8.5, 3.6).
 #include <algorithm>
 #include <random>
 
@@ -19,7 +19,7 @@ std::vector<Bench::Sent> one_ping(Bench& bench, const PingConfig& config) {
   return bench.ping_datagrams(before);
 }
 
-/// In no span of time do more than a burst and what the link carries in that span leave.
+/// In any span of time at most one burst, plus the datagrams that the link carries in that span, are sent.
 void expect_paced(const std::vector<Bench::Sent>& sent, int burst, std::chrono::nanoseconds period) {
   for (std::size_t first = 0; first < sent.size(); ++first) {
     for (std::size_t last = first; last < sent.size(); ++last) {
@@ -30,7 +30,8 @@ void expect_paced(const std::vector<Bench::Sent>& sent, int burst, std::chrono::
   }
 }
 
-/// Line i of a ping sent at time 0 is not there before its sound is: (i + 1) 2^k native lines of 1 / 90422 s.
+/// Line i of a ping sent at time 0 is not sent before its sound arrives: (i + 1) 2^k native lines of 1 /
+/// 90422 s.
 void expect_acoustic(const std::vector<Bench::Sent>& sent, int compression_log2) {
   for (std::size_t i = 0; i + 2 < sent.size(); ++i) {
     const auto native = static_cast<double>((i + 1) << compression_log2);
@@ -38,7 +39,7 @@ void expect_acoustic(const std::vector<Bench::Sent>& sent, int compression_log2)
   }
 }
 
-/// From the first of the last 36 lines to the tail.
+/// Time from the first of the last 36 lines to the tail.
 std::chrono::nanoseconds final_span(const std::vector<Bench::Sent>& sent) {
   return sent.back().at - sent[sent.size() - 37].at;
 }
@@ -57,8 +58,8 @@ TEST(Pacing, LinesFollowTheSoundAndTheLink) {
 }
 
 TEST(Pacing, PingLastsAsLongAsOnALinkOf100Megabit) {
-  // Figures of the document: 4 m = 13 ms, 60 m uncompressed = 195 ms, 60 m with x4: the sound dominates with
-  // 80 ms.
+  // From the document: 4 m takes 13 ms; 60 m uncompressed takes 195 ms; 60 m with x4 takes 80 ms, limited by
+  // the sound.
   struct Case {
     int lines;
     int k;
@@ -150,10 +151,10 @@ TEST(Pacing, LastLinesStayTogetherWhenTheSoundIsSlow) {
 
 TEST(Pacing, InterPacketGapIsALeastDistance) {
   struct Case {
-    std::uint16_t gap;  // 8 ns
+    std::uint16_t gap;  // units of 8 ns
     std::chrono::nanoseconds distance;
   };
-  // What later clients ask for on a bad link, a gap shorter than a line takes anyway, and the greatest one.
+  // Gaps that later clients request on a bad link, a gap shorter than a line anyway, and the greatest gap.
   for (const Case& c : {Case{8000, 64us}, {10000, 80us}, {1000, 27us}, {65535, 524'280ns}}) {
     std::mt19937 random(3);
     Bench bench;

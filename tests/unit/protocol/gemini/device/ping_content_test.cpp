@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is in the datagrams of a ping, and what its job says (docs/protocols/gemini.md 5, 6, 10).
+// Content of a ping's datagrams, and of its job (docs/protocols/gemini.md 5, 6, 10).
 #include <algorithm>
 #include <string_view>
 
@@ -25,7 +25,7 @@ PingImage image_of_beam_numbers(const PingJob& job) {
   return image;
 }
 
-/// One ping of `config`; its datagrams.
+/// Sends one ping of `config` and returns its datagrams.
 std::vector<Bench::Sent> ping(Bench& bench, const PingConfig& config) {
   const std::size_t before = bench.sent.size();
   bench.command(config);
@@ -174,9 +174,9 @@ TEST(PingContent, RunLengthCodingDropsWhatIsBelowTheThreshold) {
   config.rle_threshold = 50;
   const auto sent = ping(bench, config);
   EXPECT_EQ(bench.all<PingHead>()[0].second.rle_threshold, 50);
-  // 256 zeros: a run of 255 and a single one. Three bytes and one of padding: one word.
+  // 256 zeros are a run of 255 and a single zero: three bytes and one byte of padding, one word.
   EXPECT_EQ(copy(std::span(sent[1].bytes).subspan(14)), from_hex("84 00 00 ff 01 00"));
-  // 50, 200, one zero, 255, 252 zeros: six bytes and two of padding.
+  // 50, 200, one zero, 255, 252 zeros: six bytes and two bytes of padding.
   EXPECT_EQ(copy(std::span(sent[2].bytes).subspan(14)), from_hex("04 01 32 c8 01 ff 00 fc 00 00"));
 }
 
@@ -263,19 +263,19 @@ TEST(PingContent, ListeningWithoutTransmitting) {
 struct Speed {
   double water_mps;
   bool snap;
-  int configured;  // 0.1 m/s
+  int configured;  // units of 0.1 m/s
   bool use_configured;
   double job_mps;
   double assumed_mps;
-  int velocimeter;  // 0.1 m/s, in the ping head
+  int velocimeter;  // units of 0.1 m/s, in the ping head
   int used;
 };
 
 TEST(PingContent, SpeedOfSoundComesFromTheConfigurationOrTheWater) {
   for (const Speed& s : {
-           Speed{0.0, false, 15000, true, 1500.0, 1500.0, 15000, 0x8000 | 15000},  // the water follows
+           Speed{0.0, false, 15000, true, 1500.0, 1500.0, 15000, 0x8000 | 15000},  // water as configured
            Speed{0.0, false, 14800, false, 1480.0, 1480.0, 14800, 14800},
-           Speed{1480.0, false, 15000, true, 1480.0, 1500.0, 14800, 0x8000 | 15000},  // mismatch on purpose
+           Speed{1480.0, false, 15000, true, 1480.0, 1500.0, 14800, 0x8000 | 15000},  // deliberate mismatch
            Speed{1480.0, false, 15000, false, 1480.0, 1480.0, 14800, 14800},
            Speed{0.0, true, 15000, true, 1500.0, 1500.0, 14992,
                  0x8000 | 14992},  // the device's grid: 1499.2 m/s

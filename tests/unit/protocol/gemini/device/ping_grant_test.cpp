@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings that begin when somebody else says so: a simulated time rules.
+// Pings that wait for a permission, because a simulator's clock decides when they begin.
 #include "bench.hpp"
 
 namespace sonard::gemini {
@@ -11,7 +11,7 @@ DeviceConfig waiting() {
   return config;
 }
 
-/// Of a ping of `lines` at the rate at which the head listens.
+/// Listening time of a ping of `lines`, at the head's native line rate.
 std::chrono::nanoseconds listening_of(int lines) {
   return std::chrono::nanoseconds{static_cast<std::int64_t>(lines / 90422.0 * 1e9)};
 }
@@ -19,7 +19,7 @@ std::chrono::nanoseconds listening_of(int lines) {
 struct PingGrant : testing::Test {
   Bench bench{waiting()};
 
-  /// Grants what the head would begin by now, as a server does.
+  /// Grants the ping that the head would begin by now, as a server does. Returns false if there is none.
   bool grant() {
     const auto next = bench.last.next_ping;
     if (!next || next->from > bench.now) {
@@ -59,7 +59,7 @@ TEST_F(PingGrant, APingForEach) {
   for (std::size_t pings = 1; pings <= 20; ++pings) {
     ASSERT_TRUE(grant());
     EXPECT_EQ(bench.jobs.size(), pings);
-    bench.run_for(6ms);  // the simulated time runs much faster: the rate rules are not those of this clock
+    bench.run_for(6ms);  // simulated time runs faster, so the head's own rate limits do not apply
   }
   EXPECT_EQ(bench.count(MessageType::ping_tail), 20U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a log is told of a ping: it is what a topside has of it after decoding.
+// The record of a ping for logs equals the image that a topside decodes.
 #include <cmath>
 
 #include "bench.hpp"
@@ -9,7 +9,7 @@
 namespace sonard::gemini {
 namespace {
 
-/// The record of one ping of `config`.
+/// Sends one ping of `config` and returns its record.
 PingRecord record(Bench& bench, const PingConfig& config) {
   bench.command(config);
   bench.run_for(1s);
@@ -17,7 +17,7 @@ PingRecord record(Bench& bench, const PingConfig& config) {
   return bench.records.empty() ? PingRecord{} : bench.records[0];
 }
 
-/// The samples of a ping of test_image() after `change`.
+/// The samples of ping 0 of test_image(), with `change` applied to each sample.
 template <class Change>
 std::vector<std::uint8_t> samples_of(int lines, const Change& change) {
   std::vector<std::uint8_t> samples;
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> samples_of(int lines, const Change& change) {
 TEST(PingRecord, IsWhatIsSent) {
   Bench bench;
   bench.command(ping_of(40, RunMode::continuous, 40ms));
-  bench.run_connected(2s - 1ms);  // the last one is whole
+  bench.run_connected(2s - 1ms);  // the last ping is complete
   const auto datagrams = bench.ping_datagrams();
   ASSERT_GT(bench.records.size(), 10U);
   ASSERT_EQ(datagrams.size(), 42 * bench.records.size());
@@ -107,7 +107,7 @@ TEST(PingRecord, OfSixteenBitsTheHighOnesAreKept) {
   Bench bench;
   PingConfig config = ping_of(40);
   config.ext_mode = 0x0200;
-  config.rle_threshold = 50;  // not of 16 bits
+  config.rle_threshold = 50;  // does not apply to 16-bit samples
   const PingRecord record = gemini::record(bench, config);
   EXPECT_TRUE(bench.jobs.at(0).sixteen_bit);
   EXPECT_EQ(record.samples, samples_of(40, [](std::uint8_t sample) { return sample; }));

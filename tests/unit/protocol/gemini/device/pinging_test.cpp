@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the head pings: run modes, rate limits, what ends or delays a ping (docs/protocols/gemini.md 1.5, 8).
+// Times of pings: run modes, rate limits, and events that end or delay a ping (docs/protocols/gemini.md 1.5,
+// 8).
 #include <algorithm>
 
 #include "bench.hpp"
@@ -35,7 +36,7 @@ TEST(Pinging, ContinuousIsStartToStart) {
   bench.lateness = [] { return 300us; };
   bench.command(ping_of(1205, RunMode::continuous, 150ms));
   bench.run_for(1s);
-  // 40 ms of rendering and 33 ms on the wire do not add to the interval, nor do late timers.
+  // 40 ms of rendering, 33 ms on the wire and late timers do not add to the interval.
   EXPECT_EQ(transmit_times(bench), (std::vector<TimePoint>{0ms, 150ms, 300ms, 450ms, 600ms, 750ms, 900ms}));
 }
 
@@ -43,7 +44,7 @@ TEST(Pinging, ContinuousSurvivesAStallWithoutCatchingUp) {
   Bench bench;
   bench.command(ping_of(100, RunMode::continuous, 100ms));
   bench.run_until(150ms);
-  bench.now = 930ms;  // for so long nobody has called
+  bench.now = 930ms;  // no step of the head until now
   bench.run_until(1200ms);
   EXPECT_EQ(transmit_times(bench), (std::vector<TimePoint>{0ms, 100ms, 930ms, 1030ms, 1130ms}))
       << "nobody remembers the pose of 200 ms";
@@ -89,7 +90,7 @@ TEST(Pinging, ShortestPeriodIsThatOfTheHardware) {
 
 TEST(Pinging, NoPingBeforeTheLastEchoIsBack) {
   DeviceConfig config = example_config();
-  config.line_period = 1us;  // so that the wire is no limit
+  config.line_period = 1us;  // so that the wire does not limit the rate
   config.min_ping_period = 1ms;
   Bench bench(config);
   bench.command(ping_of(9042, RunMode::continuous, 1ms));  // 75 m: 2R/c = 100 ms
@@ -164,7 +165,7 @@ TEST(Pinging, RenderLeadIsKept) {
   Bench bench(device);
   bench.renderer_answers = false;
   bench.command(ping_of(100, RunMode::continuous, 100ms));
-  ASSERT_EQ(bench.jobs.size(), 1U);  // the first has no notice
+  ASSERT_EQ(bench.jobs.size(), 1U);  // the first ping has no lead
   bench.image(test_image(bench.jobs[0]));
   bench.run_until(79ms);
   EXPECT_EQ(bench.jobs.size(), 1U);
@@ -240,7 +241,7 @@ TEST(Pinging, SingleConfigurationEndsAContinuousProgrammeWithOneLastPing) {
   bench.command(ping_of(120));
   bench.run_until(2s);
   const auto heads = bench.all<PingHead>();
-  ASSERT_EQ(heads.size(), 4U);  // 0, 100, 200 and the last one at 250 ms
+  ASSERT_EQ(heads.size(), 4U);  // at 0, 100, 200 ms, and the last one at 250 ms
   EXPECT_EQ(heads[3].first, 250ms);
   EXPECT_EQ(heads[3].second.end_range, 120);
 }
@@ -316,7 +317,7 @@ TEST(Pinging, SilenceCutsAPingThatIsLongerThanThat) {
   auto slow = to_head<NetworkConfig>();
   slow.inter_packet_gap = 65535;
   bench.command(slow);
-  bench.command(ping_of(20000));  // 524 us each: 10.5 s
+  bench.command(ping_of(20000));  // 524 us per line: 10.5 s
   bench.run_until(20s);
   EXPECT_LT(bench.ping_datagrams().back().at, 3s);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 0U);
@@ -435,7 +436,7 @@ TEST(Pinging, ImagesNobodyAskedForAreDropped) {
 }
 
 TEST(Pinging, AnswersWithinTheTimeThatAVehicleClientWaits) {
-  // Tail within 200 ms + 4R/c after the configuration, R/c = lines / (2 * 90422 Hz), uncompressed.
+  // The tail leaves within 200 ms + 4R/c of the configuration, R/c = lines / (2 * 90422 Hz), uncompressed.
   for (const int lines : {121, 1206, 3617, 6028, 9042, 14468, 18084}) {
     Bench bench;
     bench.render_time = 50ms;

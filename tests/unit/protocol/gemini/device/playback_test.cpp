@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head that plays back: it sends what it is fed, when that is due, whatever the topside asks for.
+// A head in playback sends the pings that it is fed when they are due, whatever the topside requests.
 #include <algorithm>
 
 #include "bench.hpp"
@@ -14,7 +14,7 @@ DeviceConfig player() {
   return config;
 }
 
-/// 40 lines of 4 native ones at 1480.5 m/s.
+/// A recorded ping of 40 lines, each 4 native lines long, at 1480.5 m/s.
 RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
   RecordedPing ping;
   ping.record = record;

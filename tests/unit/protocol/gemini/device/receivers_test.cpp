@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head against models of both generations of receiver libraries (docs/protocols/gemini.md 7.1, 7.2) over
-// a link that loses datagrams both ways: every ping whose head arrives must end complete and intact.
+// The head against models of both generations of receiver libraries (docs/protocols/gemini.md 7.1, 7.2), over
+// a link that loses datagrams both ways. Every ping whose head arrives must be complete and intact at its
+// end.
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -13,7 +14,7 @@
 namespace sonard::gemini {
 namespace {
 
-/// What a receiver wants sent, and what it has finished.
+/// A ping that a receiver has finished.
 struct Completed {
   std::uint64_t transmit_time_us = 0;
   int lost_lines = 0;
@@ -27,7 +28,7 @@ class Receiver {
   virtual std::optional<TimePoint> next_tick() const { return std::nullopt; }
   virtual void on_tick(TimePoint) {}
 
-  std::vector<RetryRequest> requests;  ///< to be sent now
+  std::vector<RetryRequest> requests;  ///< not yet sent
   std::vector<Completed> completed;
   std::optional<TimePoint> last_news;  ///< arrival of the newest head or end of a ping
 
@@ -136,7 +137,7 @@ class EarlyReceiver : public Receiver {
   bool armed_ = false;
 };
 
-/// Library 2.0.19: ping IDs must match, neighbouring lines in one request, no timer after a burst.
+/// Library 2.0.19: ping IDs must match, one request for neighbouring lines, no timer after a burst.
 class LaterReceiver : public Receiver {
  public:
   void on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) override {
@@ -195,7 +196,7 @@ class LaterReceiver : public Receiver {
   std::uint8_t ping_id_ = 0;
 };
 
-/// Head and receiver with a lossy link of 150 us each way between them.
+/// Head and receiver, with a lossy link of 150 us each way between them.
 class LossyBench {
  public:
   LossyBench(std::unique_ptr<Receiver> receiver, const DeviceConfig& device, double loss, unsigned seed)
@@ -208,13 +209,13 @@ class LossyBench {
   }
 
   Bench bench;
-  /// Datagrams that are never lost, by type: what the real library cannot repair either.
+  /// Types of datagrams that are never lost, because the real library cannot repair their loss either.
   std::set<std::uint8_t> sure;
   std::uint64_t lost_datagrams = 0;
 
   Receiver& receiver() { return *receiver_; }
 
-  /// The application: called whenever something has happened; may send commands through send().
+  /// The application. It is called after each event and may send commands through send().
   std::function<void(TimePoint)> application = [](TimePoint) {};
   void send(const Command& command) {
     const auto bytes = encode(command);
@@ -251,7 +252,7 @@ class LossyBench {
   }
   std::optional<TimePoint> next_event(TimePoint end) const {
     TimePoint next =
-        std::min(bench.next_event(), bench.now + 1ms);  // the application looks once per millisecond
+        std::min(bench.next_event(), bench.now + 1ms);  // the application runs once per millisecond
     next = to_topside_.empty() ? next : std::min(next, to_topside_.begin()->first);
     next = to_head_.empty() ? next : std::min(next, to_head_.begin()->first);
     next = std::min(next, receiver_->next_tick().value_or(next));
@@ -270,7 +271,7 @@ class LossyBench {
   std::multimap<TimePoint, std::vector<std::uint8_t>> to_head_;
 };
 
-/// Number of completed pings, each checked against what the renderer handed over.
+/// Checks each completed ping against the rendered image, and that at least `least` pings are complete.
 void expect_intact(LossyBench& link, std::size_t least) {
   const auto& completed = link.receiver().completed;
   EXPECT_GE(completed.size(), least);
@@ -294,7 +295,7 @@ PingConfig twenty_metres(RunMode mode, std::chrono::microseconds interval = 0us)
   return config;
 }
 
-/// Asks for the next ping when the last is complete, and again when nothing has come for a while.
+/// Requests the next ping when the last one is complete, and again after a time without datagrams.
 std::function<void(TimePoint)> ask_for_one_after_the_other(LossyBench& link, std::size_t& asked) {
   auto asked_at = std::make_shared<TimePoint>(-1s);
   return [&link, &asked, asked_at](TimePoint now) {
@@ -332,13 +333,13 @@ TEST_P(Receivers, EarlyLibraryGetsEveryContinuousPingWhoseHeadArrives) {
     }
   };
   link.run_until(3s);
-  expect_intact(link, link.bench.count(MessageType::ping_head) - 1);  // the last one may be on its way
+  expect_intact(link, link.bench.count(MessageType::ping_head) - 1);  // the last one may be under way
   EXPECT_GT(link.bench.count(MessageType::ping_head), 27U);
 }
 
 TEST_P(Receivers, EarlyLibraryAsFastAsPossibleIsRepairedBeforeTheNextHead) {
   LossyBench link(std::make_unique<EarlyReceiver>(), example_config(), 0.02, GetParam());
-  link.sure = {head_type, tail_type, 0x30};  // a tail lost in the last moment is beyond repair at this rate
+  link.sure = {head_type, tail_type, 0x30};  // at this rate a tail lost at the end cannot be repaired
   link.bench.render_time = 5ms;
   bool running = false;
   link.application = [&](TimePoint now) {
@@ -357,7 +358,7 @@ TEST_P(Receivers, LaterLibraryGetsEverySinglePing) {
   link.bench.render_time = 20ms;
   std::size_t asked = 0;
   link.application =
-      ask_for_one_after_the_other(link, asked);  // also after a lost tail, as its application does
+      ask_for_one_after_the_other(link, asked);  // also after a lost tail, like the library's application
   link.run_until(3s);
   expect_intact(link, 9);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a 720i sends what comes from a log, and what is told about requests that differ.
+// How a 720i sends a ping from a log, and which differences from the request are reported.
 #include "protocol/gemini/recorded_form.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ TEST(RecordedForm, CompressionFollowsFromTheLengthOfALine) {
     EXPECT_EQ(form->lines, 482);
     EXPECT_TRUE(form->exact);
   }
-  // As a .glf rounds it: 90422 / 16 = 5651.4, written as 5651.
+  // Rounded as in a .glf: 90422 / 16 = 5651.4 is written as 5651.
   EXPECT_TRUE(recorded_form(settings(1500.0 / (2 * 5651.0)))->exact);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Retry requests: what is served, when, and what is not (docs/protocols/gemini.md 7.3).
+// Retry requests: which ones the head serves, and when (docs/protocols/gemini.md 7.3).
 #include "protocol/gemini/retry_queue.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace sonard::gemini {
 namespace {
 
-/// "H", "3", "T" for originals; "h", "r3", "t" for repetitions; in the order of sending, from index `from`
-/// on.
+/// The ping datagrams in the order of sending, from index `from` on: "H", "3", "T" for originals, "h", "r3",
+/// "t" for repetitions.
 std::vector<std::string> story(const Bench& bench, std::size_t from = 0) {
   std::vector<std::string> words;
   for (const auto& datagram : bench.ping_datagrams(from)) {
@@ -134,7 +134,7 @@ TEST(Retries, AreServedWhileTheNextPingIsRendered) {
 TEST(Retries, ArePendingNoMoreOnceTheNextHeadHasLeft) {
   Bench bench;
   auto slow = to_head<NetworkConfig>();
-  slow.inter_packet_gap = 65535;  // 524 us for each: 100 lines take 52 ms, more than a head is held back
+  slow.inter_packet_gap = 65535;  // 524 us each: 100 lines take 52 ms, longer than a head is held
   bench.command(slow);
   bench.command(ping_of(100, RunMode::continuous, 100ms));
   bench.run_until(99ms);
@@ -144,7 +144,7 @@ TEST(Retries, ArePendingNoMoreOnceTheNextHeadHasLeft) {
   const auto words = story(bench);
   const auto second_head = std::find(words.begin() + 1, words.end(), "H");
   ASSERT_NE(second_head, words.end());
-  EXPECT_EQ(*(second_head - 1), "r97");  // the first at 99 ms, 97 more until 150 ms
+  EXPECT_EQ(*(second_head - 1), "r97");  // r0 at 99 ms, 97 more until 150 ms
   EXPECT_TRUE(std::none_of(second_head, words.end(), [](const std::string& word) { return word[0] == 'r'; }));
   EXPECT_GT(bench.device.counters().retries_dropped, 0U);
 }
@@ -187,7 +187,7 @@ TEST(Retries, AskedForInSinglePingModeAreServedBeforeTheNextHeadAndNoLonger) {
   bench.command(ping_of(1000));
   bench.run_for(100ms);
   const std::size_t before = bench.sent.size();
-  bench.command(retry_of(RetryKind::lines, 0, 100));  // 2.7 ms of lines, 32 of them at once
+  bench.command(retry_of(RetryKind::lines, 0, 100));  // 2.7 ms of lines, the first 32 at once
   bench.command(ping_of(100));
   bench.run_for(100ms);
   const auto words = story(bench, before);
@@ -202,7 +202,7 @@ TEST(Retries, HoldAHeadThatWasAskedForBeforeThem) {
   Bench bench;
   bench.command(ping_of(2000));  // 54 ms
   bench.run_until(10ms);
-  bench.command(ping_of(100));  // a topside that asks at its own pace
+  bench.command(ping_of(100));  // this topside does not wait for the end of a ping
   bench.run_until(20ms);
   bench.command(retry_of(RetryKind::lines, 10));
   bench.run_until(60ms);  // less than 10 ms after r10, which left with the tail
@@ -276,7 +276,7 @@ TEST(RetryQueue, LineServedAlreadyCanBeAskedForAgain) {
 TEST(RetryQueue, IsBounded) {
   RetryQueue queue;
   queue.reset(20000);
-  for (int i = 0; i < 20000; i += 2) {  // nothing to join
+  for (int i = 0; i < 20000; i += 2) {  // no ranges to join
     EXPECT_EQ(queue.push(lines(i, 1)), i < 8192);
   }
   EXPECT_EQ(queue.size(), 4096U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing that a peer sends makes the head grow, stall or talk for ever.
+// No datagrams from a peer make the head grow, stall or send without end.
 #include <algorithm>
 #include <memory>
 #include <random>
@@ -66,7 +66,7 @@ TEST(Robustness, RandomDatagramsAtRandomTimes) {
       if (bytes.size() >= 8 && draw(10) != 0) {
         bytes[0] = static_cast<std::uint8_t>(draw(20) == 0 ? 0xC8 : 0x20 + draw(0x18));
         if (bytes[0] == 0x2B && draw(20) != 0) {
-          bytes[0] = 0x30;  // few reboots, much talk
+          bytes[0] = 0x30;  // few reboots, many retry requests
         }
         bytes[2] = 0x59;
         bytes[3] = 0x02;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Status packets: discovery, contents, cadence (docs/protocols/gemini.md 1.3, 3.3, 8.3).
+// Status packets: discovery, content, period (docs/protocols/gemini.md 1.3, 3.3, 8.3).
 #include "bench.hpp"
 
 namespace sonard::gemini {
@@ -76,7 +76,7 @@ TEST(Status, TellsWhenTheHeadIsOutOfTheWater) {
   bench.set_out_of_water(true);
   bench.run_until(1s);
   EXPECT_EQ(bench.all<Status>().back().second.shutdown_status, 0b110) << "out of water, and stopped for it";
-  bench.command(ping_of(100));  // asks to ping out of water
+  bench.command(ping_of(100));  // requests to ping out of water
   bench.run_until(2s);
   EXPECT_EQ(bench.all<Status>().back().second.shutdown_status, 0b100) << "out of water, pinging all the same";
   bench.set_out_of_water(false);

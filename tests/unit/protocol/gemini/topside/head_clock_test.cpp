@@ -25,7 +25,7 @@ TEST(HeadClock, NeverClaimsMoreThanTheHeadShows) {
   const auto now = start + 10s;
   const auto estimate = std::chrono::microseconds{clock.at_least_us(now)};
   EXPECT_LE(estimate, 10s);
-  EXPECT_GE(estimate, 10s - 2ms);  // the slack; among the newest stamps some arrived at once
+  EXPECT_GE(estimate, 10s - 2ms);  // 2 ms of slack; some of the newest stamps arrived without delay
 }
 
 TEST(HeadClock, ForgetsWhenTheHeadIsStartedAgain) {

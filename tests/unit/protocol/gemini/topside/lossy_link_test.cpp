@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Topside and head at the two ends of a link that loses, doubles, delays and reorders datagrams, in virtual
-// time: every image asked for must arrive complete and as it was given to the head.
+// time. Every requested image must arrive complete and unchanged.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -31,7 +31,7 @@ struct LinkFaults {
   double loss = 0.0;
   double duplicate = 0.0;
   std::chrono::nanoseconds delay = 100us;
-  std::chrono::nanoseconds jitter{};  ///< added evenly; above the distance of datagrams it reorders them
+  std::chrono::nanoseconds jitter{};  ///< uniform; if it exceeds the distance of datagrams, it reorders them
 };
 
 struct Case {
@@ -66,7 +66,7 @@ class Bench {
     topside_.start(0s, config, static_cast<std::uint64_t>(settings.pings));
   }
 
-  /// Runs until the topside is done; false when that takes longer than `limit`.
+  /// Runs until the topside has finished. Returns false if that takes longer than `limit`.
   bool run(std::chrono::nanoseconds limit) {
     tell_head(TimePassed{});
     topside_.advance(now_);
@@ -82,7 +82,7 @@ class Bench {
   const std::vector<ReceivedPing>& pings() const { return pings_; }
   TimePoint now() const { return now_; }
 
-  /// What the head was given for the ping with this time stamp; nullptr if there was none.
+  /// The image that the head received for the ping with this time stamp; nullptr if there is none.
   const PingImage* image_sent(const ReceivedPing& ping) const {
     const auto found = images_.find(ping.head.transmit_time_us);
     return found == images_.end() ? nullptr : &found->second;
@@ -182,7 +182,7 @@ class Bench {
     } else {
       image.u8.resize(samples);
       for (auto& sample : image.u8) {
-        // Half of the samples are small, so that run-length coding has something to do.
+        // Half of the samples are small, so that run-length coding drops some.
         const auto value = random_();
         sample = static_cast<std::uint8_t>((value & 0x100) != 0 ? value & 0xFF : value & 0x07);
       }

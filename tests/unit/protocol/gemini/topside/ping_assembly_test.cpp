@@ -51,7 +51,7 @@ TEST(PingAssembly, LinesWaitForTheirHead) {
   const auto data = filled(5);
   EXPECT_EQ(assembly.add_line(line_of(1, data)), PingAssembly::Added::fresh);
   EXPECT_EQ(assembly.add_line(line_of(1, data)), PingAssembly::Added::duplicate);
-  EXPECT_EQ(assembly.add_line(line_of(9, data)), PingAssembly::Added::fresh);  // who knows, before the head
+  EXPECT_EQ(assembly.add_line(line_of(9, data)), PingAssembly::Added::fresh);  // line count still unknown
   assembly.set_head(head_of(2));
   EXPECT_EQ(assembly.lines_received(), 1);
   EXPECT_EQ(assembly.missing(0, 2), (std::vector<LineRange>{{0, 1}}));

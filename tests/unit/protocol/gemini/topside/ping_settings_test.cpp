@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truths are the worked example of docs/protocols/gemini.md 10 and the values seen from a later library
-// (tests/data/gemini/notes.md).
+// The expected values are the worked example of docs/protocols/gemini.md 10 and values seen from a later
+// library (tests/data/gemini/notes.md).
 #include "protocol/gemini/ping_settings.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Observed, RangeLines,
                                          ByRange{50, 1500, 6028}, ByRange{75, 1500, 9042},
                                          ByRange{120, 1500, 14468}, ByRange{10, 1450, 1247},
                                          ByRange{0.1, 1500, 32},       // never below 32
-                                         ByRange{400, 1500, 18084}));  // 150 m is the end
+                                         ByRange{400, 1500, 18084}));  // 150 m is the limit
 
 TEST(PingSettings, PulseAndFilterFollowTheRange) {
   struct Row {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The topside against a head that says exactly what the test wants, in virtual time.
+// The topside against a scripted head, in virtual time.
 #include "protocol/gemini/topside.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using testing::SizeIs;
 
 constexpr std::uint16_t sonar_id = 601;
 constexpr Ipv4 alternate = 0xC0A802C9;
-constexpr std::uint64_t head_us_at_0 = 5'000'000;  // the head has been up for 5 s when a test begins
+constexpr std::uint64_t head_us_at_0 = 5'000'000;  // the head has run for 5 s at the start of a test
 constexpr int lines = 40;
 
 template <class Message>
@@ -122,7 +122,7 @@ class TopsideTest : public testing::Test {
     now_ = end;
   }
 
-  /// What was said since the last call, of one type.
+  /// The messages of one type that the topside has sent since the last call.
   template <class Message>
   std::vector<Message> said() {
     std::vector<Message> messages;
@@ -138,7 +138,7 @@ class TopsideTest : public testing::Test {
     return messages;
   }
 
-  /// Retry requests since the last call, copies of one datagram as one: "head", "tail", "10" or "10+3".
+  /// Retry requests since the last call, with copies of one datagram merged: "head", "tail", "10" or "10+3".
   std::vector<std::string> asked() {
     std::vector<std::string> requests;
     for (const auto& retry : said<RetryRequest>()) {
@@ -154,7 +154,7 @@ class TopsideTest : public testing::Test {
     return requests;
   }
 
-  /// Status heard, first words said and forgotten, `pings` asked for.
+  /// Receives a status, drops the first messages of the topside, and starts `pings` pings (0: without end).
   void meet_and_start(const PingConfig& wanted, std::uint64_t pings = 0) {
     receive(status());
     receive(from_head(Diagnostic{}));
@@ -168,8 +168,7 @@ class TopsideTest : public testing::Test {
   TimePoint now_ = 0s;
 };
 
-// ---- Meeting a head
-// ---------------------------------------------------------------------------------------------
+// ---- Meeting a head ----
 
 TEST_F(TopsideTest, IsSilentUntilAStatusComes) {
   topside_.start(now_, config(), 1);
@@ -179,7 +178,7 @@ TEST_F(TopsideTest, IsSilentUntilAStatusComes) {
 }
 
 TEST_F(TopsideTest, PingsOfAnUnknownHeadAreIgnored) {
-  // A client before us has died; its head still pings.
+  // An earlier client has ended, and its head still pings.
   topside_.start(now_, config(RunMode::continuous), 1);
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -196,7 +195,7 @@ TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   receive(status());
   const auto sent = topside_.take_outgoing();
   ASSERT_GE(sent.size(), 2U);
-  // gemini.md 10; bytes 6 and 7 as the early library sends them.
+  // gemini.md 10, with bytes 6 and 7 as in the early library.
   EXPECT_EQ(sent[0].bytes,
             (std::vector<std::uint8_t>{0x31, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x0f, 0x0f, 0x00,
                                        0x00, 0x16, 0x05, 0x50, 0xc3, 0x00, 0x00, 0x00, 0x01, 0x10, 0x27}));
@@ -263,8 +262,7 @@ TEST_F(TopsideTest, BadDatagramsAreCounted) {
   EXPECT_EQ(topside_.statistics().bad_datagrams, 2U);
 }
 
-// ---- Single pings
-// -----------------------------------------------------------------------------------------------
+// ---- Single pings ----
 
 TEST_F(TopsideTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
   meet_and_start(config(), 2);
@@ -385,7 +383,7 @@ TEST_F(TopsideTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
 
-// What a head that is late with its image would otherwise be asked for in every ping (7.2).
+// Otherwise the topside would send a request in every ping of a head whose images are late (7.2).
 TEST_F(TopsideTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
   meet_and_start(config());
   hear_head(5);
@@ -404,12 +402,12 @@ TEST_F(TopsideTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   hear_lines(5, 10, lines - 11);
   hear_tail(5);
   hear_head(5, 0s + 1ms, true);
-  EXPECT_THAT(asked(), ElementsAre("39"));  // only now is it known how many there are
+  EXPECT_THAT(asked(), ElementsAre("39"));  // the count of lines is unknown until now
   hear_line(5, lines - 1, true);
   const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U + 1U);  // that of the next ping
+  EXPECT_EQ(topside_.statistics().configs_sent, 1U + 1U);  // plus the configuration of the next ping
 }
 
 TEST_F(TopsideTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
@@ -442,7 +440,7 @@ TEST_F(TopsideTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
   }
   hear_head(5, transmitted, true);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
-  hear_head(5, transmitted, true);  // the answer to the second copy of the question
+  hear_head(5, transmitted, true);  // the answer to the second copy of the request
   EXPECT_THAT(said<PingConfig>(), IsEmpty());
   EXPECT_EQ(topside_.statistics().pings_complete, 1U);
 }
@@ -482,7 +480,7 @@ TEST_F(TopsideTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
-  hear_line(6, 0);  // the configuration came twice
+  hear_line(6, 0);  // the head received the configuration twice
   const auto pings = topside_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].head.ping_id, 5);
@@ -503,7 +501,7 @@ TEST_F(TopsideTest, CanStartAgainAfterAStop) {
 }
 
 TEST_F(TopsideTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
-  meet_and_start(config(RunMode::continuous));  // asks for 10 pings a second
+  meet_and_start(config(RunMode::continuous));  // requests 10 pings per second
   for (int id = 0; id < 5; ++id) {
     hear_ping(id);
     pass(1500ms);
@@ -520,10 +518,10 @@ TEST_F(TopsideTest, ASecondPingToARepeatedConfigurationIsLetPass) {
   static_cast<void>(topside_.take_outgoing());
   EXPECT_THAT(topside_.take_pings(), SizeIs(1));
   pass(5ms);
-  hear_ping(6);  // the first configuration had arrived too
+  hear_ping(6);  // the head received the first configuration too
   EXPECT_THAT(topside_.take_pings(), IsEmpty());
   EXPECT_EQ(topside_.statistics().pings_unrequested, 1U);
-  EXPECT_THAT(said<PingConfig>(), SizeIs(1));  // the next one waited for its end
+  EXPECT_THAT(said<PingConfig>(), SizeIs(1));  // the next one waited for the end of ping 6
   hear_ping(7);
   EXPECT_THAT(topside_.take_pings(), SizeIs(1));
 }
@@ -531,7 +529,7 @@ TEST_F(TopsideTest, ASecondPingToARepeatedConfigurationIsLetPass) {
 TEST_F(TopsideTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
   now_ = 2s;
   meet_and_start(config(), 1);
-  // A client before us asked for it and died; it is being sent.
+  // An earlier client requested this ping and ended. The head is still sending it.
   hear_head(9, now_ - 500ms);
   hear_lines(9, 0, 20);
   hear_lines(9, 25, 15);
@@ -596,8 +594,7 @@ TEST_F(TopsideTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
-// ---- Continuous
-// -------------------------------------------------------------------------------------------------
+// ---- Continuous ----
 
 TEST_F(TopsideTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
   meet_and_start(config(RunMode::continuous), 3);
@@ -661,7 +658,7 @@ TEST_F(TopsideTest, SkippedIdsAreMissedPings) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(255);
   hear_ping(2);
-  EXPECT_EQ(topside_.statistics().pings_missed, 2U);  // 0 and 1
+  EXPECT_EQ(topside_.statistics().pings_missed, 2U);  // pings 0 and 1
 }
 
 TEST_F(TopsideTest, AProgrammeThatFallsSilentIsSentAgain) {
