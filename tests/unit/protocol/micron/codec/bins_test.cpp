@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two bins to a byte (docs/protocols/micron.md 6.3, 10).
+// Two bins per byte (docs/protocols/micron.md 6.3, 10).
 #include "protocol/micron/bins.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The 4-bit example of section 10, as its two readers see it.
+// The 4-bit example of section 10, in both orders of nibbles.
 const Bytes packed{0xF8, 0x10, 0x0A, 0x40};
 const Bytes high_first{15, 8, 1, 0, 0, 10, 4, 0};
 const Bytes low_first{8, 15, 0, 1, 10, 0, 0, 4};
@@ -27,7 +27,7 @@ TEST(Nibbles, odd_number_is_filled_up_with_zero) {
 }
 
 TEST(FourBit, window_from_ad_low_on) {
-  // AD low 40 (13 dB), AD span 38 (12 dB): 0 is 13 dB, 15 is 25 dB and above.
+  // AD low 40 (13 dB), AD span 38 (12 dB): 0 means up to 13 dB, 15 means 25 dB and above.
   EXPECT_EQ(to_four_bit(0, 40, 38), 0);
   EXPECT_EQ(to_four_bit(40, 40, 38), 0);
   EXPECT_EQ(to_four_bit(42, 40, 38), 0);  // 2 * 16 / 38 < 1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte examples, both ways: what the bytes mean, and which bytes the values become
+// The byte examples in both directions: bytes to values, and values to bytes
 // (docs/protocols/micron.md 10; tests/data/micron/notes.md).
 #include <gtest/gtest.h>
 
@@ -143,7 +143,7 @@ BBUserData user_blocks_example() {
   return blocks;
 }
 
-// Lines only view their bins.
+// Lines are views of their bins, so the bins must outlive them.
 const Bytes eight_bins{0xB0, 0x40, 0x0A, 0x12, 0x14, 0xE6, 0x40, 0x0A};
 const Bytes eight_nibbles{0xF8, 0x10, 0x0A, 0x40};
 const Bytes counted_bins = [] {
@@ -268,7 +268,7 @@ TEST(Examples, cover_every_message_and_every_fixture) {
     reports.insert(example.value.index());
     fixtures.insert(example.fixture);
   }
-  // All but Unknown, which is no message of its own.
+  // All but Unknown, which is no message.
   EXPECT_EQ(commands.size(), std::variant_size_v<Command> - 1);
   EXPECT_EQ(reports.size(), std::variant_size_v<Report> - 1);
   const auto names = fixture_names();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in a stream: any chunks, noise, lengths that lie, frames that were cut (docs/protocols/micron.md 2).
+// Frames in a stream: any chunks, noise, wrong lengths, cut frames (docs/protocols/micron.md 2).
 #include "protocol/micron/frame.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Bytes operator+(Bytes a, const Bytes& b) {
   return a;
 }
 
-/// All frames that a buffer finds at once.
+/// All frames that are complete in the buffer now.
 std::vector<Bytes> frames_in(FrameBuffer& buffer, TimePoint now) {
   std::vector<Bytes> frames;
   while (const auto frame = buffer.front(now)) {
@@ -138,7 +138,7 @@ TEST(FrameBuffer, survives_noise_in_any_chunks) {
   }
 }
 
-// The reboot of one public driver says it is 18 bytes long and is 14 (2.4).
+// The reboot command of one public driver states a length of 18 bytes and has 14 (2.4).
 const Bytes cut_reboot{0x40, 0x30, 0x30, 0x30, 0x43, 0x0C, 0x00, 0xFF, 0x02, 0x07, 0x10, 0x80, 0x02, 0x0A};
 
 TEST(FrameBuffer, a_head_command_that_lost_a_byte_costs_no_other_command) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each field at its documented offset. The examples leave most fields zero or equal to a neighbour, so that a
-// swapped pair would pass them; here every data byte holds its own offset, low 8 bits, and no two fields
-// agree (docs/protocols/micron.md 5, 6).
+// Each field at its documented offset (docs/protocols/micron.md 5, 6). In the examples most fields are zero
+// or equal to a neighbour, so they cannot detect a swapped pair. Here every data byte holds the low 8 bits of
+// its own offset, so all fields differ.
 #include <gtest/gtest.h>
 
 #include "protocol/micron/codec.hpp"
@@ -10,7 +10,7 @@
 namespace sonard::micron::testing {
 namespace {
 
-/// A frame in which byte i is i, but for what stands around the data.
+/// A frame in which data byte i is i. The bytes around the data are valid.
 Bytes counting_frame(bool from_head, MessageType type, std::size_t size) {
   Bytes data(size - min_frame_size);
   for (std::size_t i = 0; i < data.size(); ++i) {
@@ -20,7 +20,7 @@ Bytes counting_frame(bool from_head, MessageType type, std::size_t size) {
   return make(2, static_cast<std::uint8_t>(type), data);
 }
 
-/// What a little-endian integer at `offset` of such a frame reads as.
+/// The value of a little-endian integer at `offset` of a counting frame.
 constexpr std::uint64_t at(std::size_t offset, std::size_t width) {
   std::uint64_t value = 0;
   for (std::size_t i = width; i-- > 0;) {
@@ -90,7 +90,8 @@ TEST(Layout, short_form_of_the_head_command_may_have_any_length_that_holds_it) {
   }
 }
 
-// What a head does without may be absent: of this command all that follows the number of bins.
+// Fields that a head does not need may be absent. In this command these are all fields after the number of
+// bins.
 TEST(Layout, fields_at_the_end_of_a_command_may_be_absent) {
   for (const std::size_t size : {56U, 58U, 65U}) {
     Bytes bytes = counting_frame(false, MessageType::head_command, size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that mean nothing are refused, with the place; nothing is read beyond its end.
+// Invalid bytes are refused with their offset, and nothing is read beyond the end.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head wants done beside its frames: log lines, a renderer left in peace, figures.
+// Actions of a head besides frames: log lines, cancelled jobs, statistics.
 #include <algorithm>
 #include <string_view>
 
@@ -66,13 +66,13 @@ TEST(Notices, say_ready_when_nothing_has_been_asked_for_in_two_seconds) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(10);
-  bench.run_for(1s);  // what is still owed
+  bench.run_for(1s);  // the lines still owed
   const TimePoint last_line = bench.all<HeadData>().back().first;
   ASSERT_EQ(bench.device.state(bench.now), HeadState::ready);
   EXPECT_EQ(states(bench).back(), "scanning");
   bench.run_until(last_line + 2s - 1ms);
   EXPECT_EQ(states(bench).back(), "scanning");
-  bench.run_until(last_line + 3s);  // the next alive tells
+  bench.run_until(last_line + 3s);  // the next alive updates the state
   EXPECT_EQ(states(bench).back(), "ready");
   bench.run_for(20s);
   EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready", "scanning", "ready"}));
@@ -299,7 +299,7 @@ TEST(Jobs, say_what_is_unusual_about_a_ping) {
 TEST(Jobs, have_the_time_since_power_came) {
   Bench bench;
   bench.make_ready(all_round());
-  bench.command(SendData{61'891'786});  // the clock of alives follows the host, this one does not
+  bench.command(SendData{61'891'786});  // sets the clock of alives, not the clock of jobs
   ASSERT_EQ(bench.jobs.size(), 1U);
   EXPECT_EQ(bench.jobs[0].transmit_time, bench.now);
   EXPECT_EQ(bench.jobs[0].transmit_us, static_cast<std::uint64_t>(bench.now / 1us));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each command is answered with, byte for byte (docs/protocols/micron.md 3, 5, 6, 7.2).
+// The answer to each command, byte for byte (docs/protocols/micron.md 3, 5, 6, 7.2).
 #include "bench.hpp"
 
 namespace sonard::micron {
@@ -36,7 +36,7 @@ TEST(Answers, user_blocks_are_followed_by_fpga_data_and_set_sent_config) {
   ASSERT_EQ(blocks.size(), 264U);
   EXPECT_EQ(blocks[19], 15);
   EXPECT_EQ(blocks[146], 0);
-  // Beside what only MINIK's field order names, they are those of section 10.
+  // The blocks equal those of section 10, except for the fields that only MINIK's field order names.
   for (const std::size_t named : {33U, 35U, 37U, 59U}) {
     EXPECT_NE(blocks[named], 0);
     blocks[named] = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head on a bench: virtual time, a renderer that takes a set time, everything said written down.
+// A head in virtual time, with a renderer that takes a set time. The bench records every frame sent.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@ namespace sonard::micron {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Frames as drivers send them and heads answer them (tests/data/micron).
+/// A frame as drivers send it or heads answer it (tests/data/micron).
 inline Bytes fixture(const std::string& name) {
   return sonard::testing::load_hex_fixture("micron", name);
 }
 
-/// Any values that tell pings and bins apart.
+/// Arbitrary values that differ between pings and bins.
 inline std::uint8_t test_sample(std::uint64_t ping, std::size_t bin) {
   return static_cast<std::uint8_t>(ping * 31 + bin * 7);
 }
@@ -44,7 +44,7 @@ inline PingImage test_line(const PingJob& job) {
   return image;
 }
 
-/// A sector from `left` to `right`, clockwise first; 20 bins, so that lines are quick.
+/// A sector from `left` to `right`, clockwise first, with 20 bins for quick lines.
 inline HeadCommand sector(std::uint16_t left, std::uint16_t right, std::uint8_t step = 32) {
   HeadCommand command;
   command.control = 0x2305;
@@ -55,7 +55,7 @@ inline HeadCommand sector(std::uint16_t left, std::uint16_t right, std::uint8_t 
   return command;
 }
 
-/// All round to the right, or to the left; 20 bins.
+/// A full turn to the right, or to the left, with 20 bins.
 inline HeadCommand all_round(std::uint8_t step = 32, bool right = true) {
   HeadCommand command = sector(0, 0, step);
   command.control = right ? 0x2307 : 0x2303;
@@ -73,15 +73,15 @@ class Bench {
     step(TimePassed{});
   }
 
-  // What a test sets.
+  // Set by tests.
   std::chrono::nanoseconds render_time{0};
   std::function<PingImage(const PingJob&)> render = test_line;
   bool renderer_answers = true;  ///< false: the test answers the jobs itself
   bool renderer_fails = false;
-  /// Sees each frame as it is sent; may not call the bench.
+  /// Called for each frame as it is sent. It must not call the bench.
   std::function<void(const Sent&)> on_sent;
 
-  // What a test looks at.
+  // Read by tests.
   Device device;
   TimePoint now{};
   std::vector<Sent> sent;
@@ -96,7 +96,7 @@ class Bench {
   void command(const Command& command) { raw(encode(command, node_)); }
   void answer(const PingImage& line) { step(PingRendered{line}); }
   void fail(std::uint64_t number) { step(PingNotRendered{number}); }
-  /// The head is turned to a bearing and then rebooted; nothing said so far counts. Returns when that was.
+  /// Turns the head to a bearing, reboots it and clears `sent`. Returns the time of the reboot.
   TimePoint reboot_at(std::uint16_t bearing) {
     command(sector(bearing, bearing));
     run_for(3s);
@@ -109,9 +109,9 @@ class Bench {
     step(TimePassed{});
   }
 
-  /// When something happens next of itself.
+  /// Time of the next event without input from the test.
   TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
-  /// One thing happens.
+  /// Runs until after the next event.
   void run_once() {
     now = std::max(now, next_event());
     if (job_ && job_->first <= now) {
@@ -132,14 +132,14 @@ class Bench {
     now = std::max(now, end);
   }
   void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
-  /// Centred, with these parameters, and ready to ping; nothing said so far counts.
+  /// Centres the head, sends these parameters and clears `sent`. The head can then ping.
   void make_ready(const HeadCommand& parameters) {
     run_until(10s);
     command(parameters);
     run_for(2s);
     sent.clear();
   }
-  /// Asks, as most drivers do, for another line whenever one has come, until there are `count`.
+  /// Requests another line after each line, as most drivers do, until there are `count` lines.
   std::vector<HeadData> scan(std::size_t count) {
     const std::size_t from = sent.size();
     std::size_t seen = 0;
@@ -159,7 +159,7 @@ class Bench {
     return lines;
   }
 
-  /// The messages of one type among those sent from index `from` on. Lines view `sent`.
+  /// The messages of one type among those sent from index `from` on. Lines are views of `sent`.
   template <class Message>
   std::vector<std::pair<TimePoint, Message>> all(std::size_t from = 0) const {
     std::vector<std::pair<TimePoint, Message>> found;
@@ -175,7 +175,7 @@ class Bench {
     }
     return found;
   }
-  /// HeadInf of every alive sent so far.
+  /// HeadInf of every alive sent from index `from` on.
   std::vector<int> head_infos(std::size_t from = 0) const {
     std::vector<int> infos;
     for (const auto& [at, alive] : all<Alive>(from)) {
@@ -216,7 +216,7 @@ class Bench {
   std::optional<std::pair<TimePoint, PingJob>> job_;
 };
 
-/// What a log shows of a job; empty: nothing.
+/// The value of a job's setting as a log shows it; empty if the job lacks it.
 inline std::string setting(const PingJob& job, std::string_view name) {
   const auto found = std::ranges::find(job.settings, name, &Setting::name);
   return found == job.settings.end() ? std::string() : found->value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way in of each family of drivers, with its own bytes, its own conditions and its own patience
+// The start-up and scan of each family of drivers, with its own bytes, conditions and timeouts
 // (docs/protocols/micron.md 9), over clean and over poor lines.
 #include "driver.hpp"
 
@@ -8,13 +8,13 @@ namespace {
 
 class Clients : public ::testing::TestWithParam<Link> {};
 
-/// 9.1. Its conditions on an alive are "in centre" and not "centred", which it takes for "configured". It
-/// looks at the first alive after its reboot, sends its parameters, at others only while that one does not
-/// please it, and then at one more, which has to. Its reconfiguration may send parameters before that.
+/// 9.1. An alive counts as "configured" if it has "in centre" and not "centred". The driver reads the first
+/// alive after its reboot and sends its parameters. It reads more alives only until one counts. One more
+/// alive must then count, or it gives up. A reconfiguration may send parameters before that alive.
 void ros_begin(Driver& driver, bool stale_alive, bool reconfigures) {
   const auto configured = [](const Bytes& alive) { return (alive[20] & 0x03) == 0x01; };
   driver.write("reboot");
-  if (stale_alive) {  // one that came before the reboot pleases nobody, and the parameters are lost
+  if (stale_alive) {  // an alive from before the reboot does not count, and the parameters are lost
     driver.write("head_command_ros");
   }
   auto alive = driver.await(MessageType::alive, 2s);
@@ -35,8 +35,8 @@ void ros_begin(Driver& driver, bool stale_alive, bool reconfigures) {
   ASSERT_TRUE((*alive)[20] & 0x08);
 }
 
-// One start in a hundred takes an alive from before its reboot for an answer to it. Then its parameters are
-// lost, and it needs two alives of the centring head; so it does if no alive answers its parameters.
+// One start in a hundred takes an alive from before the reboot for an answer to it. Then its parameters are
+// lost, and it needs two alives of the centring head. It also needs two if no alive answers its parameters.
 TEST(Clients, ros_gets_two_alives_of_a_centring_head) {
   for (const bool alive_after_head_command : {false, true}) {
     for (const bool stale_alive : {false, true}) {
@@ -61,7 +61,7 @@ TEST_P(Clients, ros) {
   std::vector<int> bearings;
   for (int misses = 0; bearings.size() < 60;) {
     driver.write("send_data");
-    // Its read has no timeout: it finds out that a second has gone when something comes.
+    // Its read has no timeout. It checks whether a second has passed only when a frame arrives.
     const TimePoint asked = driver.bench().now;
     std::optional<Bytes> frame;
     do {
@@ -81,7 +81,7 @@ TEST_P(Clients, ros) {
   driver.write("reboot");
 }
 
-/// The comparison that the ROCK driver makes with every line.
+/// The checks that the ROCK driver makes on every line.
 void expect_echo(const Bytes& command, const Bytes& line) {
   EXPECT_EQ(line[16] & 0x02, 0);
   EXPECT_EQ(line[18] & 0x0B, command[14] & 0x0B);
@@ -94,7 +94,7 @@ void expect_echo(const Bytes& command, const Bytes& line) {
   EXPECT_EQ(line[13] | line[14] << 8, static_cast<int>(line.size()) - 14);
 }
 
-// 9.2, the order of its component.
+// 9.2, in the order of the ROCK component.
 TEST_P(Clients, rock) {
   Driver driver(GetParam());
   const Bytes command = fixture("head_command_rock");
@@ -116,7 +116,7 @@ TEST_P(Clients, rock) {
   }
 }
 
-// 9.2, the calls of its library: reboot, version, duplex, then several configurations.
+// 9.2, the calls of the ROCK library: reboot, version, duplex, then several configurations.
 TEST_P(Clients, rock_library) {
   Driver driver(GetParam());
   driver.write("reboot");
@@ -141,8 +141,8 @@ TEST_P(Clients, rock_library) {
   }
 }
 
-// 9.3. Of the whole way in, 0.7 s are the first alive and 1.7 s the boot and an alive of the centring head;
-// two alives later it has its parameters.
+// 9.3. The start takes 4.4 s: 0.7 s to the first alive, and 1.7 s for the boot and an alive of the centring
+// head. Two alives later the head has its parameters.
 TEST_P(Clients, uxv) {
   Driver driver(GetParam());
   const TimePoint begin = driver.bench().now;
@@ -190,7 +190,7 @@ TEST_P(Clients, uxv) {
   EXPECT_EQ((*line)[26], 84);
 }
 
-// 9.4: reboots, waits for a head that is centred and stands, asks again and again, keeps requests ahead.
+// 9.4: reboots, waits for a head that is centred and at rest, repeats requests, keeps requests ahead.
 TEST_P(Clients, cauv) {
   Driver driver(GetParam());
   driver.write("reboot");
@@ -209,7 +209,8 @@ TEST_P(Clients, cauv) {
   }
 }
 
-// 9.4: the long form with a gain block, a wait of 5 s, requests again after 1.5 s, live gain.
+// 9.4: the long form with a gain block, a wait of 5 s, another request after 1.5 s, gain changes while
+// scanning.
 TEST_P(Clients, provider_sonar) {
   Driver driver(GetParam());
   driver.sleep(1s);
@@ -218,7 +219,7 @@ TEST_P(Clients, provider_sonar) {
   int tries = 0;
   do {
     ASSERT_LT(tries++, 3);
-    driver.write("send_version");  // the first one is lost: the alive was from before the reboot
+    driver.write("send_version");  // the first request is lost, because the alive was from before the reboot
   } while (!driver.await(MessageType::version_data, 1s));
   const auto alive = driver.await(MessageType::alive, 2s);
   ASSERT_TRUE(alive);
@@ -240,7 +241,7 @@ TEST_P(Clients, provider_sonar) {
   EXPECT_EQ((*line)[30], 15);
 }
 
-// 9.4: polls at its own pace, never asks about anything.
+// 9.4: polls at its own pace and never repeats a request.
 TEST_P(Clients, project_rinzler) {
   Driver driver(GetParam());
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
@@ -262,7 +263,8 @@ TEST_P(Clients, project_rinzler) {
   }
 }
 
-// 9.4, the C client of 2024: long pauses, no alives, short lines; it throws away what came while it slept.
+// 9.4, the C client of 2024: long pauses, no alives, short lines. It discards all bytes that arrive in a
+// pause.
 TEST_P(Clients, linux_c) {
   Driver driver(GetParam());
   driver.sleep(5s);
@@ -300,7 +302,7 @@ std::string link_name(const ::testing::TestParamInfo<Link>& info) {
 
 INSTANTIATE_TEST_SUITE_P(links, Clients, ::testing::Values(clean, split, noisy, poor, half), link_name);
 
-// These count on two lines for a request.
+// These drivers expect two lines per request.
 class FullDuplexClients : public ::testing::TestWithParam<Link> {};
 INSTANTIATE_TEST_SUITE_P(links, FullDuplexClients, ::testing::Values(clean, split, noisy, poor, fresh),
                          link_name);
@@ -330,7 +332,7 @@ TEST_P(FullDuplexClients, miniking_library) {
   }
 }
 
-// 9.4: stops the alives, and goes on without them.
+// 9.4: stops the alives and continues without them.
 TEST_P(FullDuplexClients, uwe) {
   Driver driver(GetParam());
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
@@ -350,8 +352,8 @@ TEST_P(FullDuplexClients, uwe) {
   EXPECT_EQ(driver.bench().all<Alive>().size(), before);
 }
 
-// 9.4: a reboot that says it is longer than it is, one second, parameters and a request; it never listens to
-// an alive. So nothing that comes a second after the reboot may be lost.
+// 9.4: a reboot whose stated length is too long, a pause of one second, parameters and a request. The driver
+// never reads an alive, so no command from one second after the reboot may be lost.
 TEST_P(FullDuplexClients, acfr) {
   Driver driver(GetParam());
   driver.sleep(1s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A driver's end of the line, in the style of a program that blocks, in virtual time.
+// A driver's end of the line, with blocking calls in virtual time.
 #pragma once
 
 #include <random>
@@ -13,17 +13,17 @@ struct Link {
   bool split = false;  ///< every write arrives in two pieces, 5 ms apart
   bool noise = false;  ///< random bytes before every write, with many '@' and line feeds among them
   bool half_duplex = false;
-  bool freshly_powered = false;  ///< the driver starts with the head, not long after it
+  bool freshly_powered = false;  ///< the driver starts together with the head, not long after it
 };
 
-/// As a driver meets it that starts together with the daemon.
+/// The link of a driver that starts together with the daemon.
 inline constexpr Link fresh{.name = "fresh", .freshly_powered = true};
 
 inline void PrintTo(const Link& link, std::ostream* out) {
   *out << link.name;
 }
 
-/// A driver's end of the line, in the style of a program that blocks.
+/// A driver's end of the line, with blocking calls.
 class Driver {
  public:
   explicit Driver(const Link& link, const DeviceConfig& config = {})
@@ -59,7 +59,7 @@ class Driver {
   void sleep(std::chrono::nanoseconds time) { bench_.run_for(time); }
   void flush() { read_ = bench_.sent.size(); }
 
-  /// The next frame, whatever it is.
+  /// The next frame of any type; nullopt after `timeout`.
   std::optional<Bytes> read(std::chrono::nanoseconds timeout) {
     const TimePoint end = bench_.now + timeout;
     while (read_ == bench_.sent.size()) {
@@ -71,7 +71,7 @@ class Driver {
     }
     return bench_.sent[read_++].bytes;
   }
-  /// The next frame of a type that meets a condition; others are skipped.
+  /// The next frame of a type that meets a condition; other frames are skipped. nullopt after `timeout`.
   std::optional<Bytes> await(
       MessageType type, std::chrono::nanoseconds timeout,
       const std::function<bool(const Bytes&)>& meets = [](const Bytes&) { return true; }) {
@@ -83,7 +83,7 @@ class Driver {
     }
     return std::nullopt;
   }
-  /// An alive whose HeadInf has these bits set and those clear.
+  /// The next alive whose HeadInf has all bits of `set` set and all bits of `clear` clear.
   std::optional<Bytes> await_alive(int set, int clear, std::chrono::nanoseconds timeout) {
     return await(MessageType::alive, timeout,
                  [&](const Bytes& alive) { return (alive[20] & set) == set && (alive[20] & clear) == 0; });

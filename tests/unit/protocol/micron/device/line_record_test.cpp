@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a log is told of a line, and how that becomes a line again.
+// The record of a line for logs, and the line that is made from a record.
 
 #include "bench.hpp"
 #include "protocol/micron/recorded_form.hpp"
@@ -70,7 +70,7 @@ TEST(LineRecord, says_what_the_line_was_made_with) {
 
 TEST(LineRecord, looks_where_the_beam_looked_and_says_what_the_head_said) {
   DeviceConfig config;
-  config.mounted_inverted = true;  // and the host does not know
+  config.mounted_inverted = true;  // the host ignores the mounting
   Bench bench(config);
   bench.make_ready(sector(3520, 4800));
   const HeadData line = bench.scan(1)[0];
@@ -104,7 +104,7 @@ TEST(LineRecord, has_the_settings_that_the_ping_was_made_with) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});
-  bench.raw(fixture("gain"));  // while the head listens: it shows in the next line
+  bench.raw(fixture("gain"));  // arrives while the head listens, so the next line shows it
   bench.run_for(1s);
   ASSERT_EQ(bench.records.size(), 2U);
   EXPECT_DOUBLE_EQ(bench.records[0].settings.gain_percent, 50.0);
@@ -117,7 +117,7 @@ TEST(LineRecord, comes_with_the_line) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});
-  bench.run_for(1us);  // rendered; the head still listens
+  bench.run_for(1us);  // rendered, but the head still listens
   EXPECT_TRUE(bench.records.empty());
   std::size_t lines = 0;
   while (lines < 2) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a line says and holds, and what the renderer is asked for (docs/protocols/micron.md 4, 6.3).
+// Fields and samples of a line, and the job for the renderer (docs/protocols/micron.md 4, 6.3).
 #include <tuple>
 
 #include "bench.hpp"
@@ -9,7 +9,7 @@ namespace sonard::micron {
 namespace {
 
 TEST(Line, is_the_published_frame) {
-  // Section 10: 8 bins, at 3232, the second line of a scan to the right.
+  // Section 10: 8 bins, bearing 3232, the second line of a scan to the right.
   Bench bench;
   HeadCommand command;
   command.bins = 8;
@@ -55,7 +55,7 @@ TEST(Line, of_the_rock_driver_begins_as_recorded) {
   bench.sent.clear();
   const auto lines = bench.scan(84);
   const Bytes bytes = encode(lines.back());
-  // Section 10, first 44 bytes but for bearing: 200 bins, 245 bytes in all.
+  // Section 10, first 40 of 245 bytes, before the bearing: 200 bins.
   const Bytes expected{0x40, 0x30, 0x30, 0x45, 0x46, 0xEF, 0x00, 0x02, 0xFF, 0x00, 0x02, 0x80, 0x02, 0xE7,
                        0x00, 0x11, 0x10, 0x00, 0x83, 0x23, 0x64, 0x00, 0x00, 0x00, 0x00, 0x00, 0x54, 0x00,
                        0x00, 0x51, 0x08, 0x00, 0x00, 0x68, 0x00, 0x00, 0x00, 0x00, 0x00, 0x58};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings that begin when somebody else says so: a simulated time rules.
+// Pings that wait for a permission, because a simulator's clock decides when they begin.
 #include "bench.hpp"
 #include "protocol/micron/line_timing.hpp"
 
@@ -15,7 +15,7 @@ DeviceConfig waiting() {
 struct PingGrant : ::testing::Test {
   Bench bench{waiting()};
 
-  /// Grants what the head would begin by now, as a server does.
+  /// Grants the ping that the head would begin by now, as a server does. Returns false if there is none.
   bool grant() {
     const auto next = bench.last.next_ping;
     if (!next || next->from > bench.now) {
@@ -57,10 +57,10 @@ TEST_F(PingGrant, LinesAreTheSameAndInOrderHoweverFast) {
   std::vector<HeadData> lines;
   for (int line = 0; line < 20; ++line) {
     if (line % 2 == 0) {
-      bench.command(SendData{});  // two lines
+      bench.command(SendData{});  // requests two lines
     }
     ASSERT_TRUE(grant());
-    bench.run_for(1ms);  // no head turns as fast as that by its own clock
+    bench.run_for(1ms);  // a head that uses its own clock cannot turn as fast
   }
   ASSERT_EQ(bench.all<HeadData>().size(), 20U);
 

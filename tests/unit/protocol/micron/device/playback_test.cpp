@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head that plays back: it sends what it is fed, when that is due, whatever the host asks for.
+// A head in playback sends the lines that it is fed when they are due, whatever the host requests.
 #include "bench.hpp"
 #include "protocol/micron/recorded_form.hpp"
 
@@ -12,7 +12,7 @@ DeviceConfig player() {
   return config;
 }
 
-/// At 1000, of 8 bits, from a sector that no test asks for.
+/// A line of 8 bits at bearing 1000, from a sector that no test requests.
 HeadData recorded_head_data() {
   HeadData line;
   line.status = head_status_bits::eight_bit;
@@ -28,13 +28,13 @@ HeadData recorded_head_data() {
   return line;
 }
 
-/// 30 bins; 30 * 100 * 640 ns of listening: 1.92 ms.
+/// A recorded line of 30 bins. It listens for 30 * 100 * 640 ns = 1.92 ms.
 RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt,
                       const HeadData& line = recorded_head_data()) {
   RecordedPing ping;
   ping.record = record;
   ping.settings = {.bins = 30, .beams = 1, .bin_m = 100 * 640e-9 * 1480.0 / 2.0, .sound_speed_mps = 1480.0};
-  ping.bearing_rad = 2.16;  // mounted boot down: on the other side
+  ping.bearing_rad = 2.16;  // mounted boot down, so the bearing is mirrored
   ping.wire = recorded_wire(line, default_head_node);
   ping.due = due;
   return ping;

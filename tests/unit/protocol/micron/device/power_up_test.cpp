@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From power to a scan, as the alives tell it (docs/protocols/micron.md 6.2, 7).
+// From power-up to a scan, as the alives show it (docs/protocols/micron.md 6.2, 7).
 #include "bench.hpp"
 
 namespace sonard::micron {
@@ -54,7 +54,7 @@ TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
 }
 
 TEST(PowerUp, alives_are_the_published_frames) {
-  // 4A at 6266 ms with position 3200, then CA, when user blocks were asked for, and 8A (section 10).
+  // 4A at 6266 ms with position 3200, CA after a request for user blocks, then 8A (section 10).
   DeviceConfig config;
   config.boot_time = 266ms;
   config.alive_after_head_command = false;
@@ -74,7 +74,7 @@ TEST(Reboot, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
   DeviceConfig config;
   config.alive_period = 500ms;
   Bench bench(config);
-  bench.run_until(bench.reboot_at(6399) + 4s);  // 179.94 degrees of starboard, through 4800
+  bench.run_until(bench.reboot_at(6399) + 4s);  // 179.94 degrees to starboard of ahead, through 4800
   std::vector<int> positions;
   for (const auto& [at, alive] : bench.all<Alive>()) {
     positions.push_back(alive.position);
@@ -104,7 +104,7 @@ TEST(Reboot, at_the_centre_it_centres_for_the_least_time) {
   }
 }
 
-// ROS wants two alives of a centring head. The second is due one period after the boot; a busy machine sends
+// ROS needs two alives of a centring head. The second is due one period after the boot; a busy machine sends
 // it later.
 TEST(Reboot, two_alives_tell_of_centring_even_if_the_machine_is_late) {
   for (const auto late : {0ms, 50ms, 150ms}) {
@@ -260,7 +260,7 @@ TEST(Clock, follows_the_host_unless_told_not_to) {
     Bench bench(config);
     bench.run_until(1500ms);
     bench.raw(fixture("send_data_with_time"));
-    bench.raw(fixture("send_data"));  // time 0 says nothing
+    bench.raw(fixture("send_data"));  // time 0 does not set the clock
     bench.run_until(2s);
     EXPECT_EQ(bench.all<Alive>().back().second.time_ms, follows ? 61'891'786U + 500U : 2000U);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops of public drivers as they run: when each gives up, what it looks at first, what it repeats. Which
-// drivers they are, and where to find them: docs/your-micron-driver.md. The names of the tests are those of
-// the defects that they have shown.
+// Loops of public drivers: when each gives up, what it checks first, what it repeats.
+// docs/your-micron-driver.md lists the drivers and their sources. Each test is named after the defect that
+// its driver has shown.
 #include <numbers>
 
 #include "driver.hpp"
@@ -27,9 +27,10 @@ HeadCommand with_limits(std::uint16_t left, std::uint16_t right) {
   return command;
 }
 
-// libminiking and miniking_ros. It reads the user blocks and takes whatever comes next for an alive; one of
-// another type ends it. Its parameters go out, once at least, until byte 13 of the alive that follows is 0;
-// the node then changes them the same way. Then it asks once for two lines, for ever, and waits for both.
+// libminiking and miniking_ros. It reads the user blocks and takes the next message for an alive; any other
+// type ends it. It sends its parameters at least once, until byte 13 of the next alive is 0. The node later
+// changes them in this way too. Then it requests two lines, waits for both without a timeout, and repeats
+// this.
 TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
   DeviceConfig config;
   config.user_blocks = UserBlocks::dst_alone;
@@ -61,9 +62,9 @@ TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
   }
 }
 
-// iSonar of moos-ivp-enstabretagne. A tenth of a second after any message it sends one: the request for its
-// version, for the user blocks, or its parameters, whichever it still wants; parameters until an alive has
-// bit 7 and not 6.
+// iSonar of moos-ivp-enstabretagne. 0.1 s after each message it sends one command: the request for the
+// version or for the user blocks, or its parameters, if it still lacks them. It sends parameters until an
+// alive has bit 7 set and bit 6 clear.
 TEST(PublicDrivers, S1_parameters_sent_after_every_alive_until_one_is_content) {
   Driver driver(steady);
   bool has_version = false, has_blocks = false;
@@ -111,8 +112,8 @@ TEST(PublicDrivers, S1_a_repeated_head_command_changes_nothing_in_what_alives_sa
   }
 }
 
-// A Python script that sends no time. Both forms: as it was recorded, with a digit too many in its length,
-// and as it is meant.
+// A Python script that sends no time. Two forms: as recorded, with one digit too many in the length, and
+// corrected.
 TEST(PublicDrivers, S2_send_data_without_its_time) {
   const Bytes recorded{0x40, 0x30, 0x30, 0x30, 0x38, 0x38, 0x08, 0x00,
                        0xFF, 0x02, 0x03, 0x19, 0x80, 0x02, 0x0A};
@@ -136,8 +137,8 @@ TEST(PublicDrivers, S2_send_data_without_its_time) {
   }
 }
 
-/// A driver that reboots the head and goes on a second later. Nothing is repeated; but whatever message comes
-/// more than two seconds after its last line, or its programming, lets it begin anew.
+/// A driver that reboots the head and sends its commands one second later. It repeats nothing. A message
+/// other than a line, more than two seconds after the last line or the programming, makes it begin again.
 struct Watchdog {
   Driver& driver;
   Bytes command = fixture("head_command_ros");
@@ -152,7 +153,7 @@ struct Watchdog {
     driver.write(command);
     driver.write("send_data");
   }
-  /// Lines until `end`.
+  /// Runs until `end` and returns the number of lines.
   std::size_t run_until(TimePoint end) {
     std::size_t lines = 0;
     while (driver.bench().now < end) {
@@ -169,7 +170,7 @@ struct Watchdog {
   }
 };
 
-/// 500 bins of 312 units: 75 m, the longest range of a Micron.
+/// Parameters of 500 bins of 312 units each: 75 m, the longest range of a Micron.
 Bytes longest_lines() {
   HeadCommand command = with_limits(0, 6400);
   command.bins = 500;
@@ -177,7 +178,7 @@ Bytes longest_lines() {
   return encode(command);
 }
 
-// Whatever the head answers at once, however long its lines are, and if the renderer is slow.
+// With and without an immediate answer of the head, with short and long lines, and with a slow renderer.
 TEST(PublicDrivers, S3_a_watchdog_of_two_seconds_sees_lines_before_it_fires) {
   for (const bool alive_after_head_command : {false, true}) {
     for (const Bytes& command : {fixture("head_command_ros"), longest_lines()}) {
@@ -195,7 +196,7 @@ TEST(PublicDrivers, S3_a_watchdog_of_two_seconds_sees_lines_before_it_fires) {
   }
 }
 
-// A watchdog by a timer, with lines as drivers usually ask for.
+// A watchdog with a timer, and lines as drivers usually request them.
 TEST(PublicDrivers, S3_a_line_comes_within_two_seconds_of_a_reboot) {
   Driver driver(steady);
   const TimePoint reboot = driver.bench().now;
@@ -204,15 +205,15 @@ TEST(PublicDrivers, S3_a_line_comes_within_two_seconds_of_a_reboot) {
   EXPECT_LT(driver.bench().now - reboot, 2s);
 }
 
-/// The head stands at this bearing, and is not asked for lines.
+/// Turns the head to this bearing. No lines are requested.
 void leave_at(Driver& driver, int bearing) {
   driver.write(encode(with_limits(static_cast<std::uint16_t>(bearing), static_cast<std::uint16_t>(bearing))));
   driver.sleep(3s);
   driver.flush();
 }
 
-// Where both can be had, both are: the watchdog does not fire, and two alives tell of centring. Up to 150
-// degrees from the centre the way there takes no longer than 1.67 s.
+// Both conditions hold: the watchdog does not fire, and two alives show centring. Up to 150 degrees from the
+// centre the motor needs no more than 1.67 s.
 TEST(PublicDrivers, S3_two_alives_of_centring_and_lines_before_a_watchdog_fires) {
   for (int bearing = 550; bearing <= 5850; bearing += 530) {
     Driver driver(steady);
@@ -232,7 +233,7 @@ TEST(PublicDrivers, S3_two_alives_of_centring_and_lines_before_a_watchdog_fires)
   }
 }
 
-// A motor that seeks twice as fast: from everywhere.
+// A motor that seeks twice as fast, from all bearings.
 TEST(PublicDrivers, S3_a_fast_motor_has_lines_before_a_watchdog_fires_from_everywhere) {
   for (int bearing = 0; bearing < 6400; bearing += 800) {
     DeviceConfig config;
@@ -246,8 +247,7 @@ TEST(PublicDrivers, S3_a_fast_motor_has_lines_before_a_watchdog_fires_from_every
   }
 }
 
-// From wherever a scan has left the head; half a turn takes two seconds, so it may have to begin twice, and
-// no more.
+// From all bearings. Half a turn takes two seconds, so the driver may have to begin twice, but no more often.
 TEST(PublicDrivers, S3_the_way_to_the_centre_takes_as_long_as_it_is) {
   for (int bearing = 0; bearing < 6400; bearing += 400) {
     Driver driver(steady);
@@ -259,8 +259,8 @@ TEST(PublicDrivers, S3_the_way_to_the_centre_takes_as_long_as_it_is) {
   }
 }
 
-/// What drivers-sonar_tritech does to configure: parameters, then any alive with bit 1, or bit 7, or without
-/// bit 6; lines that come before it are thrown away.
+/// How drivers-sonar_tritech configures: it sends parameters and waits for any alive with bit 1, or bit 7, or
+/// without bit 6. It discards lines that arrive before that alive. Returns false after 10 s without one.
 bool rock_configure(Driver& driver, const Bytes& command) {
   driver.write(command);
   return driver
@@ -280,8 +280,8 @@ Bytes rock_command(int left, int right, double step_deg, bool continuous) {
   return command;
 }
 
-// A program on the same library that reboots the head and asks for lines at once. Real heads keep it waiting,
-// too.
+// A program on the same library (drivers-sonar_tritech) that reboots the head and requests lines at once.
+// Real heads keep it waiting too.
 TEST(PublicDrivers, S4_a_reboot_and_a_line_within_its_second_need_a_short_time_of_centring) {
   for (const auto centring : {500ms, 900ms}) {
     DeviceConfig config;
@@ -303,8 +303,9 @@ void rock_ten_beams(Driver& driver) {
   }
 }
 
-// test/test_micron.cpp of the same: three scans all round, then three sectors, before each of which it waits
-// for a line that it has not asked for. Versions of the driver swap the limits or do not; both ways.
+// test/test_micron.cpp of drivers-sonar_tritech: three full scans, then three sectors. Before each sector it
+// waits for a line that it has not requested. Some versions of the driver swap the limits, so the test runs
+// both ways.
 TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
   for (const bool swapped : {true, false}) {
     for (const int phase_ms : {0, 150, 300, 450, 600, 750, 900}) {
@@ -331,9 +332,8 @@ TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
   }
 }
 
-// DelphinROSv3: parameters, a tenth of a second, one read; again until that read is an alive, whatever it
-// says. Everything that has come by then is thrown away. It writes 0xFF where its commands name the node
-// again.
+// DelphinROSv3: sends parameters, waits 0.1 s and reads once. It repeats this until it reads an alive,
+// whatever the alive holds. It then discards all bytes received so far. Its commands repeat the node as 0xFF.
 TEST(PublicDrivers, S4_an_alive_is_there_a_tenth_of_a_second_after_parameters) {
   Driver driver(steady);
   Bytes command = fixture("head_command_ros");
@@ -365,13 +365,13 @@ std::vector<int> bearings_asked_for(Driver& driver, std::size_t count) {
   return bearings;
 }
 
-// The defaults of one driver: its sector is 0 to 6400.
+// The defaults of one driver: a sector from 0 to 6400.
 TEST(PublicDrivers, S5_a_sector_of_6400_is_a_whole_turn) {
   Driver driver(steady);
   driver.write(encode(with_limits(0, 6400)));
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
   const auto bearings = bearings_asked_for(driver, 150);
-  // From ahead clockwise to astern, and back all the way round: 6400 and 0 are the two ends of it.
+  // From ahead clockwise to astern, and back all the way round. 6400 and 0 are the two ends of the sector.
   EXPECT_EQ(bearings[0], 3200);
   EXPECT_EQ(bearings[1], 3264);
   EXPECT_EQ(bearings[50], 0);
@@ -384,7 +384,8 @@ TEST(PublicDrivers, S5_a_sector_of_6400_is_a_whole_turn) {
   EXPECT_EQ(lines[0].second.right_limit, 6400);
 }
 
-// Those of early versions of drivers-sonar_tritech: 6399 twice. The protocol has the head hold still there.
+// The defaults of early versions of drivers-sonar_tritech: 6399 twice. By the protocol the head then holds
+// still.
 TEST(PublicDrivers, S5_equal_limits_stare) {
   Driver driver(steady);
   driver.write(encode(with_limits(6399, 6399)));
@@ -396,9 +397,9 @@ TEST(PublicDrivers, S5_equal_limits_stare) {
   EXPECT_EQ(bearings_asked_for(driver, 3).back(), 0);
 }
 
-// ProjectRinzler, which gives every read a second: it waits for an alive, asks for the version, takes one
-// message that has to be an alive, and sends its parameters. An alive that comes as late as its time-out
-// hangs it, hence the shorter period.
+// ProjectRinzler, whose reads have a timeout of one second. It waits for an alive, requests the version,
+// reads one message that must be an alive, and sends its parameters. An alive that arrives just at the
+// timeout hangs it, so the period is shorter here.
 TEST(PublicDrivers, S6_a_client_of_one_second_at_the_start_of_the_daemon) {
   DeviceConfig config;
   config.alive_period = 900ms;
@@ -428,7 +429,7 @@ TEST(PublicDrivers, S6_a_head_that_nobody_rebooted_is_centred_from_the_start) {
   EXPECT_EQ(bench.all<HeadData>().size(), 2U);
 }
 
-// ProjectRinzler multiplies 210 by more than 1 and keeps a byte of it.
+// ProjectRinzler multiplies 210 by a factor above 1 and keeps the low byte.
 TEST(PublicDrivers, S8_a_gain_byte_above_210_is_80_dB) {
   for (const int gain : {210, 211, 232, 255}) {
     Bench bench;
@@ -441,8 +442,8 @@ TEST(PublicDrivers, S8_a_gain_byte_above_210_is_80_dB) {
   }
 }
 
-// libminiking reads 264 bytes of user blocks, and nothing else may come before the next alive. Heads that
-// send the FPGA data behind them end it; heads that send 175 bytes cost it the alives that fill the rest.
+// libminiking reads 264 bytes of user blocks, and the next message must be an alive. If a head sends FPGA
+// data after the blocks, libminiking ends. If a head sends 175 bytes, the alives that fill the rest are lost.
 TEST(PublicDrivers, user_blocks_of_264_bytes_come_alone_if_so_set) {
   for (const bool half_duplex : {false, true}) {
     DeviceConfig config;
@@ -459,8 +460,8 @@ TEST(PublicDrivers, user_blocks_of_264_bytes_come_alone_if_so_set) {
   }
 }
 
-// MicronCore of ENSTA: its head command has 82 bytes, says 66 and ends with the line feed of the longer one.
-// It takes what follows a request for two lines, without a look at it.
+// MicronCore of ENSTA: its head command has 82 bytes, states 66 and ends with the line feed of the longer
+// form. It takes the two messages after a request for lines, without checking their type.
 TEST(PublicDrivers, a_head_command_longer_than_it_says_is_taken) {
   Bytes command = fixture("head_command_uxv");
   command.back() = 0x50;
@@ -481,7 +482,7 @@ TEST(PublicDrivers, a_head_command_longer_than_it_says_is_taken) {
     for (int i = 0; i < 200; ++i) {
       for (int line = 0; line < 2; ++line) {
         const auto frame =
-            link.split ? driver.await_line(1s) : driver.read(1s);  // split, it pauses for an alive
+            link.split ? driver.await_line(1s) : driver.read(1s);  // if split, an alive may come between
         ASSERT_TRUE(frame && is_line(*frame)) << i;
       }
       driver.write("send_data");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a Micron sends what comes from a log, and what is told about requests that differ.
+// How a Micron sends a line from a log, and which differences from the request are reported.
 #include "protocol/micron/recorded_form.hpp"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ TEST(LineDifferences, the_same_is_no_difference_and_each_kind_is_told) {
   const PingJob sent = make_line_job(recorded, line);
   HeadCommand asked;
   EXPECT_TRUE(differences(asked, sent, line).empty());
-  asked.control = 0x2324;  // 4 bits, a sector, listening only
+  asked.control = 0x2324;  // 4 bits, a sector, no transmission
   asked.ad_interval = 106;
   asked.bins = 800;
   asked.gain[0] = 210;

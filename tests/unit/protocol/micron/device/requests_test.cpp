@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many lines a request brings, and when (docs/protocols/micron.md 8.1, 8.2).
+// Number and times of the lines after a request (docs/protocols/micron.md 8.1, 8.2).
 #include "bench.hpp"
 
 namespace sonard::micron {
@@ -51,7 +51,7 @@ TEST(Requests, one_for_every_reply_never_builds_a_backlog) {
 TEST(Requests, without_parameters_bring_nothing) {
   Bench bench;
   bench.run_until(2s);
-  bench.raw(fixture("send_data"));  // centring
+  bench.raw(fixture("send_data"));
   bench.run_until(10s);
   bench.raw(fixture("send_data"));
   bench.run_for(5s);
@@ -105,7 +105,7 @@ TEST(Requests, line_that_is_ready_but_not_sent_is_done_again_with_new_parameters
   Bench bench;
   bench.make_ready(all_round());
   bench.raw(fixture("send_data"));
-  bench.run_for(1us);  // rendered; the head still listens
+  bench.run_for(1us);  // rendered, but the head still listens
   bench.command(sector(3000, 3400));
   bench.run_for(1s);
   const auto lines = bench.all<HeadData>();

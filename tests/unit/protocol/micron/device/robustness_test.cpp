@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing that a peer sends makes the head grow, stall or talk for ever; nobody's absence stops it.
+// No bytes from a peer make the head grow, stall or send without end. No missing peer stops it.
 #include <memory>
 #include <random>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings, their order, and where a scan turns round (docs/protocols/micron.md 5.4, 8.3).
+// Bearings, their order, and the places where a scan turns round (docs/protocols/micron.md 5.4, 8.3).
 #include <set>
 #include <tuple>
 
@@ -70,8 +70,7 @@ TEST(AllRoundScan, goes_on_from_where_it_is_with_new_parameters) {
   EXPECT_EQ(scan(bench, 2).bearings, (Bearings{owed + 32, owed - 68}));
 }
 
-/// The bearings and codes of a sector, written as a loop over its closed form: there and back, ends included
-/// once.
+/// The bearings and codes of a sector, as a loop over its closed form: there and back, with each end once.
 Scan expected_sector(int left, int width, int step, int start, bool right, std::size_t count) {
   Scan expected;
   int offset = start;
@@ -93,7 +92,7 @@ TEST(SectorScan, of_the_ros_driver_turns_at_both_limits) {
   const Scan expected = expected_sector(2666, 1067, 16, 534, true, 200);
   EXPECT_EQ(result.bearings, expected.bearings);
   EXPECT_EQ(result.codes, expected.codes);
-  // By hand: from 3200 in 33 whole steps to 3728, clamped to 3733, then back.
+  // By hand: 33 whole steps from 3200 to 3728, a step clamped to 3733, then back.
   EXPECT_EQ(result.bearings[33], 3728);
   EXPECT_EQ(result.bearings[34], 3733);
   EXPECT_EQ(result.codes[34], 2);
@@ -120,7 +119,7 @@ TEST(SectorScan, may_cross_astern) {
   Bench bench;
   bench.make_ready(sector(5600, 800, 64));
   const Scan result = scan(bench, 100);
-  // 3200 is as far from one limit as from the other; it goes to the left one.
+  // 3200 is as far from one limit as from the other, and the head goes to the left one.
   const Scan expected = expected_sector(5600, 1600, 64, 0, true, 100);
   EXPECT_EQ(result.bearings, expected.bearings);
   EXPECT_EQ(result.codes, expected.codes);
@@ -200,7 +199,7 @@ TEST(Reverse, takes_effect_from_the_next_step_and_shows_in_the_control_bits) {
   Bench bench;
   bench.make_ready(all_round(32));
   EXPECT_EQ(scan(bench, 3).bearings, (Bearings{3200, 3232, 3264}));
-  bench.run_for(1s);  // what was asked for beside
+  bench.run_for(1s);  // the lines still owed
   const int last = bench.all<HeadData>().back().second.bearing;
   bench.raw(fixture("reverse"));
   const auto lines = bench.scan(4);

@@ -13,7 +13,7 @@ double ms(std::chrono::nanoseconds time) {
   return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// One row of the table in section 8.4, which was worked out apart from this code.
+/// One row of the table in section 8.4, which was calculated independently of this code.
 struct Row {
   int bins, step, ad_interval;
   double listen_ms, turn_ms, send_ms, full_ms, half_ms;
@@ -59,7 +59,7 @@ TEST(Timing, lines_of_a_busy_head_come_at_that_pace) {
       bench.scan(21);
       const auto lines = bench.all<HeadData>();
       EXPECT_NEAR(ms(lines[20].first - lines[0].first) / 20, half_duplex ? row.half_ms : row.full_ms, 0.051);
-      // The first leaves when it has listened; what the link takes comes behind.
+      // The first line is sent when listening has ended. Its time on the link comes after that.
       const TimePoint transmitted = bench.jobs[0].transmit_time;
       EXPECT_NEAR(ms(lines[0].first - transmitted), row.listen_ms + 3.0, 0.051);
     }
@@ -156,7 +156,7 @@ TEST(Timing, motor_takes_the_time_of_the_way_that_it_goes) {
   EXPECT_NEAR(ms(lines[11].first - lines[1].first) / 10, std::max(listen_and_turn_ms, send_ms) + 3.0, 0.01);
 }
 
-/// From new parameters to the transmission of the first ping, with requests owed.
+/// Time from new parameters to the transmission of the first ping, if lines are already requested.
 std::chrono::nanoseconds repositioning(const HeadCommand& command, const DeviceConfig& config = {}) {
   Bench bench(config);
   bench.make_ready(all_round());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A host drives a head: the way in, scans, and what it does when things go wrong
-// (docs/protocols/micron.md 7, 8, 9).
+// A host drives a head: start, scans, and recovery from faults (docs/protocols/micron.md 7, 8, 9).
 #include "session.hpp"
 
 namespace sonard::micron {
@@ -199,7 +198,7 @@ TEST(Host, delivers_only_lines_of_its_own_parameters) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(8s);
-  session.head.command(all_round(64));  // by somebody else
+  session.head.command(all_round(64));  // parameters of another host
   const std::size_t before = session.lines.size();
   session.run_for(1s);
   EXPECT_LE(session.lines.size(), before + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A host and a head on a line that splits, spoils and loses.
+// A host and a head on a line that splits frames, adds noise and loses frames.
 #include <random>
 
 #include "session.hpp"
@@ -7,7 +7,7 @@
 namespace sonard::micron {
 namespace {
 
-/// Cuts frames into pieces, puts noise before some and loses some.
+/// Cuts frames into pieces, adds noise before some frames and loses some.
 Session::Carrier poor_carrier(std::mt19937& random, unsigned lost_percent) {
   return [&random, lost_percent](const Bytes& frame) {
     std::vector<Bytes> pieces;

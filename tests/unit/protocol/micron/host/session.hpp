@@ -15,15 +15,15 @@ class Session {
   explicit Session(const DeviceConfig& head_config = {}, const HostConfig& host_config = {})
       : head(head_config), host(host_config, 0ns) {}
 
-  // What a test sets: the pieces in which a frame arrives; none: it is lost.
+  // Set by tests: the pieces in which a frame arrives; an empty list loses the frame.
   Carrier to_head = [](const Bytes& frame) { return std::vector<Bytes>{frame}; };
   Carrier to_host = to_head;
   std::chrono::nanoseconds byte_time{0};  ///< on the way to the host
 
-  // What a test looks at.
+  // Read by tests.
   Bench head;
   Host host;
-  std::vector<Bytes> said;  ///< by the host
+  std::vector<Bytes> said;  ///< frames sent by the host
   std::vector<ReceivedLine> lines;
 
   TimePoint now() const { return head.now; }
@@ -41,7 +41,7 @@ class Session {
     }
     head.run_until(end);
   }
-  /// Until the host has what it wants.
+  /// Runs until the host has finished, and fails the test if that takes longer than `limit`.
   void run_to_end(std::chrono::nanoseconds limit = 200s) {
     for (const TimePoint end = head.now + limit; !host.finished() && head.now < end;) {
       run_for(10ms);
@@ -53,7 +53,7 @@ class Session {
   TimePoint host_event() const {
     return std::max(head.now, std::min(arrival(), host.next_deadline().value_or(TimePoint::max())));
   }
-  /// When the next frame from the head has come to its end.
+  /// Arrival time of the last byte of the next frame from the head.
   TimePoint arrival() const {
     if (read_ == head.sent.size()) {
       return TimePoint::max();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scan becomes on the wire (docs/protocols/micron.md 4, 5.3, 5.4).
+// Scan settings as fields on the wire (docs/protocols/micron.md 4, 5.3, 5.4).
 #include "protocol/micron/scan_settings.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace sonard::micron {
 namespace {
 
 TEST(ScanSettings, IntervalsAreCutOffAsMostDriversDo) {
-  // 2 * 10 m / (1500 m/s * 200) / 640 ns = 104.17; 75 m in 500 bins 312.5: rounding would give 313.
+  // 2 * 10 m / (1500 m/s * 200) / 640 ns = 104.17. 75 m in 500 bins is 312.5; rounding would give 313.
   EXPECT_EQ(ad_interval({.range_m = 10.0, .bins = 200}), 104);
   EXPECT_EQ(ad_interval({.range_m = 10.0, .bins = 400}), 52);
   EXPECT_EQ(ad_interval({.range_m = 75.0, .bins = 500}), 312);

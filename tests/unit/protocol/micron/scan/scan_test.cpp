@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Micron in the tank (docs/worlds.md), from the command of a host to the bins it reads, in virtual time:
-// the head, the mapping of its pings and the renderer, without sockets. Truth: the four planes of the walls.
+// A Micron in the tank (docs/worlds.md), from the host's command to the bins that it reads, in virtual time:
+// head, mapping of pings and renderer, without sockets. The expected values come from the four planes of the
+// walls.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -30,7 +31,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double half_beam = 1.5 * degree;
-/// Inner faces of the walls.
+/// Positions of the inner faces of the walls.
 constexpr double east_m = 7, west_m = -7, north_m = 5, south_m = -5;
 const glm::dvec3 start_m{-1, -0.5, -4};
 
@@ -46,7 +47,7 @@ struct Span {
   double nearest_m, furthest_m;
 };
 
-/// Of the wall over the beam around an azimuth, on the horizontal.
+/// Range of the wall over the width of the beam around an azimuth, in the horizontal plane.
 Span wall_span(double world_azimuth_rad) {
   Span span{INFINITY, 0};
   for (int i = -50; i <= 50; ++i) {
@@ -57,21 +58,21 @@ Span wall_span(double world_azimuth_rad) {
   return span;
 }
 
-/// Where things stand in front of the walls, to port of the bow, with half a beam to either side
-/// (docs/worlds.md).
+/// True if an object stands in front of the wall (docs/worlds.md), with half a beam added on either side.
+/// Azimuths are counted to port of the bow.
 bool sees_furniture(double world_azimuth_rad) {
   const double a = std::remainder(world_azimuth_rad, 2 * std::numbers::pi) / degree;
   const auto between = [a](double low, double high) { return a > low - 1.6 && a < high + 1.6; };
   return between(11, 18) || between(67, 73) || between(155, 165) || between(-66, -54);
 }
 
-/// A line of a scan, and where and when it was heard.
+/// A line of a scan, with its job, which holds bearing and time.
 struct Line {
   micron::ReceivedLine received;
   PingJob job;
 };
 
-/// Head, renderer and host around one clock that runs as fast as they do.
+/// Head, renderer and host on one clock, which runs as fast as they do.
 class Scan {
  public:
   explicit Scan(HeadConfig config)
@@ -81,7 +82,7 @@ class Scan {
         renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                   {render::EngineKind::cpu, 0}) {}
 
-  /// Of the vehicle; at rest at the start, bow to the east.
+  /// Yaw of the vehicle. By default it is at rest at the start, bow to the east.
   std::function<double(TimePoint)> yaw_rad = [](TimePoint) { return 0.0; };
 
   std::vector<Line> run(const micron::HeadCommand& command, std::uint64_t lines) {
@@ -152,12 +153,12 @@ class Scan {
   std::uint64_t next_job_ = 0;
 };
 
-/// 400 bins to 10.2 m in steps of 1.8 degrees, all round.
+/// 400 bins to 10.2 m in steps of 1.8 degrees, a full turn.
 micron::HeadCommand all_round() {
   return {};
 }
 
-/// Without anything random, and with the edges of the beam sharp: what is heard is where things are.
+/// No random effects and sharp edges of the beam, so that echoes begin exactly at the surfaces.
 HeadConfig plain_head() {
   HeadConfig config = micron_kind().make_default();
   auto device = std::make_shared<MicronConfig>();
@@ -179,7 +180,7 @@ int first_echo(const Line& line) {
                           bins.begin());
 }
 
-/// Within one bin of the closed form, at every bearing that hears nothing but wall.
+/// Checks every line that sees only wall: its first echo is within one bin of the closed form.
 void expect_walls(const std::vector<Line>& scan, const std::function<double(TimePoint)>& yaw_rad) {
   int walls = 0, worst = 0;
   for (const Line& line : scan) {
@@ -207,12 +208,12 @@ TEST(MicronScan, AStillHeadHearsTheWallsWhereTheyAre) {
   expect_walls(lines, scan.yaw_rad);
 }
 
-// The vehicle turns by 20 degrees, evenly, over the time of a turn of the head: at every step the picture is
-// off by as much as the vehicle has turned by then.
+// The vehicle turns evenly by 20 degrees during one turn of the head. At each step the picture is rotated by
+// the vehicle's yaw at that time.
 TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
   Scan scan(plain_head());
   constexpr double turn_rad = 20 * degree;
-  constexpr TimePoint begin = 6s;  // it is centred and scans by then
+  constexpr TimePoint begin = 6s;  // by then the head is centred and scans
   constexpr std::chrono::duration<double> duration{8.3};
   const auto yaw_rad = [&](TimePoint time) {
     return turn_rad * std::clamp(std::chrono::duration<double>(time - begin) / duration, 0.0, 1.0);
@@ -221,7 +222,7 @@ TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
   const std::vector<Line> lines = scan.run(all_round(), 500);
   ASSERT_EQ(lines.size(), 500u);
   expect_walls(lines, yaw_rad);
-  // The south wall, 4.5 m away at 90 degrees to starboard: where it is heard once and a turn and a half
+  // The south wall, 4.5 m away at 90 degrees to starboard: its bearing in the first turn, and 1.5 turns
   // later.
   const auto south_wall = [&](std::size_t from) {
     double lines_there = 0, bearing = 0, yaw = 0;
@@ -262,12 +263,12 @@ TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
     EXPECT_GT(range_m, wall.nearest_m - 1.5 * line.job.bin_m()) << azimuth / degree;
     // At the elevations of a beam of 35 degrees a wall is up to 7.6 % further.
     EXPECT_LT(range_m, 1.076 * wall.furthest_m + 1.5 * line.job.bin_m()) << azimuth / degree;
-    EXPECT_GE(*strongest, 90);   // 28 dB: plain above the noise
-    EXPECT_LE(*strongest, 191);  // an imaging head says no more
+    EXPECT_GE(*strongest, 90);   // 28 dB: well above the noise
+    EXPECT_LE(*strongest, 191);  // the maximum of an imaging head
   }
 }
 
-// docs/protocols/micron.md 8.4: 41.6 ms a line with 400 bins, 8.3 s a turn.
+// docs/protocols/micron.md 8.4: 41.6 ms per line with 400 bins, 8.3 s per turn.
 TEST(MicronScan, ATurnTakesItsTimeOnTheClockOfTheHead) {
   Scan scan(plain_head());
   const auto started = std::chrono::steady_clock::now();
