@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte examples, both ways (docs/protocols/oculus.md 10; tests/data/oculus/notes.md).
+// The byte examples in both directions (docs/protocols/oculus.md 10; tests/data/oculus/notes.md).
 #include <gtest/gtest.h>
 
 #include "tests/unit/protocol/oculus/codec/fixture.hpp"

@@ -39,7 +39,7 @@ std::vector<Bytes> all_apart() {
   return commands;
 }
 
-/// Bytes that announce a fire of `payload_size` behind the header.
+/// Bytes of a fire whose header states a payload of `payload_size` bytes.
 Bytes fire_announcing(std::uint32_t payload_size) {
   Bytes bytes = load_fixture("fire_ensta");
   for (std::size_t i = 0; i < 4; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shape of an image, against what a recorded M1200d sent and what the protocol page says in numbers.
+// The shape of an image against the images of a recorded M1200d and the numbers of the protocol page.
 #include "protocol/oculus/image_form.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(OculusBearings, have_exact_ends_and_are_symmetric_and_rise) {
   }
 }
 
-// A hundredth of a degree at most is cut off, towards zero.
+// Bearings are truncated towards zero by less than 0.01 degrees.
 TEST(OculusBearings, are_equally_spaced_in_their_sine) {
   const auto bearings = bearings_cdeg(512, 65.0);
   for (std::size_t i = 256; i < 511; ++i) {
@@ -60,7 +60,7 @@ TEST(OculusRanges, keep_below_the_most_and_within_a_row_of_what_was_asked) {
     EXPECT_LE(grid.ranges, 1200);
     EXPECT_LE(grid.ranges * grid.resolution_m, range_m);
     EXPECT_GT((grid.ranges + 1) * grid.resolution_m, range_m);
-    if (samples > 1.5) {  // one less would be too many rows
+    if (samples > 1.5) {  // with one sample less there would be too many rows
       EXPECT_GT(std::floor(range_m / (grid.resolution_m * (samples - 1.0) / samples)), 1200.0);
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a fire makes of a ping (docs/protocols/oculus.md 3.3, 4.4, 4.7, 8).
+// The ping that a fire command requests (docs/protocols/oculus.md 3.3, 4.4, 4.7, 8).
 #include "protocol/oculus/ping_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ SimpleFire fire_with(std::uint8_t mode, double range_m) {
 
 TEST(OculusPlan, acknowledges_mode_gamma_flags_range_and_salinity_exactly) {
   for (const std::uint8_t mode : {1, 2}) {
-    SimpleFire fire = fire_with(mode, 1234.56);  // beyond what the head can do
+    SimpleFire fire = fire_with(mode, 1234.56);  // beyond the range of the head
     fire.fire.gamma = 200;
     fire.fire.flags = 0x4D;
     fire.fire.salinity_ppt = 33.3;
@@ -48,7 +48,7 @@ TEST(OculusPlan, gain_and_speed_are_echoed_as_the_configuration_says) {
   EXPECT_EQ(other.result.fire.fire.sound_speed_mps, 0.0);
 }
 
-// Readers of viewer logs take versions 1 and 2 only; the recording of a real head has version 0.
+// Readers of viewer logs accept versions 1 and 2 only, but the recording of a real head has version 0.
 TEST(OculusPlan, version_of_the_result_follows_the_length_of_the_fire) {
   for (const bool reports_version_1 : {true, false}) {
     PlanConfig config;
@@ -63,7 +63,7 @@ TEST(OculusPlan, version_of_the_result_follows_the_length_of_the_fire) {
   }
 }
 
-// A column of water of 10 m weighs about as much as the air above it.
+// A column of 10 m of water weighs about as much as the air above it.
 TEST(OculusPlan, pressure_is_that_of_air_and_of_the_water_above) {
   PlanConfig config;
   config.pressure_bar = 1.7;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head has to do for its clients to work with it, one test for each: form of what it sends, its
-// habits, and its rates (docs/protocols/oculus.md 3 to 8).
+// The requirements of clients on a head, with one test for each: form of its messages, behaviour, and rates
+// (docs/protocols/oculus.md 3 to 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using std::chrono::seconds;
 
 const Peer vehicle{Device::stream_channel, {0xC0A80205, 40000}, 0};
 
-/// A head with one client, which reads with the code of a client. Images are ready at once.
+/// A head with one client that reads with a client's code. Images are ready at once.
 class Line {
  public:
   explicit Line(const DeviceConfig& config = {}) : device_(config, TimePoint{}) {
@@ -78,10 +78,10 @@ class Line {
   std::vector<PingJob> jobs;
   std::optional<NextPing> next_ping;
   bool plays_eight_bits = false;
-  std::optional<SensorReadings> readings;  ///< at the time of each ping
+  std::optional<SensorReadings> readings;  ///< at the transmit time of each ping
 
  private:
-  /// Samples that count up, so that each is at its place or is not.
+  /// Samples that count up, so that a misplaced sample is detected.
   void render(const PingJob& job) {
     const auto count = static_cast<std::size_t>(job.bins()) * static_cast<std::size_t>(job.beams);
     PingImage image;
@@ -125,7 +125,7 @@ SimpleFire fire_with(bool second, int bits, bool gains, int beams, int mode) {
   return fire;
 }
 
-// 3.1, as several clients send them; the header of one states no length and that of another a wrong version.
+// 3.1, as several clients send them. One client's header states no length; another's states a wrong version.
 TEST(OculusAcceptance, fires_of_all_clients_split_at_every_byte_make_it_ping) {
   for (const char* name : {"fire_vendor", "fire_ensta", "fire_ensta_resume_v2", "fire_liboculus_8_bit",
                            "fire_liboculus_32_bit"}) {
@@ -149,7 +149,7 @@ TEST(OculusAcceptance, fires_of_all_clients_split_at_every_byte_make_it_ping) {
 using Form = std::tuple<bool, int, bool, int, int>;
 class OculusForms : public ::testing::TestWithParam<Form> {};
 
-// 4.1 to 4.4 and 4.7, through the bytes: what vendor code, liboculus and ENSTA's driver check.
+// 4.1 to 4.4 and 4.7, on the bytes: the checks of vendor code, liboculus and ENSTA's driver.
 TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
   const auto [second, bits, gains, beams, mode] = GetParam();
   const SimpleFire fire = fire_with(second, bits, gains, beams, mode);
@@ -179,7 +179,7 @@ TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
   EXPECT_EQ(ping.message_size, line.pings[1].message.size());
   EXPECT_LE(ping.ranges * ping.range_resolution_m, 4.321);
   EXPECT_GT((ping.ranges + 1) * ping.range_resolution_m, 4.321);
-  // Samples, with what a row has before them.
+  // Samples, and the gain word before each row.
   for (const std::size_t row : {std::size_t{0}, std::size_t{1}, std::size_t{ping.ranges} - 1}) {
     if (gains) {
       const auto word = ping.image.subspan(row * stride, 4);
@@ -196,7 +196,7 @@ TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
       EXPECT_EQ(sample, bits == 8 ? narrow : bits == 16 ? wide : wide << 16 | wide) << row << " " << beam;
     }
   }
-  // 4.5 and 8: the table of the aperture at that frequency of an M750d, its ends exact.
+  // 4.5 and 8: the table for the M750d's aperture at this frequency, whose ends are exact.
   const double half_deg = mode == 1 ? 65.0 : 35.0;
   EXPECT_EQ(ping.bearings_cdeg.front(), -100 * half_deg);
   EXPECT_EQ(ping.bearings_cdeg.back(), 100 * half_deg);
@@ -209,13 +209,13 @@ TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
 using ::testing::Bool;
 using ::testing::Combine;
 using ::testing::Values;
-// Only an extension asks for 32 bits.
+// A request for 32 bits needs the extension.
 INSTANTIATE_TEST_SUITE_P(First, OculusForms,
                          Combine(Values(false), Values(8, 16), Bool(), Values(256, 512), Values(1, 2)));
 INSTANTIATE_TEST_SUITE_P(Second, OculusForms,
                          Combine(Values(true), Values(8, 16, 32), Bool(), Values(256, 512), Values(1, 2)));
 
-// 8: ranges of the models; what is asked for beyond is echoed, and imaged as far as the head can.
+// 8: ranges of the models. A greater requested range is echoed, and the image reaches as far as the head can.
 TEST(OculusAcceptance, models_have_ranges_and_apertures_of_their_own) {
   struct Case {
     Model model;
@@ -242,7 +242,7 @@ TEST(OculusAcceptance, models_have_ranges_and_apertures_of_their_own) {
   }
 }
 
-// 6: 142 bytes once a second, also while a client is connected, with its address in order of the octets.
+// 6: 142 bytes once a second, also while a client is connected. Addresses are in the order of their octets.
 TEST(OculusAcceptance, a_status_of_142_bytes_comes_each_second_whatever_else_happens) {
   Line line;
   line.receive(encode(fire_with(true, 8, true, 512, 1)));
@@ -261,7 +261,7 @@ TEST(OculusAcceptance, a_status_of_142_bytes_comes_each_second_whatever_else_hap
   }
 }
 
-// 7, section by section of the diagram.
+// 7, each section of the diagram.
 TEST(OculusAcceptance, idle_and_standby_are_told_each_second_and_standby_ends_within_a_period) {
   Line line;
   EXPECT_EQ(line.host.take_logs().size(), 1U);
@@ -314,7 +314,7 @@ TEST(OculusAcceptance, new_settings_come_with_the_next_ping) {
   EXPECT_EQ(line.pings[before + 1].result.beams, 512);
 }
 
-// 4.1, 4.2: of the time when the pulse left.
+// 4.1, 4.2: readings at the time when the pulse left.
 TEST(OculusAcceptance, a_ping_says_how_the_head_is_turned_and_how_deep_it_is) {
   const SensorReadings readings{.heading_rad = std::numbers::pi / 2,
                                 .pitch_rad = -std::numbers::pi / 6,
@@ -355,7 +355,7 @@ TEST(OculusAcceptance, a_status_says_how_deep_the_head_is_whether_it_pings_or_no
   EXPECT_EQ(told_bar(), 1.7);
 }
 
-// A simulator's clock: no ping but with a grant, and the head says which period it would keep.
+// With a simulator's clock the head pings only after a grant, and reports the period that it would use.
 TEST(OculusAcceptance, by_a_simulators_clock_it_waits_for_grants) {
   DeviceConfig config;
   config.waits_for_permission = true;
@@ -373,7 +373,7 @@ TEST(OculusAcceptance, by_a_simulators_clock_it_waits_for_grants) {
   EXPECT_EQ(line.pings.size(), 1U);
 }
 
-// ---- Playing back
+// ---- Playback
 
 RecordedPing fed(const PingRecord& record, std::uint64_t number) {
   return {.record = number,
@@ -402,7 +402,7 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   config.plays_back = true;
   Line player(config);
   player.plays_eight_bits = true;
-  player.readings = SensorReadings{.heading_rad = 1.0, .depth_m = 1.0};  // of where it is played
+  player.readings = SensorReadings{.heading_rad = 1.0, .depth_m = 1.0};  // readings at the place of playback
   player.receive(encode(fire_with(true, 8, true, 512, 1)));
   player.run_for(seconds{1});
   EXPECT_TRUE(player.jobs.empty()) << "nothing was fed";
@@ -485,7 +485,7 @@ TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing
   line.run_for(milliseconds{450});
   Bytes stream{'S', 'S', 'x'};
   for (std::size_t i = 0; i < line.sent.size(); ++i) {
-    if (i != 2) {  // one ping is lost on the way
+    if (i != 2) {  // one ping is lost on the link
       stream.insert(stream.end(), line.sent[i].begin(), line.sent[i].end());
     }
   }
@@ -494,7 +494,7 @@ TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing
     for (std::size_t at = 0; at < stream.size(); at += piece) {
       host.receive({}, std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
       if (piece == 1 && at > 5000) {
-        break;  // it takes long enough
+        break;  // single bytes are slow
       }
     }
     EXPECT_EQ(host.statistics().dropped_bytes, 3U);
@@ -510,7 +510,7 @@ TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing
 TEST(OculusHost, a_length_that_no_message_has_is_skipped) {
   Host host;
   Bytes bytes = encode_dummy({7892, 1032});
-  bytes[13] = 0x7F;  // two thousand million bytes
+  bytes[13] = 0x7F;  // about two billion bytes
   const Bytes good = encode_dummy({7892, 1032});
   bytes.insert(bytes.end(), good.begin(), good.end());
   host.receive({}, bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head as its clients meet it (docs/protocols/oculus.md 5, 6, 7).
+// The head from the view of its clients (docs/protocols/oculus.md 5, 6, 7).
 #include "protocol/oculus/device.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using std::chrono::seconds;
 const Peer client{Device::stream_channel, {0xC0A80205, 40000}, 0};
 const Peer second_client{Device::stream_channel, {0xC0A80206, 40001}, 0};
 
-/// A head whose pings are rendered at once, and what it has sent.
+/// A head whose pings are rendered at once, with a record of everything that it sent.
 class Bench {
  public:
   explicit Bench(bool renders = true) : renders_(renders) { step(TimePassed{}); }
@@ -190,7 +190,7 @@ TEST(OculusDevice, a_silent_client_without_pings_gives_its_place_to_the_next) {
   bench.run_for(Device::most_silence - milliseconds{1});
   bench.connect(second_client);
   EXPECT_EQ(bench.closed, std::vector<Peer>{second_client}) << "it is not silent for long";
-  bench.receive(Bytes(15, 0x4F));  // less than a message
+  bench.receive(Bytes(15, 0x4F));  // shorter than a message
   bench.run_for(milliseconds{1});
   bench.closed.clear();
   bench.connect(second_client);
@@ -201,7 +201,7 @@ TEST(OculusDevice, a_silent_client_without_pings_gives_its_place_to_the_next) {
   EXPECT_GE(bench.count(MessageId::simple_ping_result), 9U);
 }
 
-// Most drivers fire once and listen from then on.
+// Most drivers fire once and then only receive.
 TEST(OculusDevice, a_client_that_pings_keeps_its_place_however_long_it_only_listens) {
   Bench bench;
   bench.connect();

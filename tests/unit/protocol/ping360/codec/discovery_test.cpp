@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text by which a head on Ethernet is found (docs/protocols/ping360.md 5).
+// The text that announces a head on Ethernet (docs/protocols/ping360.md 5).
 #include "protocol/ping360/discovery.hpp"
 
 #include <gtest/gtest.h>

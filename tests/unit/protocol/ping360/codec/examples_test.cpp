@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte examples, both ways: what the bytes mean, and which bytes the values become
+// The byte examples in both directions: bytes to values, and values to bytes
 // (docs/protocols/ping360.md 7; tests/data/ping360/notes.md).
 #include <gtest/gtest.h>
 
@@ -134,7 +134,7 @@ TEST(Ping360Examples, cover_every_message_and_every_fixture) {
     reports.insert(example.value.index());
     fixtures.insert(example.fixture);
   }
-  // All but Unknown, which is no message of its own, and a report that is a command as well.
+  // All but Unknown, which is no message, and a report that is also a command.
   EXPECT_EQ(commands.size(), std::variant_size_v<Command> - 1);
   EXPECT_EQ(reports.size(), std::variant_size_v<Report> - 2);
   const auto names = fixture_names();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where frames begin and end in a stream (docs/protocols/ping360.md 1.1).
+// Boundaries of frames in a stream (docs/protocols/ping360.md 1.1).
 #include "protocol/ping360/frame.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each field at its documented offset. The examples leave some fields zero or equal to a neighbour, so that a
-// swapped pair would pass them; here every byte of a payload holds its own offset, and no two fields agree
-// (docs/protocols/ping360.md 2). Offsets are those of the document: from the start of the payload.
+// Each field at its documented offset (docs/protocols/ping360.md 2). In the examples some fields are zero or
+// equal to a neighbour, so they cannot detect a swapped pair. Here every byte of a payload holds its own
+// offset, so all fields differ. Offsets count from the start of the payload, as in the document.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -12,7 +12,7 @@
 namespace sonard::ping360::testing {
 namespace {
 
-/// A frame of which byte i of the payload is i + 1.
+/// A frame in which byte i of the payload is i + 1.
 Bytes counting_frame(MessageId id, std::size_t size) {
   Bytes payload(size);
   std::iota(payload.begin(), payload.end(), std::uint8_t{1});

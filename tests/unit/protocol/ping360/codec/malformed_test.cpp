@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that mean nothing are refused, with the place; whatever is read can be written and read again.
+// Invalid bytes are refused with their offset. Any message that was decoded can be encoded and decoded again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,7 +96,7 @@ TEST(Ping360Malformed, random_frames_decode_to_what_encodes_again) {
     }
     const Bytes frame = make_frame(all_ids[random() % 16], 0, 0, payload);
     const auto command = decode_command(frame);
-    // An unknown message keeps its number only; without its payload that may be an older request.
+    // An unknown message keeps only its number. Without its payload, it may decode as an older request.
     if (command && !std::holds_alternative<Unknown>(*command)) {
       ++commands;
       EXPECT_TRUE(*decode_command(encode(*command)) == *command);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checklist of what a head must do for its clients, item by item (docs/protocols/ping360.md 8).
+// The checklist of a head's duties for its clients, item by item (docs/protocols/ping360.md 8).
 #include "bench.hpp"
 
 namespace sonard::ping360 {
@@ -66,8 +66,8 @@ TEST(Ping360Checklist1, the_state_is_that_of_the_last_command_with_the_samples_o
   EXPECT_EQ(bytes_of(state.data), test_samples(0, 200));
 }
 
-// The published definition of device_data: where its data are filled in, all else is as when they were
-// captured.
+// By the published definition of device_data, if its data are filled in, all other fields date from the time
+// when the data were captured.
 TEST(Ping360Checklist1, the_state_goes_with_its_samples_while_the_next_ping_is_under_way) {
   Bench bench;
   bench.command(ping_at(150));
@@ -77,7 +77,7 @@ TEST(Ping360Checklist1, the_state_goes_with_its_samples_while_the_next_ping_is_u
   next.number_of_samples = 300;
   next.gain_setting = 2;
   bench.command(next);
-  bench.run_for(100ms);  // it turns for 0.9 s
+  bench.run_for(100ms);  // the head turns for 0.9 s
   EXPECT_EQ(std::get<DeviceData>(bench.ask(GeneralRequest{2300}).at(0)), before);
   bench.run_for(5s);
   next.angle = 310;
@@ -94,7 +94,7 @@ TEST(Ping360Checklist1, the_state_of_a_scan_is_its_last_ping) {
   Bench bench;
   bench.command(scan_of(10, 200, 10));
   bench.wait_for<AutoDeviceData>(3);
-  bench.run_for(40ms);  // of 61 that it turns for
+  bench.run_for(40ms);  // the head turns for 61 ms
   const auto state = std::get<AutoDeviceData>(bench.ask(GeneralRequest{2301}).at(0));
   EXPECT_EQ(state, bench.all<AutoDeviceData>().back());
 }
@@ -270,7 +270,7 @@ TEST(Ping360Checklist3, limits_of_a_scan_below_0_where_the_head_is_told_to_read_
   DeviceConfig config;
   config.signed_scan_angles = true;
   Bench bench(config);
-  bench.command(scan_of(65336, 4, 2));  // -200
+  bench.command(scan_of(65336, 4, 2));  // -200 gradians
   const auto first = bench.wait_for<AutoDeviceData>(2);
   EXPECT_EQ(angles_of(first), (std::vector{200, 202}));
   EXPECT_EQ(first.at(0).start_angle, 65336) << "as it was commanded";

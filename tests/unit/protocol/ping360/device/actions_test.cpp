@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs, records, names and words: what the caller of a head gets beside the frames.
+// Results of a head besides frames: jobs, records, names of clients and log lines.
 #include <numbers>
 
 #include "bench.hpp"
@@ -206,7 +206,7 @@ TEST(Ping360Actions, what_happens_is_told_in_words) {
   Bench bench(with_serial_line());
   bench.raw({}, client_a);
   bench.command(scan_of(0, 399), client_b);
-  bench.command(scan_of(0, 399), client_b);  // a client that is not content
+  bench.command(scan_of(0, 399), client_b);  // a client that repeats its command
   bench.command(scan_of(10, 20, 2), client_b);
   bench.command(MotorOff{}, client_a);
   bench.step(ClientGone{client_b});

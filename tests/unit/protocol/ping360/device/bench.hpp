@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head on a bench: virtual time, a renderer that takes a set time, everything said written down.
+// A head in virtual time, with a renderer that takes a set time. The bench records everything sent.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,12 +26,12 @@ namespace sonard::ping360 {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Frames as the document prints them and clients send them (tests/data/ping360).
+/// A frame as the document prints it or clients send it (tests/data/ping360).
 inline Bytes fixture(const std::string& name) {
   return sonard::testing::load_hex_fixture("ping360", name);
 }
 
-// Clients. The serial line is channel 1 where a test has one.
+// Clients. In tests with a serial line, it is channel 1.
 inline const Peer client_a{0, {0x7F000001, 4000}, 0};
 inline const Peer client_b{0, {0x7F000001, 4001}, 0};
 inline const Peer serial_client{1, {}, 0};
@@ -42,7 +42,7 @@ inline DeviceConfig with_serial_line() {
   return config;
 }
 
-/// Any values that tell pings and samples apart.
+/// Arbitrary values that differ between pings and samples.
 inline Bytes test_samples(std::uint64_t ping, int count) {
   Bytes samples(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -55,12 +55,12 @@ inline PingImage test_image(const PingJob& job) {
   return {job.number, test_samples(job.number, job.bins()), {}};
 }
 
-/// What a head says, with data of its own: views do not outlive the bench's records.
+/// A frame from the head with its report. It owns its data, because reports are views of `frame`.
 struct Heard {
   TimePoint at{};
   Peer to;
   Bytes frame;
-  Report report;  ///< views `frame`
+  Report report;  ///< a view of `frame`
 
   template <class Message>
   const Message* get() const {
@@ -74,13 +74,13 @@ class Bench {
     step(TimePassed{});
   }
 
-  // What a test sets.
+  // Set by tests.
   std::chrono::nanoseconds render_time{0};
   std::function<PingImage(const PingJob&)> render = test_image;
   bool renderer_answers = true;  ///< false: the test answers the jobs itself
   bool renderer_fails = false;
 
-  // What a test looks at.
+  // Read by tests.
   Device device;
   TimePoint now{};
   std::vector<Heard> heard;
@@ -94,7 +94,7 @@ class Bench {
   void command(const Command& command, const Peer& from = client_a) { raw(encode(command), from); }
   void answer(const PingImage& image) { step(PingRendered{image}); }
 
-  /// The reports of one type among those heard from index `from` on.
+  /// The reports of one type among those sent from index `from` on.
   template <class Message>
   std::vector<Message> all(std::size_t from = 0) const {
     std::vector<Message> found;
@@ -105,7 +105,7 @@ class Bench {
     }
     return found;
   }
-  /// The answers to this command that come at once.
+  /// Sends a command and returns the answers that the head sends at once.
   std::vector<Report> ask(const Command& question, const Peer& from = client_a) {
     const std::size_t before = heard.size();
     command(question, from);
@@ -117,7 +117,7 @@ class Bench {
   }
 
   TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
-  /// One thing happens.
+  /// Runs until after the next event.
   void run_once() {
     now = std::max(now, next_event());
     if (job_ && job_->first <= now) {
@@ -134,7 +134,7 @@ class Bench {
     now = std::max(now, end);
   }
   void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
-  /// Until `count` more messages of this type were heard, for `limit` at most.
+  /// Runs until `count` more messages of this type were sent, for at most `limit`.
   template <class Message>
   std::vector<Message> wait_for(std::size_t count, std::chrono::nanoseconds limit = 100s) {
     const std::size_t from = heard.size();
@@ -172,7 +172,7 @@ class Bench {
   }
 
  private:
-  /// Each message is one frame, unless the head is told to cut them.
+  /// Each message must be one frame, unless the head is configured to split frames.
   void hear(const Outgoing& message) {
     partial_.insert(partial_.end(), message.bytes.begin(), message.bytes.end());
     const auto found = next_frame(partial_);
@@ -193,7 +193,7 @@ class Bench {
   Bytes partial_;
 };
 
-/// What a log shows of a job; empty: nothing.
+/// The value of a job's setting as a log shows it; empty if the job lacks it.
 inline std::string setting(const PingJob& job, std::string_view name) {
   const auto found = std::ranges::find(job.settings, name, &Setting::name);
   return found == job.settings.end() ? std::string() : found->value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What public clients do, in their order and with their bytes (docs/protocols/ping360.md 6): models of their
-// loops, written from the description of what they send and wait for.
+// Public clients, with their order of messages and their bytes (docs/protocols/ping360.md 6). The models of
+// their loops follow the description of the messages that they send and await.
 #include "bench.hpp"
 
 namespace sonard::ping360 {
@@ -8,13 +8,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// The end of a client: what it hears in answer, and when it gives up.
+/// A client's end of the line: it reads the frames sent to its address, with timeouts.
 struct Client {
   Bench& bench;
   Peer peer = client_a;
   std::size_t read = 0;
 
-  /// Until a frame comes that `wanted` says yes to; what comes before it is skipped.
+  /// The next frame that `wanted` accepts; earlier frames are skipped. nullopt after `timeout`.
   std::optional<Heard> wait(std::chrono::nanoseconds timeout,
                             const std::function<bool(const Report&)>& wanted) {
     const TimePoint end = bench.now + timeout;
@@ -42,7 +42,7 @@ struct Client {
   }
 };
 
-/// Of the frames that a client sends on the wire, one byte of the command is not the default.
+/// The command as brping sends it. One of its bytes differs from the default.
 Transducer as_brping(int angle) {
   Transducer command = std::get<Transducer>(*decode_command(fixture("transducer_brping")));
   command.angle = static_cast<std::uint16_t>(angle);
@@ -53,7 +53,7 @@ Transducer as_brping(int angle) {
 
 TEST(Ping360Clients, brping_initialises_and_turns_with_mode_0) {
   DeviceConfig config;
-  config.max_datagram = 100;  // it puts pieces together again
+  config.max_datagram = 100;  // brping joins the pieces
   Bench bench(config);
   Client client{bench};
   bench.raw(fixture("request_protocol_version"));
@@ -87,7 +87,7 @@ TEST(Ping360Clients, brping_gets_a_nack_back_for_what_is_refused) {
 
 TEST(Ping360Clients, brping_on_a_serial_line_begins_with_u_and_finds_a_quiet_head) {
   Bench bench(with_serial_line());
-  bench.command(scan_of(0, 399), serial_client);  // left behind by somebody
+  bench.command(scan_of(0, 399), serial_client);  // an earlier client left this scan running
   bench.run_for(1s);
   Client client{bench, serial_client, bench.heard.size()};
   bench.raw({'U'}, serial_client);
@@ -97,7 +97,7 @@ TEST(Ping360Clients, brping_on_a_serial_line_begins_with_u_and_finds_a_quiet_hea
   EXPECT_EQ(client.read, bench.heard.size());
 }
 
-// ---- ping-cpp, the test of hardware
+// ---- ping-cpp, its hardware test
 
 struct Ping360PingCpp : ::testing::Test {
   Bench bench;
@@ -187,7 +187,7 @@ TEST(Ping360Clients, ros_node_in_python_repeats_its_bytes) {
 
 // ---- pnarvor/ping360_driver
 
-/// It reads a datagram into 1024 bytes and insists on 14 of them first.
+/// The client reads datagrams into 1024 bytes, and the first one must have 14 bytes.
 TEST(Ping360Clients, pnarvor_reads_its_512_samples_whole) {
   Bench bench;
   bench.raw(fixture("request_protocol_version"));
@@ -227,7 +227,8 @@ struct Ping360PingViewer : ::testing::Test {
                       .transmit_frequency_khz = 750,
                       .number_of_samples = 1200};
 
-  /// An empty datagram, 100 ms, the question; the first frame of any kind is taken for the answer.
+  /// Sends an empty datagram, waits 100 ms and sends the request. The first frame of any type must be the
+  /// answer.
   void detect() {
     bench.raw({});
     bench.run_for(100ms);
@@ -242,7 +243,7 @@ struct Ping360PingViewer : ::testing::Test {
     client.read = bench.heard.size();
     bench.command(wanted);
   }
-  /// To the bit, or it would order again.
+  /// True if all settings are exact. Otherwise the client would send its order again.
   bool is_content_with(const AutoDeviceData& data) const {
     return data.gain_setting == wanted.gain_setting &&
            data.transmit_duration_us == wanted.transmit_duration_us &&
@@ -269,7 +270,7 @@ TEST_F(Ping360PingViewer, scans_turns_changes_settings_and_leaves) {
     ASSERT_TRUE(is_content_with(*answer->get<AutoDeviceData>()));
     EXPECT_EQ(answer->get<AutoDeviceData>()->angle, ping % 400);
   }
-  // Its sector of 120 degrees: 133 gradians about 200, that is about straight ahead.
+  // Its sector of 120 degrees: 133 gradians about 200, which is straight ahead.
   wanted.start_angle = 134;
   wanted.stop_angle = 265;
   wanted.num_steps = 4;
@@ -302,8 +303,9 @@ TEST_F(Ping360PingViewer, older_firmware_is_turned_with_single_commands_quickly_
   }
 }
 
-/// The loop of ping-viewer with firmware up to 3.3.0 and of iPing360Device: each answer, to whichever
-/// command, is the order for the angle behind it. A command that has no answer in time is sent again.
+/// The loop of ping-viewer with firmware up to 3.3.0 and of iPing360Device. After an answer to any command,
+/// it sends the command for the angle after the answer's angle. Without an answer in time it repeats its
+/// command.
 struct StepLoop {
   Client client;
   Transducer command;
@@ -311,7 +313,8 @@ struct StepLoop {
   std::chrono::nanoseconds patience;
 
   void send() { client.bench.command(command, client.peer); }
-  /// Until `count` answers have come; returns their angles. The newest one is not followed by a command yet.
+  /// Runs until `count` answers have come and returns their angles. It sends no command after the last
+  /// answer.
   std::vector<int> run(std::size_t count) {
     std::vector<int> angles;
     for (int unanswered = 0; angles.size() < count && unanswered < 100;) {
@@ -338,7 +341,7 @@ std::vector<int> turn_of(int first, int step, std::size_t count) {
   return angles;
 }
 
-/// Two turns. The way to the first angle takes longer than the loop waits.
+/// Two turns. The head needs longer to the first angle than the loop waits.
 void expect_one_ping_an_angle(StepLoop loop, std::chrono::nanoseconds render_time) {
   Bench& bench = loop.client.bench;
   bench.render_time = render_time;
@@ -351,9 +354,9 @@ void expect_one_ping_an_angle(StepLoop loop, std::chrono::nanoseconds render_tim
   EXPECT_EQ(bench.device.counters().commands_dropped, 0U);
 }
 
-// It begins at 200 gradians, where it draws straight ahead: 1.2 s from where the head is at boot. It waits 6
-// ms a gradian and 200 ms for each answer. A renderer that is slower than this makes it send each command
-// again.
+// The loop begins at 200 gradians, which it draws straight ahead. The head needs 1.2 s to this angle after
+// boot. The loop waits 6 ms per gradian plus 200 ms for each answer. With a slower renderer it repeats each
+// command.
 TEST(Ping360Clients, ping_viewer_with_firmware_3_3_0_gets_one_ping_an_angle) {
   for (const int step : {1, 5}) {
     for (const auto render_time : {5ms, 300ms}) {
@@ -375,8 +378,8 @@ TEST(Ping360Clients, iping360device_gets_one_ping_an_angle_though_it_repeats_the
   }
 }
 
-// A command that is sent again at the moment when its answer leaves cannot be told from a wish for another
-// ping. It costs one ping; the two answers make two commands, which are equal.
+// The head cannot distinguish a command repeated just as its answer leaves from a request for another ping.
+// This costs one ping. The two answers cause two commands, which are equal.
 TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) {
   Bench bench;
   StepLoop loop{{bench}, as_brping(0), 1, 200ms};
@@ -393,7 +396,7 @@ TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) 
   EXPECT_EQ(bench.jobs.size(), before + 100);
 }
 
-// A client that orders its scan again every 5 s; a turn of 20 m takes 20 s.
+// A client that repeats its order to scan every 5 s. A turn at 20 m takes 20 s.
 TEST(Ping360Clients, auto_transmit_sent_every_5_s_scans_whole_turns) {
   Bench bench;
   const AutoTransmit command{.sample_period = 888, .number_of_samples = 1200};
@@ -425,13 +428,13 @@ TEST_F(Ping360PingViewer, asks_in_the_old_way_too) {
   EXPECT_TRUE(client.wait_for<DeviceInformation>(1s));
 }
 
-// ---- BlueOS, which looks for the best speed of a serial line
+// ---- BlueOS, which searches the best speed of a serial line
 
 TEST(Ping360Clients, blueos_asks_ten_times_at_each_speed_and_hears_nothing_at_wrong_ones) {
   Bench bench(with_serial_line());
   Client client{bench, serial_client};
   for (int i = 0; i < 10; ++i) {
-    bench.raw({0x11, 0x42, 0x52, 0xE6, 0x0F, 0x98, 0x00}, serial_client);  // what a wrong speed makes of it
+    bench.raw({0x11, 0x42, 0x52, 0xE6, 0x0F, 0x98, 0x00}, serial_client);  // as read at a wrong speed
     EXPECT_FALSE(client.wait_for<DeviceInformation>(100ms));
   }
   for (int i = 0; i < 10; ++i) {
@@ -440,7 +443,7 @@ TEST(Ping360Clients, blueos_asks_ten_times_at_each_speed_and_hears_nothing_at_wr
   }
 }
 
-// ---- A head that is locked to the first (docs/security.md)
+// ---- A head that is locked to its first client (docs/security.md)
 
 const Peer other_host{0, {0x7F000003, 4000}, 0};
 
@@ -464,7 +467,7 @@ TEST(Ping360Lock, drops_what_others_send_until_the_first_is_silent_for_its_timeo
   bench.run_until(29s);
   EXPECT_GT(bench.all<AutoDeviceData>(before).size(), 100U) << "the scan goes on";
   bench.raw(fixture("request_protocol_version"),
-            {0, {client_a.remote.address, 4999}, 0});  // its host speaks again
+            {0, {client_a.remote.address, 4999}, 0});  // its host sends again
   bench.run_until(58s);
   EXPECT_TRUE(bench.ask(GeneralRequest{5}, other_host).empty());
   bench.run_until(59s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the head refuses to be.
+// Configurations that the head refuses.
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -9,7 +9,7 @@
 namespace sonard::ping360 {
 namespace {
 
-/// The complaint about the default head with one thing changed; empty when it is accepted.
+/// The error message for the default head with one change; empty if the head accepts it.
 std::string complaint(const std::function<void(DeviceConfig&)>& change) {
   DeviceConfig config;
   change(config);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The client's side against the head itself, and against a link that loses and cuts (6).
+// The client's side against the head itself, and against a link that loses and cuts frames (6).
 #include "protocol/ping360/host.hpp"
 
 #include "bench.hpp"
@@ -14,7 +14,7 @@ class Session {
 
   explicit Session(const DeviceConfig& config = {}) : head(config), host(0ns) {}
 
-  // What a test sets: the pieces in which a frame arrives; none: it is lost.
+  // Set by tests: the pieces in which a frame arrives; an empty list loses the frame.
   Carrier to_head = [](const Bytes& frame) { return std::vector<Bytes>{frame}; };
   Carrier to_host = to_head;
 
@@ -179,7 +179,7 @@ TEST(Ping360Host, asks_again_for_what_is_lost) {
   EXPECT_EQ(session.pings.size(), 40U);
 }
 
-// The second copy of an answer is none: a command for each would keep two on their way for ever.
+// The second copy of an answer must cause no command; otherwise two commands would stay under way for ever.
 TEST(Ping360Host, a_link_that_doubles_what_it_carries_makes_no_command_more) {
   Session session;
   session.to_host = [](const Bytes& frame) { return std::vector<Bytes>{frame, frame}; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings that begin when somebody else says so: a simulated time rules.
+// Pings that wait for a permission, because a simulator's clock decides when they begin.
 #include "bench.hpp"
 
 namespace sonard::ping360 {
@@ -14,7 +14,7 @@ DeviceConfig waiting() {
 struct Ping360Permission : ::testing::Test {
   Bench bench{waiting()};
 
-  /// Grants what the head would begin by now, as a server does.
+  /// Grants the ping that the head would begin by now, as a server does. Returns false if there is none.
   bool grant() {
     const auto next = bench.last.next_ping;
     if (!next || next->from > bench.now) {
@@ -60,7 +60,7 @@ TEST_F(Ping360Permission, pings_are_the_same_and_in_order_however_fast) {
   bench.command(scan_of(0, 399, 3));
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(grant());
-    bench.run_for(1ms);  // no head turns as fast as that by its own clock
+    bench.run_for(1ms);  // a head that uses its own clock cannot turn as fast
   }
   Bench own;
   own.command(scan_of(0, 399, 3));

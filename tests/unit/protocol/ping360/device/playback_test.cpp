@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head that plays back: it sends what it is fed, when that is due, whatever the client asks for.
+// A head in playback sends the pings that it is fed when they are due, whatever the client requests.
 #include "bench.hpp"
 #include "protocol/ping360/recorded_form.hpp"
 
 namespace sonard::ping360 {
 namespace {
 
-/// At 100 gradians, 30 samples, from a scan that no test asks for.
+/// A ping at 100 gradians with 30 samples, from a scan that no test requests.
 PingForm recorded_form_of_scan() {
   AutoTransmit scan = scan_of(90, 110, 5);
   scan.gain_setting = 1;
@@ -47,7 +47,7 @@ TEST_F(Ping360Playback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 
-// The answer has recorded settings. What the client has asked for decides which commands are equal.
+// The answer has the recorded settings, but commands are compared by the settings that the client requested.
 TEST_F(Ping360Playback, a_repeated_command_shares_the_recorded_answer) {
   bench.render_time = 500ms;
   bench.command(ping_at(7));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a Ping360 sends what comes from a log, and what is told about requests that differ.
+// How a Ping360 sends a ping from a log, and which differences from the request are reported.
 #include "protocol/ping360/recorded_form.hpp"
 
 #include "bench.hpp"

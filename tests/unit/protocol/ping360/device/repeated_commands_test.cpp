@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that repeat one that has no answer yet, and scans that are ordered again
+// Commands that repeat an unanswered command, and repeated orders to scan
 // (docs/protocols/ping360.md 3.2, 3.3).
 #include "bench.hpp"
 
@@ -17,8 +17,8 @@ std::vector<int> answered_angles(const Bench& bench) {
 // ---- transducer
 
 TEST(Ping360RepeatedCommand, shares_the_answer_of_the_one_under_way_wherever_that_is) {
-  // It turns for 0.61 s, listens for 0.4 ms, is rendered for 1 s, and is answered 18 ms later at the
-  // earliest.
+  // The head turns for 0.61 s and listens for 0.4 ms. Rendering takes 1 s, and the answer leaves 18 ms later
+  // at the earliest.
   for (const auto later : {0ms, 200ms, 609ms, 611ms, 1600ms}) {
     Bench bench;
     bench.render_time = 1s;
@@ -106,7 +106,7 @@ TEST(Ping360RepeatedCommand, of_another_client_is_done_for_that_client) {
   Bench bench;
   bench.command(ping_at(50), client_a);
   bench.command(ping_at(50), client_b);
-  bench.command(ping_at(50), client_a);  // joins the first, though another one has come since then
+  bench.command(ping_at(50), client_a);  // joins the first command, although another has arrived since
   bench.command(ping_at(50), client_b);
   bench.run_for(5s);
   ASSERT_EQ(bench.heard.size(), 2U);

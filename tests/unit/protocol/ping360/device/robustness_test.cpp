@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Nothing that a peer sends makes the head grow, stall or talk for ever; nobody's absence stops it.
+// No bytes from a peer make the head grow, stall or send without end. No missing peer stops it.
 #include <memory>
 #include <random>
 
@@ -108,7 +108,7 @@ TEST(Ping360Robustness, a_flood_of_equal_commands_is_one_command) {
     bench.raw(fixture("auto_transmit"));
     bench.run_for(1ms);
   }
-  // The way back takes 1.2 s; a ping of 1024 samples of 2 us takes 26.1 ms.
+  // The head turns back for 1.2 s. A ping of 1024 samples of 2 us takes 26.1 ms.
   EXPECT_NEAR(static_cast<double>(bench.all<AutoDeviceData>().size()), (2.0 - 1.22) / 26.148e-3, 2.0);
   EXPECT_LE(
       std::ranges::count_if(bench.notices, [](const auto& it) { return it.starts_with("auto scan by"); }), 1);

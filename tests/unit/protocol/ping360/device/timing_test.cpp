@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When things happen (docs/protocols/ping360.md 3.7).
+// Times of turns, pings and answers (docs/protocols/ping360.md 3.7).
 #include "bench.hpp"
 
 namespace sonard::ping360 {
@@ -9,11 +9,11 @@ double seconds(TimePoint time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// Time of a whole turn of 1200 samples, as a scan.
+/// Duration in seconds of a full turn of pings with 1200 samples, as a scan.
 double turn_s(int sample_period, int step, double time_scale = 1.0) {
   DeviceConfig config;
   config.time_scale = time_scale;
-  config.idle_timeout = 0s;  // a turn may take longer, and this client only listens
+  config.idle_timeout = 0s;  // a turn may take longer, and this client sends nothing
   Bench bench(config);
   AutoTransmit command = scan_of(0, 399, step);
   command.number_of_samples = 1200;
@@ -24,7 +24,7 @@ double turn_s(int sample_period, int step, double time_scale = 1.0) {
   return seconds(bench.jobs.at(pings).transmit_time - bench.jobs.at(0).transmit_time);
 }
 
-// Measured on real hardware over Ethernet; the two ranges and their periods are those of 2.3.
+// Measured on real hardware over Ethernet, with the two ranges and periods of 2.3.
 TEST(Ping360Timing, a_turn_takes_as_long_as_measured_within_5_percent) {
   EXPECT_NEAR(turn_s(88, 1), 10.74, 0.05 * 10.74);
   EXPECT_NEAR(turn_s(888, 1), 20.57, 0.05 * 20.57);
@@ -48,7 +48,7 @@ TEST(Ping360Timing, a_loop_of_commands_takes_as_long_as_a_scan) {
 
 TEST(Ping360Timing, an_answer_comes_when_it_has_turned_listened_and_worked) {
   Bench bench;
-  Transducer command = ping_at(390);  // the short way: 10
+  Transducer command = ping_at(390);  // the short way is 10 gradians
   command.number_of_samples = 1000;
   command.sample_period = 400;  // 10 us: 10 ms in all
   bench.command(command);
