@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loading a configuration that a test writes down as text.
+// Loads configurations that a test writes as text.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@
 
 namespace sonard::server {
 
-/// The least that loads. Text appended with an indent of 6 goes on in the head's network, with 4 in the head,
-/// with 2 in the list of heads, and without in the document. The network starts on line 8.
+/// The smallest valid configuration. Text appended with an indent of 6 continues the head's network, with 4
+/// the head, with 2 the list of heads, and without an indent the document. The network starts on line 8.
 inline const std::string minimal_config =
     "world: {file: world.sdf}\n"
     "poses:\n"
@@ -27,12 +27,12 @@ inline const std::string minimal_config =
     "      alternate_address: 127.0.0.2\n"
     "      netmask: 255.0.0.0\n";
 
-/// A folder of its own for each test, gone when the test ends.
+/// A temporary folder for each test, deleted when the test ends.
 class ConfigFolder : public testing::Test {
  protected:
   /// Writes `text` to "config.yaml" and loads it.
   LoadedConfig load(const std::string& text) const;
-  /// What load() complains about, one line each, without the folder; empty when it succeeds.
+  /// The errors of load(), one line each, without the folder; empty if it succeeds.
   std::vector<std::string> complaints(const std::string& text) const;
 
   const test::TemporaryFolder temporary_;

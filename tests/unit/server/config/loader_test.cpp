@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loader makes of good configurations, and what it says about bad ones.
+// Values that the loader reads from good configurations, and its messages for bad ones.
 #include "server/config/loader.hpp"
 
 #include <cmath>
@@ -32,7 +32,7 @@ using testing::StartsWith;
 
 class Loader : public ConfigFolder {};
 
-/// The first head, which is a Gemini.
+/// The first head, which must be a Gemini.
 const GeminiConfig& gemini_of(const DaemonConfig& config) {
   return gemini_config(config.heads.at(0));
 }
@@ -102,7 +102,7 @@ TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
 }
 
 TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device) {
-  // Fresh water: only the f^2 term is left, so 161.088 dB/km at 720 kHz (docs/physics.md 2.2) scales exactly.
+  // Fresh water: only the f^2 term remains, so 161.088 dB/km at 720 kHz (docs/physics.md 2.2) scales exactly.
   const LoadedConfig loaded =
       load(minimal_config + "water: {temperature_c: 10, salinity_ppt: 0, depth_m: 5, ph: 7}\n");
   const double expected_db_per_m = 0.161088 * std::pow(723.38 / 720.0, 2);
@@ -135,13 +135,14 @@ TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
       load(minimal_config + "    mount: {position_m: [0.5, 0, -0.25], rpy_deg: [0, 20, 0]}\n");
   const render::Pose& mount = down.config.heads.at(0).T_vehicle_sonar;
   EXPECT_EQ(mount.position_m, glm::dvec3(0.5, 0, -0.25));
-  // A down tilt of 20 degrees: the acoustic axis points forward and down.
+  // With a tilt of 20 degrees down the acoustic axis points forward and down.
   const glm::dvec3 axis = mount.orientation * glm::dvec3(1, 0, 0);
   EXPECT_NEAR(axis.x, std::cos(20 * std::numbers::pi / 180), 1e-12);
   EXPECT_NEAR(axis.y, 0, 1e-12);
   EXPECT_NEAR(axis.z, -std::sin(20 * std::numbers::pi / 180), 1e-12);
 
-  // Rz(90) Ry(0) Rx(90): the body's y axis goes up by the roll and stays there; x turns to the left.
+  // Rz(90) Ry(0) Rx(90): the roll turns the body's y axis up, and the yaw leaves it there. x turns to the
+  // left.
   const LoadedConfig rolled = load(minimal_config + "    mount: {rpy_deg: [90, 0, 90]}\n");
   const glm::dquat& q = rolled.config.heads.at(0).T_vehicle_sonar.orientation;
   EXPECT_NEAR(glm::length(q * glm::dvec3(0, 1, 0) - glm::dvec3(0, 0, 1)), 0, 1e-12);
@@ -181,15 +182,15 @@ TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
   const LoadedConfig loaded = load(minimal_config);
   EXPECT_THAT(loaded.problem_with("world.file", "no such file"),
               HasSubstr("config.yaml:1:15: world.file: no such"));
-  // A default has no place of its own: it stands where it comes from, or else in the mapping around it.
+  // A default has no place in the file. Problems name the key that it derives from, or else the mapping
+  // around it.
   EXPECT_THAT(loaded.problem_with("heads[0].network.bind", "in use"),
               HasSubstr("config.yaml:9:26: heads[0].network.bind: in use"));
   EXPECT_THAT(loaded.problem_with("heads[0].network.command_port", "?"),
               HasSubstr("config.yaml:9:7: heads[0].net"));
 }
 
-// --- what goes wrong
-// -----------------------------------------------------------------------------------------------
+// ---- Errors
 
 TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
   EXPECT_THAT(
@@ -210,7 +211,7 @@ TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
   EXPECT_THAT(complaints(minimal_config + "temperature_c: 10\n"),
               ElementsAre(StartsWith("config.yaml:11:1: temperature_c: unknown key; it is "
                                      "'water.temperature_c' (expected one of log,")));
-  // A key of several sections is named without one.
+  // A key that several sections have is named without a section.
   EXPECT_THAT(complaints(minimal_config + "bind: 127.0.0.1\n"),
               ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
 }
@@ -437,7 +438,7 @@ TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
                 "\n    network: {address: 127.0.0.2, netmask: 255.0.0.0}\n")
         .warning_lines();
   };
-  // An m1200d has 1.2 MHz, beyond the 1 MHz of Francois and Garrison; an m750d 750 kHz.
+  // An m1200d uses 1.2 MHz, above the limit of 1 MHz of Francois and Garrison. An m750d uses 750 kHz.
   EXPECT_THAT(
       warnings("m1200d", "{}"),
       ElementsAre(AllOf(HasSubstr("water: the absorption is computed outside of what its formula was made "
@@ -531,7 +532,7 @@ TEST_F(Loader, reads_mavlink) {
   EXPECT_EQ(full.component_id, 197);
   EXPECT_EQ(full.messages, MavlinkMessages::local_position);
   EXPECT_EQ(full.T_world_local.position_m, glm::dvec3(1, 2, 3));
-  // North of the vehicle is east of the world.
+  // The local frame's north is the world's east.
   EXPECT_NEAR((full.T_world_local.orientation * glm::dvec3(0, 1, 0)).x, 1, 1e-12);
 }
 
@@ -638,7 +639,7 @@ TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
   EXPECT_THAT(complaints(minimal_config + any + ", command_port: 52911}\n"), IsEmpty());
 }
 
-/// A head that goes on in the list of heads, reached as `serial` says.
+/// An item for the list of heads: a Micron with this `serial` section.
 std::string micron_of(const std::string& name, int node, const std::string& serial) {
   return "  - {name: " + name + ", type: micron, serial: {" + serial +
          "}, device: {node: " + std::to_string(node) + "}}\n";
@@ -718,7 +719,7 @@ TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
                                       fmt::join(types, " or "))));
 }
 
-// What a head of another type may have is not known, so its other keys are no mistakes.
+// The valid keys of an unknown type are unknown, so the head's other keys are not reported.
 TEST_F(Loader, ends_the_complaints_about_a_head_with_its_unknown_type) {
   const auto complaint = [this](const std::string& type) {
     std::string text = minimal_config + "    wibble: 1\n    serial: {}\n";
@@ -761,7 +762,7 @@ TEST_F(Loader, says_which_word_was_probably_meant) {
       ElementsAre("config.yaml:11:15: log.format: 'xml' is not understood (expected one of text, json)"));
 }
 
-// The parser places an empty value at what follows it.
+// The parser gives an empty value the place of the next token.
 TEST_F(Loader, places_an_empty_value_at_its_key) {
   EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m:\n  ph: 8\n"),
               ElementsAre(StartsWith("config.yaml:12:3: water.depth_m: is empty (expected a number")));
@@ -779,7 +780,7 @@ TEST_F(Loader, places_an_empty_value_at_its_key) {
               Contains(StartsWith("config.yaml:4:3: heads[0]: is empty (expected a mapping")));
 }
 
-// Places are counted by hand; columns count from 1.
+// Places were counted by hand; columns count from 1.
 TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
   const std::string rest = "poses: {initial: {}}\nheads:\n  - name: \"bow\"\n    type: micron\n";
   const std::string quote = "the quote that begins here is not closed (expected another ";
@@ -793,7 +794,7 @@ TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
               ElementsAre("config.yaml:1:15: " + quote + "' at its end)"));
   EXPECT_THAT(complaints("a: 'it''s'\nworld:\n  - \"x\n  - \"y\"\n"),
               ElementsAre("config.yaml:3:5: " + quote + "\" at its end)"));
-  // To the end of the file, which the parser takes for a text.
+  // The quote reaches to the end of the file, because the parser takes the rest for text.
   EXPECT_THAT(complaints("world: {file: w.sdf}\nengine: \"cpu\nposes: {initial: {}}\n"),
               ElementsAre("config.yaml:2:9: " + quote + "\" at its end)"));
   EXPECT_THAT(complaints("heads:\n  - name: \"bow\n    type: micron\n"),
@@ -807,7 +808,7 @@ TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
 }
 
 TEST_F(Loader, blames_no_quote_that_is_closed) {
-  // Over two lines, and in a comment, and within a word; what is wrong is the indent of the last line.
+  // Quotes over two lines, in a comment and within a word. The error is the indent of the last line.
   EXPECT_THAT(complaints("world:\n  file: \"a\n    b.sdf\" # it's\n  missing: don't\n   x: 1\n"),
               ElementsAre(StartsWith("config.yaml:5:4: this line is indented by 3 space(s)")));
   EXPECT_THAT(complaints("world: {file: [a,\n  b], x: \"y\"}\n  z: 1\n"),
@@ -816,7 +817,7 @@ TEST_F(Loader, blames_no_quote_that_is_closed) {
 
 TEST_F(Loader, takes_no_other_types_than_it_is_given) {
   const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
-  load(minimal_config + micron);  // which writes the file
+  load(minimal_config + micron);  // load() writes the file
   const HeadKind* const kinds[] = {&gemini_kind()};
   try {
     load_config(folder_ / "config.yaml", kinds);
@@ -864,7 +865,7 @@ TEST_F(Loader, points_at_malformed_yaml) {
   EXPECT_THAT(complaints("world: a: b\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
 }
 
-// Places are counted by hand; columns count from 1.
+// Places were counted by hand; columns count from 1.
 TEST_F(Loader, names_tabs_and_wrong_indents) {
   EXPECT_THAT(
       complaints("a: 1\n\tb: 2\n"),
@@ -931,7 +932,7 @@ TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
 }
 
 TEST_F(Loader, wants_one_document_that_is_a_mapping) {
-  // yaml-cpp finds documents without end there.
+  // For this text, yaml-cpp returns documents without end.
   EXPECT_THAT(complaints("# a comment\n, world\n"),
               ElementsAre("config.yaml:2:1: nothing can begin with this character (expected valid YAML)"));
   EXPECT_THAT(complaints(""), ElementsAre("config.yaml: holds 0 YAML documents (expected one)"));

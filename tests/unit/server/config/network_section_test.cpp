@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How clients reach a serial device: what is read, and what is refused.
+// The section that sets how clients reach a serial device: valid values and errors.
 #include "server/config/network_section.hpp"
 
 #include <string>
@@ -26,7 +26,7 @@ struct SerialSection : testing::Test {
     YamlSection section(findings, YAML::Load(text), "heads[0].serial");
     return read_serial_link(section, "/etc/sonard");
   }
-  /// "line:column: key: message" of everything that is wrong with the text.
+  /// All errors in the text, as "line:column: key: message".
   std::vector<std::string> complaints(const std::string& text) {
     read(text);
     std::vector<std::string> lines;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What ships in configs/ loads without a warning, and the two that scripts rely on say what they promise.
+// The files of configs/ load without a warning, and the two that scripts use have the values that these need.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -45,7 +45,7 @@ TEST(ShippedConfigs, tell_editors_their_schema) {
   }
 }
 
-/// Paths of keys that the reference has no sentence for.
+/// Collects the paths of keys that have no sentence in the reference.
 void find_silent(const std::vector<KeyReference>& keys, const std::string& path,
                  std::vector<std::string>& silent) {
   for (const KeyReference& key : keys) {

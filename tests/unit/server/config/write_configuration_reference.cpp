@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes configs/schema/sonard.schema.json and the reference in docs/configuration.md from what the loader
-// knows of its keys. With --check it only says whether they are as it would write them.
+// Writes configs/schema/sonard.schema.json and the reference in docs/configuration.md from the loader's keys.
+// With --check it only reports whether these files are up to date.
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -32,7 +32,7 @@ std::string json_string(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
-/// What an editor shows: without links, which lead from docs/.
+/// The text that an editor shows. Links are removed, because they are relative to docs/.
 std::string description_of(const KeyReference& key) {
   const std::string gap = key.meaning.empty() || key.introduction.empty() ? "" : ". ";
   const std::string text =
@@ -69,7 +69,7 @@ std::string value_schema(const KeyReference& key, const std::string& margin) {
                      : fmt::format("{{{}{}}}", key.schema, rest);
 }
 
-/// Documents differ in `heads` alone, their last key: each head is of one of the kinds.
+/// Documents differ only in `heads`, their last key, because each head is of one of the kinds.
 std::string schema_of(const std::vector<Keys>& of_kinds) {
   Keys document = of_kinds.front();
   std::string heads;
@@ -90,11 +90,11 @@ std::string schema_of(const std::vector<Keys>& of_kinds) {
 // ---- The tables
 
 struct Table {
-  std::vector<std::string> paths;  ///< of the mappings that have these keys: "heads[].mount"
-  std::vector<std::string> kinds;  ///< of the heads that do
+  std::vector<std::string> paths;  ///< paths of the mappings with these keys: "heads[].mount"
+  std::vector<std::string> kinds;  ///< kinds of heads with these mappings
   std::string introduction;
   Keys keys;
-  std::vector<std::string> defaults;  ///< of the keys, with those of kinds that have others
+  std::vector<std::string> defaults;  ///< defaults of the keys, with those of kinds that differ
 };
 
 std::string default_of(const KeyReference& key) {
@@ -112,7 +112,7 @@ void add_once(std::vector<std::string>& list, const std::string& text) {
   }
 }
 
-/// Adds a mapping, to the table of another with the same keys where there is one, and all inside it.
+/// Adds a mapping and all mappings inside it. If a table has the same keys, the mapping joins this table.
 void add_tables(const Keys& keys, const std::string& path, const std::string& introduction,
                 const std::string& kind, std::vector<Table>& tables) {
   auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& other) {

@@ -57,7 +57,7 @@ Bytes continuous_config() {
   return config;
 }
 
-// Runs serve() on this thread while `topside` plays the client on another.
+// Runs serve() on this thread while `topside` is the client on another thread.
 struct DaemonTest : testing::Test {
   const Ipv4 head_address = test::own_loopback_address(2);
   const Ipv4 topside_address = test::own_loopback_address(1);
@@ -86,7 +86,7 @@ struct DaemonTest : testing::Test {
     return result;
   }
 
-  // A client: for each datagram that arrives it does what `react` says; ends when that returns true.
+  // A client that calls `react` for each datagram, until `react` returns true.
   static void play_topside(UdpEndpoint& topside, boost::asio::io_context& io,
                            const std::function<bool(const Datagram&)>& react) {
     bool done = false;
@@ -100,7 +100,7 @@ struct DaemonTest : testing::Test {
     topside.close();
   }
 
-  // Serves until the client has seen enough, then ends the daemon by a signal, as an operator does.
+  // Serves until `react` returns true. Then the client ends the daemon by a signal, as an operator does.
   int serve_until(const std::function<bool(UdpEndpoint&, const Datagram&)>& react, bool send_signal = true) {
     boost::asio::io_context io;
     UdpEndpoint topside(io, {topside_address, 52900});
@@ -126,7 +126,7 @@ TEST_F(DaemonTest, EndsCleanlyOnASignal) {
   EXPECT_TRUE(renderer->destroyed);
 }
 
-// With the settings of a usual ping, where the vehicle and the mount are, and before anything is served.
+// The ping has usual settings and the pose of vehicle and mount. It is rendered before the daemon serves.
 TEST_F(DaemonTest, RendersAPingOfEachHeadThatNobodyGetsBeforeItIsReady) {
   HeadConfig mounted = head("mounted", 602, test::own_loopback_address(3));
   mounted.T_vehicle_sonar.position_m = {1, 2, 3};
@@ -165,7 +165,7 @@ TEST_F(DaemonTest, ServesSeveralHeads) {
   EXPECT_EQ(code, exit_clean);
 }
 
-// Lines of a Micron take their 24 ms while the renderer is busy for seconds with one fan.
+// A Micron's lines take 24 ms each, although the renderer is busy for seconds with one multibeam ping.
 TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   auto serial = std::make_shared<MicronConfig>();
   serial->serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
@@ -242,7 +242,7 @@ TEST_F(DaemonTest, RendererThatCannotBeMadeIsReportedBeforeAnythingIsServed) {
   EXPECT_THROW(serve(config, {}, failing), render::RendererError);
 }
 
-// Made to be run under the thread sanitizer: the signal comes while the head pings as fast as it can.
+// For the thread sanitizer: the signal comes while the head pings at its highest rate.
 TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
   for (int life = 0; life < 50; ++life) {
     int heads = 0;
@@ -259,7 +259,7 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
   }
 }
 
-/// A recording without pings that has no end, and an I/O thread that is busy while the order to end comes.
+/// An endless recording without pings, and an I/O thread that is busy when the signal to end comes.
 class BusyPlayback final : public Playback {
  public:
   std::optional<RecordedPing> next_ping(int, TimePoint now) override {
@@ -267,7 +267,7 @@ class BusyPlayback final : public Playback {
     if (!ended_ && now - first_ > std::chrono::milliseconds{500}) {
       ended_ = true;
       kill(getpid(), SIGTERM);
-      // Long enough for the daemon's timers to run out: they call after the order to end is carried out.
+      // Long enough for the daemon's timers to expire. Their handlers then run after the shutdown.
       std::this_thread::sleep_for(std::chrono::milliseconds{2500});
     }
     return std::nullopt;
@@ -283,7 +283,7 @@ class BusyPlayback final : public Playback {
 
 TEST_F(DaemonTest, EndsThoughTimersHaveRunOutMeanwhile) {
   BusyPlayback playback;
-  alarm(60);  // ends the test where the daemon does not end
+  alarm(60);  // ends the test if the daemon hangs
   EXPECT_EQ(serve(config, {}, test::fake_renderer_factory(renderer), &playback), exit_clean);
   alarm(0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a configuration takes from its world, and what it says when the world does not have it.
+// Mounts that a configuration takes from its world, and the errors if the world lacks them.
 #include "server/daemon/resolve_mounts.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs with one wrong bit, at every byte: a damaged part costs its own pings and no others. The truth is what
-// was written into the undamaged log.
+// Logs with one wrong bit, at every byte: a damaged part loses its own pings and no others. The expected
+// values are the pings written into the undamaged log.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -57,7 +57,7 @@ Pings pings_written(int count) {
 
 constexpr std::int64_t first_ping_ns = 1'795'184'553'000'000'000;
 
-/// Two images in a chunk.
+/// A log with two images per chunk.
 Bytes mcap_log(int images, bool compressed, bool finished) {
   mcap::Writer writer{"test", 100'000, compressed ? mcap::Compression::zstd : mcap::Compression::none};
   const auto schema = writer.add_schema("sonard.log.SonarImage", log::encoding_name, Bytes{1, 2, 3});
@@ -116,7 +116,7 @@ Bytes dat_log(int images) {
 Bytes glf_log(int images) {
   const Bytes dat = dat_log(images);
   const glf::CivilTime closed{.year = 2026, .month = 11, .day = 20, .hour = 14, .minute = 22, .second = 33};
-  // The CRC of ZIP is that of MCAP.
+  // ZIP and MCAP use the same CRC.
   const glf::Packer packer{"2026-11-20-142233", "<genesisLog/>\n", {dat.size(), mcap::crc32(dat)}, closed};
   Bytes archive = packer.head();
   const auto header = glf::Packer::block_header(dat.size());
@@ -134,8 +134,8 @@ Bytes::iterator place_of(const std::string& samples, Bytes& in) {
 
 struct Outcome {
   bool opened = false;
-  std::size_t pings = 0;  ///< that have samples
-  std::size_t lost = 0;   ///< of those written, whose samples came back nowhere
+  std::size_t pings = 0;  ///< pings with readable samples
+  std::size_t lost = 0;   ///< written pings whose samples were not read
   std::vector<std::string> problems;
 };
 
@@ -167,7 +167,7 @@ Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& w
   return outcome;
 }
 
-/// Flips each bit in turn.
+/// Flips each bit in turn. Each flip may lose at most `most_lost` pings, and a loss must be reported.
 void expect_at_most(std::size_t most_lost, const std::string& suffix, const Bytes& whole,
                     const Pings& written) {
   const Outcome undamaged = outcome_of(suffix, whole, written);
@@ -244,10 +244,10 @@ TEST(Damage, replay_and_info_tell_an_image_that_does_not_unpack_when_they_open_t
   Bytes dat;
   for (int number = 0; number < 3; ++number) {
     glf::ImageRecord image = glf_image(number);
-    image.pixels.assign(60, static_cast<std::uint8_t>(number));  // short when packed
+    image.pixels.assign(60, static_cast<std::uint8_t>(number));  // compresses well
     Bytes record = glf::encode(image);
     if (number == 1) {
-      record[glf::ci_header_size + glf::image_header_size + 4] ^= 1U;  // of the zlib stream
+      record[glf::ci_header_size + glf::image_header_size + 4] ^= 1U;  // a byte of the zlib stream
     }
     dat.insert(dat.end(), record.begin(), record.end());
   }
@@ -274,7 +274,7 @@ TEST(Damage, a_wrong_byte_among_raw_pixels_of_a_glf_shows_in_its_checksum) {
 constexpr std::size_t captured_pings = 8;
 constexpr std::size_t captured_block = 80;  ///< 32 bytes around an IPv4 packet of 48
 
-/// Datagrams of 20 bytes: each is a ping of the head 7.
+/// Datagrams of 20 bytes, each of which is a ping of head 7.
 Bytes capture(std::string_view application) {
   pcapng::Writer writer(application);
   const std::uint32_t lan = writer.add_interface("lan");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of sonard's own log, and what a summary says of one.
+// Images of sonard's own log, and the summary of such a log.
 #include <gtest/gtest.h>
 
 #include "protocol/log/log_messages.hpp"
@@ -65,7 +65,7 @@ struct McapLog {
   }
 };
 
-/// Five images, the one of number 2 written last, and what else there may be.
+/// Five images, of which number 2 is written last, seven lines and a pose.
 McapLog small_log() {
   McapLog log;
   for (const std::uint64_t number : {0, 1, 3, 4, 2}) {
@@ -112,7 +112,7 @@ TEST(McapRecording, has_every_image_in_the_order_of_time) {
 TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
   McapLog log = small_log();
   log::SonarImage wrong = image(9);
-  wrong.set_range_lines(4);  // 6 pixels are no 8
+  wrong.set_range_lines(4);  // 6 pixels instead of 8
   log.add(log.images, start_ns, wrong);
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
@@ -156,7 +156,7 @@ TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
     said.set_wire_line(std::string(frame.begin(), frame.end()));
     log.add(log.lines, start_ns, said);
   }
-  log.add(log.lines, start_ns, line(2));  // does not say it
+  log.add(log.lines, start_ns, line(2));  // without a wire line
   log::ScanLine wrong = line(3);
   wrong.set_metres_per_bin(0.0);
   log.add(log.lines, start_ns, wrong);
@@ -221,7 +221,7 @@ TEST(McapRecording, says_which_devices_its_heads_were) {
   EXPECT_EQ(devices, expected);
 }
 
-// One daemon's names are unique, but logs of other programs may hold anything.
+// Names are unique within one daemon, but logs of other programs may hold duplicates.
 TEST(McapRecording, keeps_a_fan_and_a_line_of_one_name_and_id_apart) {
   McapLog log;
   log::SonarImage fan = image(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns of a recorded scan, by hand.
+// Turns of a recorded scan, against turns counted by hand.
 #include "server/info/recorded_sweeps.hpp"
 
 #include <numbers>
@@ -9,7 +9,7 @@
 namespace sonard::server {
 namespace {
 
-/// A line at a bearing of the wire, 1/16 gradian.
+/// A line at a bearing in units of the wire, 1/16 gradian.
 LoggedPing at(int bearing, int bins = 100) {
   LoggedPing line;
   line.bearing_rad = -(bearing - 3200) * std::numbers::pi / 3200.0;
@@ -31,7 +31,7 @@ LoggedHead scan_of(const std::vector<int>& bearings) {
 TEST(RecordedSweeps, all_round_a_sweep_ends_where_it_began) {
   LoggedHead scan;
   for (int line = 0; line < 450; ++line) {
-    scan.pings.push_back(at((3000 + 32 * line) % 6400));  // 200 to the turn
+    scan.pings.push_back(at((3000 + 32 * line) % 6400));  // 200 lines per turn
   }
   const auto turns = sweeps_of(scan);
   ASSERT_EQ(turns.size(), 3U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rates and gaps by hand, and captures.
+// Rates and gaps calculated by hand, and captures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 constexpr std::int64_t ms = 1'000'000;
 
 TEST(PingRate, median_and_gaps) {
-  // Intervals 100, 100, 200, 201, 100, 500: the median is 200 of the six, so only 500 is a gap.
+  // The intervals are 100, 100, 200, 201, 100, 500 ms. Their median is 200 ms, so only 500 ms is a gap.
   const PingRate rate = ping_rate({0, 100 * ms, 200 * ms, 400 * ms, 601 * ms, 701 * ms, 1201 * ms});
   EXPECT_DOUBLE_EQ(rate.median_interval_s, 0.2);
   EXPECT_DOUBLE_EQ(rate.rate_hz(), 5.0);
@@ -48,7 +48,7 @@ TEST(InfoJson, text_of_logs_is_escaped) {
   EXPECT_NE(info_json(log, 0).find(R"("file":"a\"b\\c\nd")"), std::string::npos);
 }
 
-/// What is said of one head of a log.
+/// The text and JSON for one head of a log.
 struct Said {
   std::string text, json;
 };
@@ -116,7 +116,7 @@ TEST(Capture, pings_are_counted_by_their_heads) {
     head.ping_id = static_cast<std::uint16_t>(ping);
     add(1'000'000'000 + ping * 100'000'000, head);
     gemini::PingHead again = head;
-    again.ping_id |= 0x0100;  // sent again: the same ping
+    again.ping_id |= 0x0100;  // a repetition of this head
     add(1'000'000'000 + ping * 100'000'000 + 1000, again);
     add(1'000'000'000 + ping * 100'000'000 + 2000, gemini::PingTail{});
   }
@@ -136,7 +136,7 @@ TEST(Capture, pings_are_counted_by_their_heads) {
   EXPECT_EQ(summary.problems.size(), 1U) << "the last packet is cut";
 }
 
-/// A capture of datagrams between a head and its client, one every tenth of a second.
+/// A capture of datagrams between a head and its client, one every 0.1 s.
 std::vector<std::uint8_t> capture_of(const std::vector<std::vector<std::uint8_t>>& datagrams) {
   pcapng::Writer writer("test");
   const std::uint32_t lan = writer.add_interface("lan");
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> capture_of(const std::vector<std::vector<std::uint8_t>
 }
 
 TEST(Capture, has_the_pings_that_a_kind_of_device_finds) {
-  // One byte is a ping of a fan with that ID, two are a line, and nothing else is either.
+  // One byte is a ping of a multibeam head with this ID. Two bytes are a line. Other lengths are no pings.
   const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
     if (datagram.empty() || datagram.size() > 2) {
       return std::nullopt;

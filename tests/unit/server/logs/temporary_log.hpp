@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log of bytes that a test has made, as a file that goes with the object.
+// A log with given bytes, as a file that the destructor deletes.
 #pragma once
 
 #include <filesystem>

@@ -32,7 +32,7 @@ std::vector<int> numbers_of(const std::vector<Datagram>& datagrams) {
   return numbers;
 }
 
-// Pushes 0..count-1, one each millisecond, and takes all that comes out, in order.
+// Pushes 0..count-1, one each millisecond, and returns all datagrams that come out, in order.
 std::vector<int> run(FaultyLink& link, int count) {
   std::vector<int> out;
   TimePoint now{0};
@@ -60,7 +60,7 @@ TEST(FaultyLink, LosesTheConfiguredShare) {
   FaultyLink link({.loss = 0.05}, 7);
   const int count = 20000;
   const std::vector<int> out = run(link, count);
-  // Binomial: standard deviation sqrt(n p q) = 30.8; six of them.
+  // Binomial distribution: the standard deviation sqrt(n p q) is 30.8, and the limit is six of them.
   EXPECT_NEAR(static_cast<double>(link.counters().lost), 0.05 * count, 6 * std::sqrt(count * 0.05 * 0.95));
   EXPECT_EQ(out.size() + link.counters().lost, static_cast<std::size_t>(count));
   EXPECT_TRUE(std::is_sorted(out.begin(), out.end()));
@@ -113,7 +113,7 @@ TEST(FaultyLink, JitterStaysInItsInterval) {
   }
   EXPECT_GE(earliest, TimePoint{milliseconds{5}});
   EXPECT_LE(latest, TimePoint{milliseconds{15}});
-  EXPECT_LT(earliest, TimePoint{microseconds{5500}});  // of 1000 draws some fall near either end
+  EXPECT_LT(earliest, TimePoint{microseconds{5500}});  // some of 1000 draws fall near each end
   EXPECT_GT(latest, TimePoint{microseconds{14500}});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames into a stream that takes as many bytes as the test says.
+// Writes frames into a stream that accepts a limited number of bytes.
 #include "server/net/frame_writer.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct NarrowStream {
   enum Wait { wait_write };
 
   std::size_t room = 0;
-  bool gone = false;  ///< the other end
+  bool gone = false;  ///< the other end has closed the connection
   Bytes taken;
   int writes = 0;
   std::function<void(const error_code&)> when_writable;

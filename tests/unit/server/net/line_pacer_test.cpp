@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The line as a pure queue: ten bits to a byte, one byte after the other.
+// The line as a queue: ten bits per byte, one byte after the other.
 #include "server/net/line_pacer.hpp"
 
 #include <string>
@@ -15,7 +15,7 @@ using std::chrono::seconds;
 using Pacer = LinePacer<std::string>;
 
 TEST(LinePacer, a_byte_takes_ten_bits) {
-  Pacer pacer(10'000, 1000);  // a byte per millisecond
+  Pacer pacer(10'000, 1000);  // one byte per millisecond
   ASSERT_TRUE(pacer.push(seconds{5}, "ab", 2));
   EXPECT_EQ(pacer.next_due(), seconds{5} + milliseconds{2});
   EXPECT_FALSE(pacer.pop_due(seconds{5} + milliseconds{2} - TimePoint{1}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes take their time on the line, on a clock that the test moves.
+// Time that bytes take on the line, with a stepped clock.
 #include <algorithm>
 
 #include "tests/unit/server/net/link_fixture.hpp"
@@ -11,7 +11,7 @@ using std::chrono::milliseconds;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A byte per millisecond, with one client.
+/// A line of one byte per millisecond, with one client.
 class LineSpeed : public LinkTest {
  protected:
   LineSpeed() {
@@ -20,7 +20,7 @@ class LineSpeed : public LinkTest {
     EXPECT_TRUE(run_until_connections(1));
   }
 
-  /// Sends, and waits until the link has read it.
+  /// Writes bytes as the client and waits until the link has read them.
   void write(const Bytes& bytes) {
     const std::uint64_t before = link_->counters().ports.bytes_in;
     client_->write(bytes);
@@ -125,7 +125,7 @@ TEST_F(LineSpeed, a_client_that_says_too_much_loses_it) {
   EXPECT_EQ(heard_, send_version);
 }
 
-// What is due by then comes one after the other, not each from within the callback before.
+// Callbacks that are due run one after the other, and never inside each other.
 TEST_F(LineSpeed, callbacks_that_answer_do_not_pile_up) {
   int depth = 0;
   int deepest = 0;
@@ -169,7 +169,7 @@ TEST_F(LinkTest, the_line_keeps_real_time) {
     link_->send(alive);
   }
   ASSERT_TRUE(run_until([&] { return client.heard().size() == 10 * alive.size(); }));
-  // 220 bytes of ten bits at 9600 per second.
+  // 220 bytes of ten bits at 9600 bits per second.
   EXPECT_GE(std::chrono::steady_clock::now() - sent, std::chrono::microseconds{229'166});
 }
 

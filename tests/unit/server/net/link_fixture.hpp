@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial link whose I/O thread is the test's, and what it has said.
+// A serial link whose I/O runs on the test's thread, with a record of everything that it received.
 #pragma once
 
 #include <chrono>
@@ -23,13 +23,13 @@ namespace sonard::server {
 using test::Bytes;
 using test::Client;
 
-/// docs/protocols/micron.md 10.
+/// Frames from docs/protocols/micron.md 10.
 inline const Bytes send_version{0x40, 0x30, 0x30, 0x30, 0x38, 0x08, 0x00,
                                 0xFF, 0x02, 0x03, 0x17, 0x80, 0x02, 0x0A};
 inline const Bytes alive{0x40, 0x30, 0x30, 0x31, 0x30, 0x10, 0x00, 0x02, 0xFF, 0x0B, 0x04,
                          0x80, 0x02, 0x80, 0xAA, 0x10, 0x00, 0x00, 0x80, 0x0C, 0x5D, 0x0A};
 
-/// `size` bytes that say which frame they are of and where in it they stand.
+/// `size` bytes that identify the frame and the position of each byte in it.
 inline Bytes numbered_frame(int number, std::size_t size) {
   Bytes frame(size);
   for (std::size_t i = 0; i < size; ++i) {
@@ -38,7 +38,7 @@ inline Bytes numbered_frame(int number, std::size_t size) {
   return frame;
 }
 
-/// The numbers of the frames that a stream consists of; a part of a frame fails the test.
+/// The numbers of the frames in a stream. A partial frame fails the test.
 inline std::vector<int> frame_numbers(const Bytes& stream, std::size_t size) {
   std::vector<int> numbers;
   EXPECT_EQ(stream.size() % size, 0U) << "half a frame";
@@ -51,11 +51,11 @@ inline std::vector<int> frame_numbers(const Bytes& stream, std::size_t size) {
   return numbers;
 }
 
-/// A clock that the test moves.
+/// A clock that the test sets.
 class SteppedClock final : public Clock {
  public:
   TimePoint now() const override { return time; }
-  /// Long past for the timers, which so ask at once whenever they are set.
+  /// At 1 ms every timer of the link is long overdue, so it reads this clock as soon as it is set.
   TimePoint time{std::chrono::milliseconds{1}};
 };
 
@@ -77,7 +77,7 @@ class LinkTest : public testing::Test {
   }
   void open(const SerialLinkConfig& config) { open(config, clock_); }
 
-  /// Runs the I/O until the condition holds. @return false when it does not within ten seconds.
+  /// Runs the I/O until the condition holds. @return false if it does not hold within ten seconds.
   bool run_until(const std::function<bool()>& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{10};
     while (!condition() && std::chrono::steady_clock::now() < deadline) {
@@ -86,7 +86,7 @@ class LinkTest : public testing::Test {
     }
     return condition();
   }
-  /// Gives what must not happen the time to happen.
+  /// Runs the I/O for a while, so that a forbidden event would occur.
   void run_for(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
     while (std::chrono::steady_clock::now() < end) {
@@ -116,7 +116,7 @@ class LinkTest : public testing::Test {
   boost::asio::io_context io_;
   SteadyClock clock_;
   std::unique_ptr<SerialLink> link_;
-  Bytes heard_;                     // by the device, from all
+  Bytes heard_;                     // received by the device, from all clients
   std::vector<std::string> peers_;  // one for each read
   std::vector<std::string> left_;
 };

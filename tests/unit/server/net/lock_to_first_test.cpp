@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line that the first address keeps, on a clock that the test moves (docs/security.md).
+// A line that is locked to the first address, with a stepped clock (docs/security.md).
 #include "tests/unit/server/net/link_fixture.hpp"
 
 namespace sonard::server {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line as a pseudo terminal: clients that open and close a tty, and its link.
+// A serial line as a pseudo terminal: clients that open and close the tty, and the symbolic link to it.
 #include <termios.h>
 
 #include <filesystem>
@@ -22,7 +22,7 @@ class PtyLink : public LinkTest {
  protected:
   PtyLink() { open({{}, {}, {{}}, 0}); }
 
-  /// Runs until the link has noticed that somebody opened the slave.
+  /// Runs until the link has detected that a client opened the slave.
   bool run_until_occupied() {
     return run_until([&] { return link_->connected(); });
   }
@@ -95,7 +95,7 @@ TEST_F(PtyLink, what_nobody_hears_is_never_sent_later) {
   ASSERT_TRUE(run_until_occupied());
   link_->send(numbered_frame(1, 50));
   ASSERT_TRUE(run_until([&] { return first.readable() == 50; }));
-  first.close();  // without having read it
+  first.close();  // without reading it
   ASSERT_TRUE(run_until_left(1));
   Client second = tty_client();
   ASSERT_TRUE(run_until_occupied());
@@ -185,7 +185,7 @@ TEST_F(PtyLink, serves_a_hundred_clients_one_after_the_other) {
 class PtyLinkName : public LinkTest {
  protected:
   void open_named() { open({{}, {}, {{link_name_}}, 0}); }
-  /// What opening complains about; empty when it does not.
+  /// The error message of opening; empty if it succeeds.
   std::string complaint() {
     try {
       open_named();

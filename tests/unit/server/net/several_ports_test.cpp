@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All ports of a link together, and its end in the middle of everything.
+// All ports of a link together, and stopping the link at any time.
 #include <system_error>
 #include <thread>
 
@@ -86,7 +86,7 @@ TEST_F(AllPorts, stop_ends_everything_under_way) {
     tty.write(Bytes{0x40});
     ASSERT_TRUE(run_until([&] { return heard_.size() == 3; }));
     for (int i = 0; i < 300; ++i) {
-      link_->send(numbered_frame(i, 1545));  // until both have the first part of a frame waiting
+      link_->send(numbered_frame(i, 1545));  // until both have the first part of a frame in their queue
     }
     stop_ends_all_work();
     EXPECT_FALSE(link_->connected());
@@ -136,7 +136,7 @@ TEST_F(AllPorts, may_be_destroyed_by_its_own_callbacks) {
     clients.push_back(round / 2 == 0 ? tcp_client() : round / 2 == 1 ? tty_client() : udp_client());
     clients.back().write(send_version);
     if (round / 2 == 2) {
-      clients.push_back(udp_client());  // another datagram peer is how one leaves
+      clients.push_back(udp_client());  // a second datagram peer replaces the first
       clients.back().write(send_version);
     } else {
       clients.back().close();
@@ -162,7 +162,7 @@ TEST_F(AllPorts, may_be_destroyed_with_handlers_waiting) {
   }
 }
 
-// Clients of other threads, each of whom comes and goes until the link is gone.
+// Clients on other threads, which connect and disconnect until the link is closed.
 void come_and_go(const std::function<Client()>& connect) {
   try {
     for (std::size_t i = 0; i < 100; ++i) {
@@ -171,11 +171,11 @@ void come_and_go(const std::function<Client()>& connect) {
       client.heard();
     }
   } catch (const std::system_error&) {
-    return;  // nobody listens any more
+    return;  // the link is closed
   }
 }
 
-// The I/O thread on its own, as in the daemon: for the thread sanitizer.
+// The I/O runs on its own thread, as in the daemon. This is a test for the thread sanitizer.
 TEST_F(AllPorts, serve_clients_of_other_threads_until_they_are_stopped) {
   auto guard = boost::asio::make_work_guard(io_);
   link_ = std::make_unique<SerialLink>(io_, everything, clock_);

@@ -6,7 +6,7 @@
 namespace sonard::server {
 namespace {
 
-/// Keeps what it is given, and says what a test wants it to.
+/// Records its calls, and reports events when a test requests it.
 class ScriptedTransport final : public Transport {
  public:
   void start(TransportEvents given) override { events = std::move(given); }

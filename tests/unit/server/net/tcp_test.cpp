@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line over TCP, with clients that come, go and dawdle at any byte.
+// A serial line over TCP, with clients that connect, disconnect and stall at any byte.
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/resource.h>
@@ -65,7 +65,7 @@ TEST_F(TcpLink, each_frame_arrives_in_one_piece) {
   }
 }
 
-/// The link's end of a client's connection; it is in this process too.
+/// The link's socket of a client's connection, which is in this process too; -1 if there is none.
 int other_end(const Client& client) {
   for (int fd = 0; fd < 1024; ++fd) {
     sockaddr_in peer{};
@@ -94,7 +94,7 @@ TEST_F(TcpLink, small_frames_do_not_wait_and_vanished_clients_are_noticed) {
   const int gives_up_after_s = option(fd, IPPROTO_TCP, TCP_KEEPIDLE) +
                                option(fd, IPPROTO_TCP, TCP_KEEPINTVL) * option(fd, IPPROTO_TCP, TCP_KEEPCNT);
   EXPECT_LE(gives_up_after_s, 60);
-  // The same where frames for it are on their way, for which the kernel else tries for a quarter of an hour.
+  // If frames are under way to the client, the kernel would otherwise try for a quarter of an hour.
   EXPECT_EQ(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT), 30'000);
 }
 
@@ -186,7 +186,7 @@ TEST_F(TcpLink, who_does_not_read_loses_whole_frames_and_nobody_else_does) {
   EXPECT_TRUE(std::is_sorted(numbers.begin(), numbers.end()));
   EXPECT_LT(expected * size, 128U << 10) << "what waits for a client is bounded";
 
-  // The stream goes on where it was.
+  // The stream continues with the next frame.
   link_->send(numbered_frame(frames, size));
   ASSERT_TRUE(run_until([&] { return slow.heard().size() == (expected + 1) * size; }));
   EXPECT_EQ(frame_numbers(slow.heard(), size).back(), frames);
@@ -198,7 +198,7 @@ TEST_F(TcpLink, a_client_that_left_without_reading_is_let_go) {
   while (link_->counters().ports.frames_dropped == 0) {
     link_->send(numbered_frame(0, 1545));
   }
-  slow.close();  // with unread bytes: a reset
+  slow.close();  // with unread bytes, which causes a reset
   EXPECT_TRUE(run_until_left(1));
   EXPECT_FALSE(link_->connected());
 }
@@ -219,7 +219,7 @@ TEST_F(TcpLink, refuses_one_too_many) {
   EXPECT_TRUE(run_until_connections(17));
 }
 
-/// Sixteen clients on a clock that the test moves.
+/// A link with sixteen clients and a stepped clock.
 class FullTcpLink : public LinkTest {
  protected:
   FullTcpLink() {
@@ -268,7 +268,7 @@ TEST_F(FullTcpLink, silence_alone_ends_no_connection) {
   }
 }
 
-/// No descriptor is left for this process until the end of the scope.
+/// Leaves no free descriptor for this process until the end of the scope.
 class NoDescriptors {
  public:
   NoDescriptors() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clients of a head that is a TCP server: they come, send, dawdle, are sent away, and go.
+// Clients of a head that is a TCP server: they connect, send, stall, are disconnected, and leave.
 #include "server/net/tcp_transport.hpp"
 
 #include <chrono>
@@ -25,7 +25,7 @@ using testing::IsEmpty;
 
 constexpr Ipv4 localhost = 0x7F000001;
 
-/// `size` bytes: the number of the message, then its size, and then its number again and again.
+/// `size` bytes: the message's number, its size in four bytes, then its number repeated.
 Bytes numbered(std::uint8_t number, std::size_t size) {
   Bytes message(size, number);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -34,7 +34,7 @@ Bytes numbered(std::uint8_t number, std::size_t size) {
   return message;
 }
 
-/// Numbers of the messages that a stream consists of; one that is not whole fails the test.
+/// The numbers of the messages in a stream. A partial message fails the test.
 std::vector<int> numbers_in(const Bytes& stream) {
   std::vector<int> numbers;
   for (std::size_t at = 0; at + 5 <= stream.size();) {
@@ -175,7 +175,7 @@ TEST_F(TcpTransportTest, ASlowReaderMissesWholeLongMessagesAndNoShortOnes) {
   }
   EXPECT_EQ(arrived_short, short_ones);
   EXPECT_EQ(numbers.size() + count("messages_dropped"), 100U);
-  send(came_[0], numbered(101, 300'000));  // and then it goes on
+  send(came_[0], numbered(101, 300'000));  // after that it continues
   ASSERT_TRUE(run_until(all_read));
   EXPECT_EQ(numbers_in(slow.heard()).back(), 101);
 }

@@ -24,7 +24,7 @@ Bytes bytes_of(const Datagram& datagram) {
   return {datagram.bytes.begin(), datagram.bytes.end()};
 }
 
-// Two endpoints on one io_context that the test runs.
+// Fixture for two endpoints on one io_context that the test runs.
 struct UdpEndpointTest : testing::Test {
   asio::io_context io;
   std::vector<Datagram> received;
@@ -33,7 +33,7 @@ struct UdpEndpointTest : testing::Test {
     return [this](const Datagram& datagram) { received.push_back(datagram); };
   }
 
-  // False when the condition does not come true within the limit.
+  // Runs the I/O until the condition holds. Returns false if it does not hold within ten seconds.
   bool run_until(const std::function<bool()>& done) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{10};
     while (!done() && std::chrono::steady_clock::now() < deadline) {
@@ -91,8 +91,7 @@ TEST_F(UdpEndpointTest, BurstLargerThanTheSocketBufferArrivesInOrder) {
   std::vector<Datagram> told;
   sender.start([](const Datagram&) {}, [&] { drained = true; },
                [&](std::span<const Datagram> sent) { told.insert(told.end(), sent.begin(), sent.end()); });
-  // The receiver reads on the same thread, so it cannot keep up by itself: send in portions its buffer can
-  // hold.
+  // The receiver reads on the same thread, so the test sends portions that fit the receiver's buffer.
   constexpr int portions = 40;
   constexpr int portion_size = 64;
   for (int portion = 0; portion < portions; ++portion) {
@@ -135,7 +134,7 @@ TEST_F(UdpEndpointTest, UnreachableDestinationCostsOneDatagramOnly) {
   UdpEndpoint peer(io, {loopback_1, 0});
   peer.start(collect());
   UdpEndpoint sender(io, {loopback_1, 0});
-  // From a loopback source the kernel refuses a host outside (EINVAL).
+  // From a loopback source the kernel refuses to send to an outside host (EINVAL).
   sender.send({to({0x08080808, 9}, {1}), to(peer.local_endpoint(), {2})});
   ASSERT_TRUE(run_until([&] { return received.size() == 1; }));
   EXPECT_EQ(bytes_of(received[0]), (Bytes{2}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line in datagrams.
+// A serial line over UDP datagrams.
 #include "tests/unit/server/net/link_fixture.hpp"
 
 namespace sonard::server {
@@ -71,7 +71,7 @@ TEST_F(LinkTest, udp_discards_what_comes_before_anybody_was_heard) {
 
 TEST_F(LinkTest, udp_answers_from_the_address_that_was_asked) {
   open({{}, {{{0, 0}, loopback}}, {}, 0});
-  // A connected socket hears only the address it is connected to.
+  // A connected socket receives only from the address to which it is connected.
   Client client = Client::udp({0x7F000005, link_->addresses().udp.at(0).port});
   client.write(Bytes{1});
   ASSERT_TRUE(run_until_heard({1}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The form is that of docs/deploy.md.
+// The format is described in docs/deploy.md.
 #include "server/program_log/json_lines.hpp"
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines that clients cause: as many as a person can read, and none that goes missing without a word.
+// Log lines that clients cause: their rate is limited, and dropped lines are counted in the log.
 #include "server/program_log/peer_log.hpp"
 
 #include <memory>

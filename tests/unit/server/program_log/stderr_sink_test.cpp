@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log whose reader stops: nobody waits for it, and it is told what it missed.
+// If the reader of the log stops, no caller waits, and the log later states how many lines were dropped.
 #include "server/program_log/stderr_sink.hpp"
 
 #include <fcntl.h>
@@ -70,7 +70,7 @@ TEST_P(StderrSinkTest, writes_lines) {
 
 TEST_P(StderrSinkTest, a_reader_that_stops_blocks_nobody_and_is_told_what_it_missed) {
   spdlog::logger logger = logger_on(ends.write);
-  constexpr int lines = 20'000;  // far more than fit
+  constexpr int lines = 20'000;  // far more than the buffer holds
   for (int i = 0; i < lines; ++i) {
     logger.info("line {:06} {}", i, std::string(60, '.'));
   }

@@ -35,7 +35,7 @@ TEST(EventQueue, HoldsNoMoreBytesThanItMay) {
     held += 1000;
   }
   EXPECT_LE(held, most);
-  EXPECT_GT(held, most / 2);  // what describes an event counts too
+  EXPECT_GT(held, most / 2);  // an event's description counts too
 }
 
 TEST(EventQueue, CountsWhatItDropsByWhatIsLost) {
@@ -66,7 +66,7 @@ TEST(EventQueue, HasRoomAgainWhenEventsAreWorkedOffNotWhenTheyAreTaken) {
 }
 
 TEST(EventQueue, CountsAllBytesOfAPing) {
-  // 256 samples a line, and 256 bearings.
+  // 256 samples per line, and 256 bearings.
   EXPECT_GE(memory_of(ping_event(1, 1000, {})), 258'000U);
   EXPECT_LE(memory_of(ping_event(1, 1000, {})), 262'000U);
 }
@@ -84,7 +84,7 @@ TEST(EventQueue, WakesWhoeverWaits) {
   EXPECT_EQ(queue.take().size(), 1U);
 }
 
-// Under the thread sanitizer this is where a race would show.
+// The thread sanitizer would report a race in this test.
 TEST(EventQueue, TakesFromSeveralThreadsAtOnce) {
   constexpr int threads = 3;
   constexpr int each = 2000;

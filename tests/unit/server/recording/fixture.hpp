@@ -15,7 +15,7 @@
 
 namespace sonard::test {
 
-/// No file of this process may be longer than this while it lives: a full disk that needs no rights.
+/// Limits the length of this process's files while it lives. This emulates a full disk without root rights.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(std::uint64_t bytes);
@@ -30,16 +30,16 @@ class FileSizeLimit {
 std::vector<std::uint8_t> contents(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
 
-/// Sample of a ping at (line, beam): hard to compress, and different for every ping.
+/// Sample of a ping at (line, beam). The samples are hard to compress, and they differ between pings.
 std::uint8_t sample(std::uint64_t ping_number, int line, int beam);
 
-/// A ping of so many lines of 256 beams with these samples.
+/// A ping of `lines` lines of 256 beams with these samples.
 PingRecord ping_record(std::uint64_t number, int lines, server::TimePoint time);
 server::RecordingEvent ping_event(std::uint64_t number, int lines, server::TimePoint time);
-/// One datagram of so many bytes to a client at 127.0.0.1:52900.
+/// One datagram of `bytes` bytes to a client at 127.0.0.1:52900.
 server::RecordingEvent wire_event(std::size_t bytes, server::TimePoint time);
 
-/// "bow", the one head, 601, with a .glf.
+/// A list with one head, "bow", ID 601, which has a .glf.
 std::vector<server::HeadToRecord> one_head();
 
 }  // namespace sonard::test

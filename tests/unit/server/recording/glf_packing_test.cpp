@@ -16,7 +16,7 @@ using Bytes = std::vector<std::uint8_t>;
 const std::string dat_name = "data_2026-11-20-142233_bow.dat";
 const std::string glf_name = "log_2026-11-20-142233_bow.glf";
 
-// Records of 60 kB that do not compress.
+// A .dat of records of 60 kB that do not compress.
 Bytes dat_of(int images) {
   Bytes dat;
   for (int number = 0; number < images; ++number) {
@@ -39,7 +39,7 @@ struct GlfPackingTest : testing::Test {
   fs::path dat = folder.path() / dat_name;
   fs::path packed = folder.path() / glf_name;
 
-  // Returns how many steps it took.
+  // Packs the .dat and returns the number of steps.
   int pack(RecordingSync sync = RecordingSync::never) const {
     GlfPacking packing(dat, sync);
     int steps = 1;
@@ -49,7 +49,7 @@ struct GlfPackingTest : testing::Test {
     return steps;
   }
 
-  // Sees to it that the .glf holds these images, and that nothing else is left.
+  // Checks that the .glf holds these images, and that the folder holds no other file.
   void expect_packed(std::size_t images) const {
     EXPECT_EQ(folder.names(), std::vector<std::string>{glf_name});
     const Bytes bytes = test::contents(packed);
@@ -122,7 +122,7 @@ TEST_F(GlfPackingTest, LeavesTheDatWhereThereIsNoRoom) {
   test::write_file(dat, bytes);
   {
     const test::FileSizeLimit limit(bytes.size() +
-                                    100);  // enough for the .dat, not for what stands around it
+                                    100);  // enough for the .dat, but not for the archive around it
     pack();
   }
   EXPECT_EQ(folder.names(), std::vector<std::string>{dat_name});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Expectations are worked out by hand from docs/logs.md.
+// The expected values were calculated by hand from docs/logs.md.
 #include "server/recording/glf_records.hpp"
 
 #include <numbers>
@@ -14,7 +14,7 @@ constexpr std::int64_t transmit_unix_ns = 1'795'184'553'250'000'000;
 constexpr double transmit_glf_s = 1'479'651'753.25;
 constexpr double line_rate_hz = 90'422.0;
 
-/// Of a head that makes 90422 lines a second and averages 2^compression_log2 of them.
+/// A ping of a head that has 90422 lines per second and averages 2^compression_log2 of them.
 PingRecord ping_of(int native_lines, int compression_log2) {
   constexpr double sound_speed_mps = 1485.6;
   PingRecord ping;

@@ -45,7 +45,7 @@ struct RecorderTest : testing::Test {
     return found;
   }
 
-  // Numbers of the pings of all .glf, found by their pixels, and of all MCAP files, as these say.
+  // Numbers of the pings in all .glf, found by their pixels.
   std::multiset<std::uint64_t> glf_pings(std::uint64_t most) const {
     std::multiset<std::uint64_t> numbers;
     for (const fs::path& path : files(".glf")) {
@@ -140,7 +140,7 @@ TEST_F(RecorderTest, BeginsNewFilesWhenOneIsFull) {
   EXPECT_GE(files(".glf").size(), 4U);
   EXPECT_EQ(files(".glf").size(), files(".mcap").size());
   for (const fs::path& path : files("")) {
-    EXPECT_LT(fs::file_size(path), 300'000U + 60'000U) << path;  // one ping more at most
+    EXPECT_LT(fs::file_size(path), 300'000U + 60'000U) << path;  // at most one more ping
   }
   EXPECT_EQ(glf_pings(30), numbers_up_to(30));
   EXPECT_EQ(mcap_pings(), numbers_up_to(30));
@@ -150,7 +150,7 @@ TEST_F(RecorderTest, BeginsNewFilesWhenTimeIsOver) {
   config.rotate_after = std::chrono::minutes{10};
   Recorder recorder(config, test::one_head());
   const TimePoint begin = clock.now();
-  for (std::uint64_t number = 0; number < 30; ++number) {  // one a minute
+  for (std::uint64_t number = 0; number < 30; ++number) {  // one per minute
     recorder.push(test::ping_event(number, 32, begin + number * std::chrono::minutes{1}));
   }
   recorder.stop();
@@ -173,12 +173,12 @@ TEST_F(RecorderTest, DropsAndCountsWhatDoesNotFitTheQueue) {
   EXPECT_EQ(mcap_pings().size(), recorder.counters().images);
 }
 
-// A thread that saw the recorder turned on may push after the logs were closed. No further logs are made for
-// that.
+// A thread that saw the recorder turned on may push after the logs were closed. This must open no further
+// logs.
 TEST_F(RecorderTest, WritesOneLogForEachTimeItIsTurnedOn) {
   constexpr std::uint64_t times = 300;
   config.glf = config.pcapng = false;
-  config.queue_bytes = 100000;  // so few events that the recorder is soon done with them
+  config.queue_bytes = 100000;  // few events, so that the recorder soon finishes them
   Recorder recorder(config, test::one_head());
   std::atomic<bool> ends{false};
   const auto push_pings = [&] {
@@ -187,7 +187,7 @@ TEST_F(RecorderTest, WritesOneLogForEachTimeItIsTurnedOn) {
     }
   };
   std::vector<std::thread> heads;
-  for (int head = 0; head < 4; ++head) {  // more than most machines of tests have processors
+  for (int head = 0; head < 4; ++head) {  // more than most test machines have cores
     heads.emplace_back(push_pings);
   }
   for (std::uint64_t time = 1; time <= times; ++time) {
@@ -206,7 +206,7 @@ TEST_F(RecorderTest, WritesOneLogForEachTimeItIsTurnedOn) {
   EXPECT_EQ(files(".mcap").size(), times);
 }
 
-// A disk that is full for one file is full for the others a little later.
+// If the disk is full for one file, it is soon full for the others too.
 TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
   std::uint64_t lost = 0;
   {
@@ -223,7 +223,7 @@ TEST_F(RecorderTest, GivesUpFilesThatCannotBeWrittenAndKeepsWhatIsWhole) {
     lost = recorder.counters().images_lost;
     EXPECT_EQ(packets(), 20U) << "a small file is not full";
   }
-  Recorder(config, test::one_head()).stop();  // there is room again
+  Recorder(config, test::one_head()).stop();  // now the disk has room again
   const std::multiset<std::uint64_t> kept = glf_pings(20);
   EXPECT_EQ(kept, numbers_up_to(kept.size()));
   EXPECT_GE(kept.size(), 6U);
@@ -269,7 +269,7 @@ TEST_F(RecorderTest, SaysWhyAFolderCannotBeUsed) {
 }
 
 TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {
-  for (const char* zone : {"UTC0", "XYZ-5:30"}) {  // POSIX counts to the west
+  for (const char* zone : {"UTC0", "XYZ-5:30"}) {  // POSIX counts zones to the west
     setenv("TZ", zone, 1);
     tzset();
     config.zone = RecordingZone::local;

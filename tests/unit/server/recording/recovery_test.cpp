@@ -30,10 +30,10 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr int pings = 3;
 
-// Three pings with a datagram each, as a daemon leaves them that is killed. An MCAP file has two chunks that
-// are closed and one that is open.
+// The log of a killed daemon: three pings with a datagram each. An MCAP file has two closed chunks and an
+// open one.
 struct RecoveryTest : testing::Test {
-  /// What the program's log says of a recovery.
+  /// The lines that recovery writes to the program's log.
   std::string told() {
     std::ostringstream text;
     const auto before = spdlog::default_logger();
@@ -87,7 +87,7 @@ TEST_F(RecoveryTest, EndsAnMcapFile) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"log_stem.mcap"});
 }
 
-// The chunk that was growing is written again behind its true length: none of it is lost.
+// Recovery writes the open chunk again with its true length, so no message is lost.
 TEST_F(RecoveryTest, TellsThatNothingIsLostOfALogWithoutEnd) {
   killed<McapLog>();
   EXPECT_THAT(told(), HasSubstr("log_stem.mcap: all of it is kept"));
@@ -186,7 +186,7 @@ TEST_F(RecoveryTest, KeepsWhatIsDamagedAndWhatWasWholeBeforeIt) {
   Bytes dat = killed<GlfLog>(0);
   const glf::DatIndex index = glf::index_dat(glf::PiecewiseBytes(dat));
   ASSERT_EQ(index.records.size(), 3U);
-  dat[index.records[1].offset] = 0;  // no record begins like that
+  dat[index.records[1].offset] = 0;  // no record begins with this byte
   test::write_file(path, dat);
   EXPECT_EQ(recover_logs(folder.path()), std::vector<fs::path>{path});
   EXPECT_EQ(test::contents(path.string() + ".damaged"), dat);

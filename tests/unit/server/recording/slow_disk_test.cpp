@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disk that does not take what is written: pwrite() of this program waits while the disk hangs.
+// A disk that hangs: this program's pwrite() waits until the test lets it go on.
 #include <sys/syscall.h>
 #include <unistd.h>
 

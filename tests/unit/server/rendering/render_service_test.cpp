@@ -26,7 +26,7 @@ namespace {
 using test::fake_renderer_factory;
 using test::FakeRendererControl;
 
-// Stands for the I/O thread: collects what is posted; the test runs it.
+// Stands for the I/O thread. It collects posted tasks, and the test runs them.
 class Inbox {
  public:
   Post post() {
@@ -36,7 +36,7 @@ class Inbox {
     };
   }
 
-  // Runs tasks until `done`; false when it takes too long.
+  // Runs tasks until `done`. Returns false if that takes too long.
   bool run_until(const std::function<bool()>& done) {
     return test::wait_for([&] {
       run_pending();
@@ -84,7 +84,7 @@ struct Fixture : testing::Test {
 
 using RenderServiceTest = Fixture;
 
-// Those that wait may be in the making beside it, up to the first that finds bodies elsewhere.
+// The renderer may start on waiting jobs too, up to the first one with other poses of bodies.
 TEST_F(RenderServiceTest, TellsTheRendererWhatComesNext) {
   std::promise<void> all_submitted;
   std::future<void> go = all_submitted.get_future();
@@ -106,7 +106,7 @@ TEST_F(RenderServiceTest, TellsTheRendererWhatComesNext) {
     all_submitted.set_value();
     EXPECT_TRUE(inbox.run_until([&] { return answers == 5; }));
   }
-  // Ping 0 may have begun before the others came.
+  // Ping 0 may have begun before the other jobs arrived.
   ASSERT_GE(control->begun.size(), 2U);
   EXPECT_EQ(control->begun[control->begun.size() - 2], (std::vector<int>{1, 2, 3}));
   EXPECT_EQ(control->begun.back(), (std::vector<int>{2, 3}));
@@ -293,7 +293,7 @@ TEST_F(RenderServiceTest, ObserverSeesEachPingBeforeItIsHandedBack) {
   EXPECT_EQ(observed, std::vector<std::uint64_t>{9});
 }
 
-// Made to be run under the thread sanitizer: services are born and stopped with work in all states.
+// For the thread sanitizer: services are created and stopped with work in all states.
 TEST_F(RenderServiceTest, SurvivesManyShortLives) {
   for (int life = 0; life < 300; ++life) {
     std::atomic<int> answers{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may look and who may change something. The rules are those of docs/page.md.
+// Clients that may view the page and clients that may change state. docs/page.md has the rules.
 #include "server/web/access.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(TrustedHost, IsNoOtherName) {
 
 TEST(TrustedOrigin, IsThePagesOwnOrNone) {
   EXPECT_TRUE(trusted_origin("http://127.0.0.1:8014", "127.0.0.1:8014", {}));
-  EXPECT_TRUE(trusted_origin("", "127.0.0.1:8014", {}));  // no browser
+  EXPECT_TRUE(trusted_origin("", "127.0.0.1:8014", {}));  // a client that is no browser
 }
 
 TEST(TrustedOrigin, IsNoOtherPageUnlessListed) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which connections of the page are kept, and which are refused or closed.
+// Connections of the page that are kept, refused or closed.
 #include "server/web/connections.hpp"
 
 #include <vector>

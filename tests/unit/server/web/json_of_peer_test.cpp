@@ -25,7 +25,7 @@ TEST(JsonOfPeer, IsDiscardedIfItIsNone) {
   }
 }
 
-// 32,000 levels in 64 kB: writing such a value as text needs more than 2 MB of stack.
+// 32,000 levels in 64 kB: converting such a value to text needs more than 2 MB of stack.
 TEST(JsonOfPeer, IsDiscardedIfItIsNestedDeeply) {
   EXPECT_TRUE(json_of_peer(nested(18)).is_discarded());
   const std::string message =

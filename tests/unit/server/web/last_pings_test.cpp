@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is kept of a head for a viewer that comes later.
+// Pings of a head that are kept for later viewers.
 #include <memory>
 
 #include <gtest/gtest.h>

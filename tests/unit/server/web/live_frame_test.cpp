@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings as viewers get them. Samples are worked out by hand; the layout is that of docs/page.md.
+// Pings in the format for viewers. The expected samples were calculated by hand from the layout in
+// docs/page.md.
 #include "server/web/live_frame.hpp"
 
 #include <array>
@@ -73,7 +74,8 @@ TEST(LiveFrame, SaysHowOldItsPingIs) {
 }
 
 TEST(LiveFrame, ShowsTheLargestOfRowsThatBecomeOne) {
-  // Five rows, at most three: two become one, and the last is alone. 200 must not be taken for negative.
+  // Five rows with a limit of three: pairs are joined, and the last row is alone. 200 must not become
+  // negative.
   const Decoded frame =
       decoded(live_frame(std::array{ping(2, 5, {1, 9, 200, 2, 3, 3, 4, 1, 7, 8}, {0, 1})}, 3, {}), 2);
   EXPECT_EQ(frame.header["rows"], 3);

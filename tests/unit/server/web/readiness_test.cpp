@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules are those of docs/page.md: the pose of the vehicle is known, its stamps let pings begin, and each
-// head serves an address.
+// The rules of docs/page.md: the pose of the vehicle is known, its stamps let pings begin, and each head
+// serves an address.
 #include <chrono>
 
 #include <gmock/gmock.h>

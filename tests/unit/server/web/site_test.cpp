@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page while its drawing thread stands still, and viewers that do not read.
+// The page while its drawing thread is blocked, and viewers that do not read.
 #include "server/web/site.hpp"
 
 #include <utility>
@@ -12,7 +12,7 @@ namespace {
 namespace http = boost::beast::http;
 using std::chrono::milliseconds;
 
-/// A page whose drawings are made when the test says so.
+/// A page whose drawings are made when the test calls draw_all().
 struct Page {
   void draw_all() {
     for (const auto& drawing : std::exchange(drawings, {})) {

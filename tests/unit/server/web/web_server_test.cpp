@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of the page.
+// Stopping the page's server.
 #include "server/web/web_server.hpp"
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views of a box whose place is known.
+// Views of two squares at known places.
 #include "server/web/world_view.hpp"
 
 #include <memory>
@@ -10,7 +10,7 @@
 namespace sonard::server {
 namespace {
 
-/// Two triangles: a square of 2 m in the x-y plane, its middle at (5, 1, -3).
+/// A square of 2 m in the x-y plane, of two triangles, with its middle at (5, 1, -3).
 render::Body square() {
   auto mesh = std::make_shared<render::TriangleMesh>();
   mesh->positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -18,7 +18,7 @@ render::Body square() {
   return {"square", {{5, 1, -3}, {1, 0, 0, 0}}, {{mesh, {}, {}, nullptr}}};
 }
 
-/// The same twice as far to the east, as large, so that the picture has a gap in the middle.
+/// The square, and a second one 4 m further east, so that the picture has a gap in the middle.
 render::World two_squares() {
   render::World world;
   world.name = "squares";
