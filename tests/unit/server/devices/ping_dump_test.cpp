@@ -17,7 +17,7 @@ std::string contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// A folder of its own that goes when the test ends.
+// A temporary folder, deleted when the test ends.
 struct PingDumpTest : testing::Test {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("sonard-ping-dump-" + std::to_string(getpid()));
@@ -28,7 +28,7 @@ struct PingDumpTest : testing::Test {
   }
 };
 
-// "123456789" is the check string of CRC catalogues: CRC-32 of zlib gives CBF43926.
+// CRC-32 of zlib returns CBF43926 for "123456789", the check string of CRC catalogues.
 TEST(SamplesCrc32, IsThatOfZlib) {
   render::PingSamples samples;
   samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
@@ -57,7 +57,7 @@ TEST_F(PingDumpTest, WritesNumpyFileAndIndexRow) {
   EXPECT_EQ(contents(folder / "bow.csv"),
             "number,id,transmit_us,lines,beams,crc32,pose_ns\n257,1,1234567,3,3,cbf43926,5678\n");
 
-  // NumPy format 1.0: magic, version, header length; header and preamble together a multiple of 64.
+  // NumPy format 1.0: magic, version, header length. Preamble and header together are a multiple of 64 bytes.
   const std::string file = contents(folder / "bow-00000257.npy");
   ASSERT_EQ(file.size(), 128u + 9u);
   EXPECT_EQ(file.substr(0, 10), std::string("\x93NUMPY\x01\x00\x76\x00", 10));

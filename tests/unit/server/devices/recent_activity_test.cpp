@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head did lately, by times worked out by hand.
+// Recent activity of a head, at times set by hand.
 #include "server/devices/recent_activity.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(RecentPings, AreNoneWhenTheyHaveStopped) {
   pings.sent(seconds{1}, seconds{1});
   pings.sent(seconds{2}, seconds{2});
   EXPECT_DOUBLE_EQ(pings.per_s(seconds{2}), 1.0);
-  EXPECT_DOUBLE_EQ(pings.per_s(seconds{6}), 0.25);  // none for four seconds
+  EXPECT_DOUBLE_EQ(pings.per_s(seconds{6}), 0.25);  // no ping for four seconds
   EXPECT_DOUBLE_EQ(pings.per_s(seconds{30}), 0.0);
 }
 

@@ -18,7 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// A client that asks for a ping every `interval`, or as soon as the last one is there.
+/// A client that requests a ping every `interval`, or as soon as the last one has arrived.
 class Client {
  public:
   explicit Client(RenderLoad& load) : load_(load) {}

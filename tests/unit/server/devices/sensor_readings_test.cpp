@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What attitude and depth a head's sensors read. Truth: turns about one axis, and products of rotation
-// matrices worked out by hand (docs/frames-and-units.md).
+// Attitude and depth that a head's sensors read. The expected values are turns about one axis, and products
+// of rotation matrices by hand (docs/frames-and-units.md).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace sonard::server {
 namespace {
 
-/// Roll, pitch, yaw in degrees, as a mount has them: positive pitch is nose down, yaw 0 is east.
+/// A pose by roll, pitch, yaw in degrees, as in a mount: positive pitch is nose down, yaw 0 is east.
 render::Pose turned(double roll_deg, double pitch_deg, double yaw_deg, glm::dvec3 position_m = {}) {
   const auto about = [](double deg, const glm::dvec3& axis) { return glm::angleAxis(deg * degree, axis); };
   return {position_m, about(yaw_deg, {0, 0, 1}) * about(pitch_deg, {0, 1, 0}) * about(roll_deg, {1, 0, 0})};
@@ -51,9 +51,9 @@ TEST(SensorReadings, pitch_is_positive_nose_up_and_roll_starboard_down) {
 }
 
 TEST(SensorReadings, are_those_of_the_mount) {
-  // Nearly, but not exactly, the sums of the angles: the mount pitches about an axis that has rolled.
+  // Close to the sums of the angles, but not equal, because the mount pitches about an axis that has rolled.
   expect_deg(turned(3, 5, 30) * turned(0, 10, 0), 59.461, -14.986, 3.094);
-  expect_deg(turned(0, 5, 0) * turned(0, 0, -90), 180, 0, -5);  // looking to starboard of a nose that is down
+  expect_deg(turned(0, 5, 0) * turned(0, 0, -90), 180, 0, -5);  // looks to starboard of a nose-down vehicle
   expect_deg(turned(0, 0, 30) * turned(180, 0, 0), 60, 0, 180);
   expect_deg(turned(0, 20, 30) * turned(180, 0, 0), 60, -20, 180);
 }

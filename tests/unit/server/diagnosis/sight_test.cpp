@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a picture is black, in a world of one cube whose distances are worked out by hand.
+// Reasons for a black picture, in a world of one cube, with distances calculated by hand.
 #include "server/diagnosis/sight.hpp"
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace sonard::server {
 namespace {
 
-/// A closed cube of 2 m.
+/// A closed cube with edges of 2 m.
 std::shared_ptr<const render::TriangleMesh> cube() {
   auto mesh = std::make_shared<render::TriangleMesh>();
   for (int i = 0; i < 8; ++i) {
@@ -23,7 +23,7 @@ std::shared_ptr<const render::TriangleMesh> cube() {
   return mesh;
 }
 
-/// The cube's middle at (10, 0, -20), under water whose surface is at 0.
+/// A world with the cube's middle at (10, 0, -20), under a water surface at z = 0.
 render::World pier() {
   render::World world;
   world.bodies = {{"pier", {{10, 0, -20}, {1, 0, 0, 0}}, {{cube(), {}, {}, nullptr}}}};
@@ -54,19 +54,19 @@ TEST(LookAround, FindsNothingWrongWhereASurfaceIsSeen) {
 }
 
 TEST(LookAround, NamesTheNearestBodyAndItsDistance) {
-  // From (2, 0, -20) to the face at x = 9.
+  // Distance from (2, 0, -20) to the face at x = 9.
   EXPECT_EQ(look(pier(), {}, at({2, 0, -20})),
             only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 7 m away."));
 }
 
 TEST(LookAround, TakesBodiesWhereTheyAreNow) {
-  // The face at x = 99.
+  // The face is at x = 99.
   EXPECT_EQ(look(pier(), {{"pier", {{100, 0, -20}, {1, 0, 0, 0}}}}, at({2, 0, -20})),
             only("nothing_near", "Nothing is within 5 m; the nearest body, 'pier', is 97 m away."));
 }
 
 TEST(LookAround, SaysWhichWayTheNearestBodyIs) {
-  // 3 m from the face at x = 9, and the sonar looks to +y, so that it is on the right: starboard.
+  // The face at x = 9 is 3 m away. The sonar looks to +y, so the face is to starboard.
   const double half = std::numbers::pi / 4;
   EXPECT_EQ(
       look(pier(), {}, at({6, 0, -20}, {std::cos(half), 0, 0, std::sin(half)})),
@@ -96,7 +96,7 @@ TEST(LookAround, SuspectsMillimetresAndCentimetres) {
 }
 
 TEST(LookAround, SuspectsAQuaternionWithWFirst) {
-  // No turn, (w, x, y, z) = (1, 0, 0, 0), sent in this order and read as x, y, z, w: half a turn about x.
+  // The unit quaternion, sent as w, x, y, z = (1, 0, 0, 0) and read as x, y, z, w, is half a turn about x.
   Sight sight = at({7, 0, -20}, {0, 1, 0, 0});
   sight.sees_surface = true;
   const auto found = look(pier(), {}, sight);
@@ -105,7 +105,7 @@ TEST(LookAround, SuspectsAQuaternionWithWFirst) {
 }
 
 TEST(LookAround, SuspectsItAtOtherHeadingsToo) {
-  // 120 degrees about z is (w, x, y, z) = (1/2, 0, 0, sqrt(3)/2); read as x, y, z, w.
+  // 120 degrees about z, sent as w, x, y, z = (1/2, 0, 0, sqrt(3)/2) and read as x, y, z, w.
   Sight sight = at({7, 0, -20}, {std::sqrt(3.0) / 2, 0.5, 0, 0});
   sight.sees_surface = true;
   ASSERT_EQ(look(pier(), {}, sight).size(), 1U);
@@ -113,7 +113,7 @@ TEST(LookAround, SuspectsItAtOtherHeadingsToo) {
 }
 
 TEST(LookAround, TakesAVehicleThatLeansForOne) {
-  // Rolled by 60 degrees, then pitched by 20: no order of the numbers makes it level.
+  // Rolled by 60 degrees, then pitched by 20: no order of the numbers makes this level.
   const glm::dquat roll(std::cos(std::numbers::pi / 6), std::sin(std::numbers::pi / 6), 0, 0);
   const glm::dquat pitch(std::cos(std::numbers::pi / 18), 0, std::sin(std::numbers::pi / 18), 0);
   Sight sight = at({7, 0, -20}, pitch * roll);
@@ -123,7 +123,7 @@ TEST(LookAround, TakesAVehicleThatLeansForOne) {
 
 TEST(LookAround, SaysThatTheSonarIsInsideOfABody) {
   Sight sight = at({10.2, 0.1, -20.3});
-  sight.sees_surface = true;  // the inner side
+  sight.sees_surface = true;  // the inner side of the cube
   EXPECT_EQ(look(pier(), {}, sight), only("inside_body", "The sonar is inside of the body 'pier'."));
   sight.vehicle_model = "pier";
   EXPECT_EQ(look(pier(), {}, sight)[0].text,
@@ -145,7 +145,7 @@ TEST(LookAround, SaysThatTheOnlyBodyIsHidden) {
       only("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden."));
 }
 
-/// A box of these edges whose middle is at the origin, its faces outwards or inwards.
+/// A box with these edges and its middle at the origin. Its faces point outwards or inwards.
 std::shared_ptr<const render::TriangleMesh> box(const glm::vec3& size, bool inwards = false) {
   auto mesh = std::make_shared<render::TriangleMesh>(*cube());
   for (glm::vec3& position : mesh->positions) {
@@ -182,7 +182,7 @@ TEST(LookAround, ATankWhoseFacesLookInwardsIsNot) {
   EXPECT_EQ(look(tank, {}, at({0.1, 0.2, -20.3}))[0].code, "inside_body") << "where nothing is seen of it";
 }
 
-/// A sheet of 100 m that looks up.
+/// A horizontal sheet of 100 m whose front is its upper side.
 std::shared_ptr<const render::TriangleMesh> sheet() {
   auto mesh = std::make_shared<render::TriangleMesh>();
   mesh->positions = {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}};
@@ -197,7 +197,7 @@ TEST(LookAround, SaysThatTheSonarIsUnderTheBed) {
            "bed (is z of the pose right)?");
   EXPECT_EQ(look(one("bed", sheet()), {}, at({7, 3, -23.5})), expected);
   EXPECT_EQ(look(one("bed", sheet()), {}, seeing({7, 3, -23.5})), expected) << "it sees the back of it";
-  // A slab of 1 m, whose lower side is at z = -20.5.
+  // A slab 1 m thick, with its lower side at z = -20.5.
   EXPECT_EQ(look(one("bed", box({100, 100, 1})), {}, at({7, 3, -24})), expected);
   Sight faint = seeing({7, 3, -24});
   faint.echo_over_floor = 0.01;
@@ -216,7 +216,7 @@ TEST(LookAround, BelowAShipOrIceOrABridgeAllIsWell) {
 }
 
 TEST(LookAround, SaysThatNoEchoStandsOut) {
-  // 3 m above the bed, and the sonar looks up by 30 degrees; an echo of a hundredth of the noise.
+  // The sonar is 3 m above the bed and looks up by 30 degrees. The echo is a hundredth of the noise.
   const double quarter = std::numbers::pi / 12;
   Sight sight = at({0, 0, -17}, {std::cos(quarter), 0, -std::sin(quarter), 0});
   sight.sees_surface = true;
@@ -235,7 +235,7 @@ TEST(LookAround, SaysThatNoEchoStandsOut) {
 }
 
 TEST(LookAround, SuspectsUtmCoordinatesInALocalWorld) {
-  // Trondheim, zone 32: 569 km east, 7034 km north.
+  // Trondheim in UTM zone 32: 569 km east, 7034 km north.
   for (const glm::dvec3& p : {glm::dvec3(569000, 7034000, -20), glm::dvec3(7034000, 569000, -20)}) {
     const auto found = look(one("bed", sheet()), {}, at(p));
     ASSERT_EQ(found.size(), 1U);

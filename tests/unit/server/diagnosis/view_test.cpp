@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a sonar looks, and the window of a level bed, by its closed form: a beam that points down by t with a
-// width of b meets a bed h below from h / sin(t + b/2) to h / sin(t - b/2).
+// The direction in which a sonar looks, and its window on a level bed in closed form: a beam of width b that
+// points down by t meets a bed h below it from h / sin(t + b/2) to h / sin(t - b/2).
 #include "server/diagnosis/view.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace sonard::server {
 namespace {
 
-/// Turned about fixed x, y, z by degrees, as a mount.
+/// A pose turned about fixed x, y, z by degrees, like a mount.
 render::Pose mount(double roll_deg, double pitch_deg, double yaw_deg) {
   const glm::dvec3 z(0, 0, 1), y(0, 1, 0), x(1, 0, 0);
   return {{0, 0, 0},
@@ -35,7 +35,7 @@ TEST(Looks, SaysWhereTheAxisPoints) {
   EXPECT_EQ(looks_text(mount(0, 1.57, 0)), "forward and 2 degrees down") << "radians given for degrees";
 }
 
-/// A square of 2 km at z = -20 that looks up, 400 triangles.
+/// A square of 2 km at z = -20 whose front is its upper side, with 800 triangles.
 render::World level_bed() {
   auto mesh = std::make_shared<render::TriangleMesh>();
   constexpr int cells = 20;
@@ -71,7 +71,7 @@ std::optional<BedView> view(const render::Pose& turn, double z_m, double range_m
 }
 
 TEST(BedWindow, IsWhereTheBeamMeetsIt) {
-  // 10 m above the bed, 20 degrees down: 10 / sin 30 = 20 m to 10 / sin 10 = 57.6 m.
+  // 10 m above the bed and 20 degrees down: from 10 / sin 30 = 20 m to 10 / sin 10 = 57.6 m.
   const auto seen = view(mount(0, 20, 0), -10, 100);
   ASSERT_TRUE(seen && seen->nearest_m);
   EXPECT_EQ(seen->body, "seabed");
@@ -88,7 +88,7 @@ TEST(BedWindow, EndsWithTheRange) {
 }
 
 TEST(BedWindow, OfALevelBeamBeginsAtItsLowerEdge) {
-  // 10 / sin 10.
+  // The lower edge meets the bed at 10 / sin 10.
   EXPECT_NEAR(*view(mount(0, 0, 0), -10, 100)->nearest_m, 10.0 / std::sin(glm::radians(10.0)), 1e-3);
   const auto beyond = view(mount(0, 0, 0), -10, 50);
   ASSERT_TRUE(beyond);
@@ -103,7 +103,8 @@ TEST(BedWindow, StraightDownItBeginsAtTheFoot) {
 }
 
 TEST(BedWindow, AFanOnItsSideSeesTheFootByItsBeams) {
-  // Rolled by 90 degrees, beams to 60 degrees below the horizontal: from 10 / sin 60.
+  // Rolled by 90 degrees, the beams reach to 60 degrees below the horizontal, so the bed begins at 10 / sin
+  // 60.
   EXPECT_NEAR(*view(mount(90, 0, 0), -10, 100)->nearest_m, 10.0 / std::sin(glm::radians(60.0)), 1e-3);
 }
 
@@ -119,7 +120,7 @@ TEST(BedWindow, BelowTheBedNothingIsBelow) {
   EXPECT_FALSE(view_of_bed(level_bed(), {}, "seabed", {{0, 0, -10}, {1, 0, 0, 0}}, settings(50)));
 }
 
-/// A floor at z = -20 with a wall at x = 18 that stands on it to z = 0, one body.
+/// One body: a floor at z = -20, and a wall at x = 18 from the floor up to z = 0.
 render::World tank() {
   render::World world = level_bed();
   auto mesh = std::make_shared<render::TriangleMesh>(*world.bodies[0].parts[0].mesh);
@@ -127,7 +128,7 @@ render::World tank() {
   for (const glm::vec3& corner : {glm::vec3(18, 50, 0), {18, -50, 0}, {18, -50, 20}, {18, 50, 20}}) {
     mesh->positions.push_back(corner);
   }
-  for (const std::uint32_t corner : {2U, 1U, 0U, 3U, 2U, 0U}) {  // its front is to -x
+  for (const std::uint32_t corner : {2U, 1U, 0U, 3U, 2U, 0U}) {  // its front faces -x
     mesh->indices.push_back(first + corner);
   }
   world.bodies[0].parts[0].mesh = mesh;
@@ -135,7 +136,7 @@ render::World tank() {
 }
 
 TEST(BedWindow, IsNotAWallOfTheSameBody) {
-  // 15 m to the wall; the floor, 10 m down, begins at 10 / sin 10 = 57.6 m.
+  // The wall is 15 m away. The floor is 10 m below and begins at 10 / sin 10 = 57.6 m.
   const render::Pose level{{3, -7, -10}, mount(0, 0, 0).orientation};
   EXPECT_FALSE(view_of_bed(tank(), {}, "", level, settings(40))->nearest_m);
   EXPECT_NEAR(*view_of_bed(tank(), {}, "", level, settings(100))->nearest_m,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`sonard info` on logs written here, whole, cut and broken.
+"""Tests `sonard info` on whole, cut and broken logs that the test writes.
 
     info_test.py --sonard PROGRAM
 """
@@ -25,7 +25,8 @@ class Info(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix="sonard-info-")
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
-        # 2026-11-20 14:22:33.250 on the log's clock; images of two sonars in turn, one late, one with other settings.
+        # From 2026-11-20 14:22:33.250 on the log's clock. Two sonars send in turn; one image is late, one has
+        # other settings.
         self.bow = glf_writer.noise(10, 100, device_id=600, interval_s=0.5)
         self.bow[6].gain_percent = 80
         for image in self.bow[7:]:
@@ -72,7 +73,7 @@ class Info(unittest.TestCase):
                 self.assertEqual((stern["gaps"], stern["longest_gap_s"]), (0, 0))
                 self.assertEqual([(s["pings"], s["lines"], s["beams"], s["gain_percent"]) for s in bow["settings"]],
                                  [(9, 100, 256, 50), (1, 100, 256, 80)])
-                # 50 lines of 1480.5 / 2 / 45211 m.
+                # 50 lines of 1480.5 / 2 / 45211 m each.
                 self.assertAlmostEqual(stern["settings"][0]["range_m"], 50 * 1480.5 / 2 / 45211, places=6)
                 self.assertEqual(stern["settings"][0]["sound_speed_mps"], 1480.5)
 
@@ -83,7 +84,7 @@ class Info(unittest.TestCase):
                          ("2026-11-20T14:22:33.250", "2026-11-20T14:22:33.250Z"))
         self.assertEqual(span["last_as_written"], "2026-11-20T14:22:39.750")
         self.assertAlmostEqual(span["seconds"], 6.5, places=5)
-        # Two hours east of Greenwich: what the clock shows is later than UTC.
+        # Two hours east of Greenwich, so the clock shows a later time than UTC.
         for options in ({"zone": "EET-2"}, {"zone": "UTC", "hours": "2"}):
             offset = ["--utc-offset", options.pop("hours")] if "hours" in options else []
             span = self.json(path, *offset, **options)["span"]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two blocks before a wall, by geometry: which body lies in which bin.
+// Two blocks before a wall: the body in each bin, by geometry.
 #include "server/offline/body_truth.hpp"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 constexpr int range_lines = 200;
 constexpr double step_m = 0.05;
 
-/// A square that faces the sonar at the origin: `x_m` ahead, from `left_m` to `right_m` (y, port is
+/// A square that faces the sonar at the origin. It is `x_m` ahead, from `left_m` to `right_m` (y, port is
 /// positive).
 render::Body board(const std::string& name, double x_m, double left_m, double right_m) {
   auto mesh = std::make_shared<render::TriangleMesh>();
@@ -34,11 +34,11 @@ struct BodyTruthTest : testing::Test {
                     board("starboard block", 5.0, -0.5, -1.5)};
     request.settings.aperture.beam_edges_rad = render::equal_angle_edges(64, 1.0);
     request.settings.aperture.azimuth =
-        render::Aperture::Azimuth::array;  // with side lobes, that do not count
+        render::Aperture::Azimuth::array;  // with side lobes, which must not count
     request.settings.range = {range_lines, step_m, 0, false};
   }
 
-  /// Of the bin at a range, of the beam at an azimuth.
+  /// The body in the bin at a range, in the beam at an azimuth.
   std::uint16_t at(const std::vector<std::uint16_t>& ids, double range_m, double azimuth_rad) const {
     const auto line = static_cast<std::size_t>(range_m / step_m) >> request.settings.range.compression_log2;
     const auto beam = static_cast<std::size_t>((0.5 - azimuth_rad) * 64);
@@ -56,8 +56,8 @@ TEST_F(BodyTruthTest, EachBlockIsInItsBinsAndHidesTheWall) {
   const double starboard_rad = std::atan2(-1.0, 5.0);
   EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, port_rad), 2);
   EXPECT_EQ(at(ids, 5.0 / std::cos(starboard_rad) + 0.01, starboard_rad), 3);
-  EXPECT_EQ(at(ids, 8.01, 0.0), 1);                                   // the wall, between them
-  EXPECT_EQ(at(ids, 8.0 / std::cos(port_rad) + 0.01, port_rad), 0);   // the wall in the shadow
+  EXPECT_EQ(at(ids, 8.01, 0.0), 1);                                   // the wall between the blocks
+  EXPECT_EQ(at(ids, 8.0 / std::cos(port_rad) + 0.01, port_rad), 0);   // the wall in a block's shadow
   EXPECT_EQ(at(ids, 3.0, port_rad), 0);                               // water
   EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, -port_rad), 0);  // the other side
 }
@@ -75,8 +75,8 @@ TEST_F(BodyTruthTest, FollowsABodyThatMovesAndLeavesOutOneWithoutParts) {
   EXPECT_EQ(at(ids, 8.0 / std::cos(moved_rad) + 0.01, -moved_rad), 1) << "nothing is before the wall there";
 }
 
-// The sonar turns to port by 0.3 rad in the time of 10 m, so by a share of that until an echo of 4 m is back:
-// the block appears that much further to starboard, as in the image.
+// The sonar turns to port by 0.3 rad in the listening time of 10 m. It has turned by a share of this when an
+// echo from 4 m is back, so the block appears that much further to starboard, as in the image.
 TEST_F(BodyTruthTest, FollowsTheMotionOfTheSonarWithinThePing) {
   const auto mean_azimuth_rad = [&](const std::vector<std::uint16_t>& ids) {
     double sum = 0;

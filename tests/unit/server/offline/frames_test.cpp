@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads are asked for along a trajectory.
+// Pings that heads send along a trajectory.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t ns_per_s = 1'000'000'000;
 
-/// Along x from the origin, for `seconds`, from the stamp 100 s on.
+/// A trajectory along x from the origin, for `seconds`, beginning at the stamp 100 s.
 VehicleTrajectory ahead(int seconds, double speed_mps = 1.0) {
   const std::int64_t start = 100 * ns_per_s;
   return VehicleTrajectory(
@@ -36,7 +36,7 @@ VehicleTrajectory ahead(int seconds, double speed_mps = 1.0) {
                         {start + seconds * ns_per_s, {{speed_mps * seconds, 0, 0}, {1, 0, 0, 0}}}}));
 }
 
-/// A Gemini whose device is set up by `change`.
+/// A Gemini whose device `change` sets up.
 template <class Change>
 HeadConfig gemini(const Change& change) {
   HeadConfig head = gemini_kind().make_default();
@@ -70,7 +70,7 @@ TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
   EXPECT_EQ(ping.ping_number, 3U);
   EXPECT_EQ(ping.seed, 9U);
   EXPECT_DOUBLE_EQ(ping.T_world_sonar.position_m.x, 0.75 + 0.5);
-  // 20 m and back at 1500 m/s take 2411 lines of 1 / 90422 s.
+  // 20 m and back at 1500 m/s take 2411 lines of 1 / 90422 s each.
   ASSERT_TRUE(ping.T_world_sonar_at_end);
   EXPECT_NEAR(ping.T_world_sonar_at_end->position_m.x, 1.25 + 2411 / 90422.0, 1e-8);
   EXPECT_EQ(ping.settings.range.count, 2411);
@@ -86,13 +86,13 @@ TEST(FanFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
     options.survey.compression_log2 = compression_log2;
     return fans_of(head, {}, trajectory, options).count();
   };
-  EXPECT_EQ(frames_with(20, 0), 101);  // the head
+  EXPECT_EQ(frames_with(20, 0), 101);  // limited by the head
   head = gemini([](gemini::DeviceConfig& device) {
     device.min_ping_period = 1ms;
     device.line_period = 100us;
   });
-  EXPECT_EQ(frames_with(20, 0), 1 + static_cast<int>(10.0 / (2413 * 100e-6)));  // the link
-  EXPECT_EQ(frames_with(20, 4), 1 + static_cast<int>(10.0 * 90422.0 / 2411));   // the water
+  EXPECT_EQ(frames_with(20, 0), 1 + static_cast<int>(10.0 / (2413 * 100e-6)));  // limited by the link
+  EXPECT_EQ(frames_with(20, 4), 1 + static_cast<int>(10.0 * 90422.0 / 2411));   // limited by the water
 }
 
 TEST(FanFrames, RecordsAreThoseOfTheLog) {
@@ -136,7 +136,7 @@ TEST(FanFrames, StillsAreOneForEachPoseUnlessARateIsGiven) {
   EXPECT_EQ(fans_of(head, {}, trajectory, options).count(), 5);
 }
 
-// 200 lines of 1.8 degrees from each of the two poses.
+// 200 lines, 1.8 degrees apart, from each of the two poses.
 TEST(SweepFrames, StillsAreAWholeTurnFromEachPose) {
   const HeadConfig head = micron_kind().make_default();
   VehicleTrajectory trajectory = ahead(2);
@@ -165,7 +165,7 @@ TEST(SweepFrames, LinesOfALogHaveTheirBearingsTimesAndPoses) {
   samples.u8[7 * 200 + 50] = 99;
   const std::vector<PingSent> pings = frames.pings(1, npy::encode(samples));
   ASSERT_EQ(pings.size(), 200U);
-  const PingSent& line = pings[50];  // 250 of all
+  const PingSent& line = pings[50];  // line 250 in all
   EXPECT_EQ(line.ping.number, 250U);
   EXPECT_EQ(line.ping.samples[7], 99);
   EXPECT_NEAR(line.ping.bearings_rad.front(), std::numbers::pi / 2, 1e-12);
@@ -185,7 +185,7 @@ TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
   EXPECT_EQ(frames.count(), 2);
   EXPECT_EQ(frames.first_line(1), 200);
   EXPECT_EQ(frames.first_line(2), 400);
-  // Ahead first, then clockwise: line 50 looks to starboard, which is -y.
+  // Ahead first, then clockwise: line 50 points to starboard, which is -y.
   const glm::dvec3 ahead_axis = frames.request(0).T_world_sonar.orientation * glm::dvec3(1, 0, 0);
   const glm::dvec3 axis = frames.request(50).T_world_sonar.orientation * glm::dvec3(1, 0, 0);
   EXPECT_NEAR(ahead_axis.x, 1.0, 1e-12);
@@ -228,9 +228,9 @@ TEST(SweepFrames, GoIntoNoLogOfFans) {
   EXPECT_FALSE(frames.record(0, {}));
 }
 
-// ---- What lies beside the samples
+// ---- Data beside the samples
 
-/// A board 0.8 m ahead of the origin, from y = 1 m, which is to port, to another y.
+/// A board 0.8 m ahead of the origin, from y = 1 m (port) to y = `right_m`.
 render::World board(float right_m = -1.0F) {
   auto mesh = std::make_shared<render::TriangleMesh>();
   mesh->positions = {{0.8F, 1, -1}, {0.8F, 1, 1}, {0.8F, right_m, 1}, {0.8F, right_m, -1}};
@@ -325,15 +325,15 @@ TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
 
 // ---- Pictures
 
-/// How much louder the left half of a picture is than the right one: 1 where all is on the left. Echoes are
-/// of the colour of fire, grid and letters grey.
+/// Difference of the echo levels of the left and right halves of a picture over their sum: 1 if all echoes
+/// are on the left. Echoes have the colours of fire; grid and letters are grey.
 double left_over_right(const cv::Mat& picture) {
   const auto loudness = [&](int first, int end) {
     double sum = 0.0;
     for (int row = 0; row < picture.rows; ++row) {
       for (int column = first; column < end; ++column) {
         const auto& colour = picture.at<cv::Vec3b>(row, column);
-        sum += std::max(0, colour[2] - colour[0]);  // red beyond blue
+        sum += std::max(0, colour[2] - colour[0]);  // red above blue
       }
     }
     return sum;
@@ -380,8 +380,8 @@ TEST(SweepFrames, HavePortOnTheLeftOfTheirPicturesHoweverTheHeadIsMounted) {
     render::SonarRenderer renderer(board(0.3F), {render::EngineKind::cpu, 0});
     SweepFrames turns = sweeps_of(head, trajectory, options);
     EXPECT_GT(left_over_right(turns.render(renderer, 0).draw()), 0.3);
-    // Lopsided, so that a sector on the wrong side misses the board: as the head says it, from 80 degrees to
-    // the side where the board is to 10 beyond ahead.
+    // An asymmetric sector, which misses the board if it is on the wrong side. In the head's angles it
+    // reaches from 80 degrees on the board's side to 10 degrees beyond ahead.
     options.survey.sector_deg = inverted ? std::vector{-10.0, 80.0} : std::vector{-80.0, 10.0};
     SweepFrames sweeps = sweeps_of(head, trajectory, options);
     EXPECT_GT(left_over_right(sweeps.render(renderer, 0).draw()), 0.3);

@@ -15,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// `time_s` since 1980; pixels that do not pack.
+/// An image at `time_s`, in seconds since 1980, with pixels that do not compress.
 glf::ImageRecord image_at(double time_s) {
   glf::ImageRecord image;
   image.origin = {time_s, 513, 100};
@@ -44,7 +44,7 @@ TEST(GlfFile, HoldsItsRecordsAndNothingElseStays) {
   const test::TemporaryFolder temporary;
   const OutputFolder folder(temporary.path());
   GlfFile log(folder, "test 1");
-  // 40 of more than 3 kB: more than a block of the archive.
+  // 40 records of more than 3 kB each: more than one block of the archive.
   for (int i = 0; i < 40; ++i) {
     log.add(image_at(86'400.0 + i));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which trajectories a vehicle can have travelled, and which are poses that are independent of each other.
+// Trajectories that a vehicle can travel, trajectories with jumps, and independent poses.
 #include "server/offline/jumps.hpp"
 
 #include <cmath>
@@ -43,15 +43,15 @@ TEST(Jumps, AVehicleOnItsWayMakesNone) {
   // 3 m/s, with points 10 s apart and 0.02 s apart.
   expect_none(points(20, 10, [](double t) { return Place{3 * t, 0, 0}; }));
   expect_none(points(500, 0.02, [](double t) { return Place{3 * t, 0, 0}; }));
-  // On the spot at 90 degrees per second, past 180 degrees and on.
+  // Turning on the spot at 90 degrees per second, past 180 degrees.
   expect_none(points(40, 0.5, [](double t) { return Place{0, 0, 90 * degree * t}; }));
-  // A circle of 5 m at 1.5 m/s.
+  // A circle with a radius of 5 m at 1.5 m/s.
   expect_none(points(60, 1, [](double t) {
     return Place{5 * std::cos(0.3 * t), 5 * std::sin(0.3 * t), 0.3 * t + std::numbers::pi / 2};
   }));
 }
 
-// 1 cm and half a degree of noise in a pose that is measured 50 times per second.
+// A pose measured 50 times per second, with 1 cm and half a degree of noise.
 TEST(Jumps, NoiseOfAMeasuredPoseIsNone) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
@@ -62,7 +62,7 @@ TEST(Jumps, NoiseOfAMeasuredPoseIsNone) {
   EXPECT_FALSE(jumps.independent);
 }
 
-// A survey of two lines, 400 m apart, with nothing recorded in between.
+// A survey of two lines 400 m apart, with no points in between.
 TEST(Jumps, ATeleportIsOneAndNamesItself) {
   std::vector<pose::TrajectoryPoint> way = points(10, 1, [](double t) { return Place{t, 0, 0}; });
   for (int k = 10; k < 20; ++k) {
@@ -84,7 +84,7 @@ TEST(Jumps, ATurnThatIsTooFastIsOne) {
   EXPECT_EQ(find_jumps({point(0, 0, 0, 0), point(1, 0, 21, 0)}).count, 1U);
 }
 
-// The steps are within the limits; what breaks them is how they follow each other.
+// Each step is within the limits, but the change from step to step is not.
 TEST(Jumps, AChangeThatIsTooFastIsNamedAsAChange) {
   const Jumps jumps =
       find_jumps({point(0, 0, 0, 0), point(1, 4, 0, 0), point(2, 0, 0, 0), point(3, 4, 0, 0)});
@@ -93,7 +93,7 @@ TEST(Jumps, AChangeThatIsTooFastIsNamedAsAChange) {
   EXPECT_EQ(jumps.first, "from t=1 to t=2: velocity changes by 8 m/s and turn rate by 0 deg/s within 1 s");
 }
 
-// In a tank of 6 m no step is fast, but no step continues the one before it.
+// In a tank of 6 m no step is fast, but no step continues the step before it.
 TEST(Jumps, RandomPosesAreIndependent) {
   for (unsigned int seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
@@ -105,7 +105,7 @@ TEST(Jumps, RandomPosesAreIndependent) {
     EXPECT_TRUE(find_jumps(points(40, 1, [&](double) {
                   return Place{place(random), place(random), 0};
                 })).independent);
-    // Ten frames per second of a sonar near a pipe: no step is a jump.
+    // A sonar near a pipe at ten frames per second, where no step is a jump.
     std::uniform_real_distribution<double> near(-0.4, 0.4), about(-8 * degree, 8 * degree);
     EXPECT_TRUE(find_jumps(points(60, 0.1, [&](double) {
                   return Place{near(random), near(random), about(random)};

@@ -155,7 +155,7 @@ TEST_F(OutputFolderTest, ALockThatWasRemovedAsAPartIsTakenAnew) {
       std::this_thread::yield();
     }
   });
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // most likely it waits for the first by now
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // by now it most likely waits for the first
   folder.remove_parts();
   first.reset();
   while (!second_has_it) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each kind of device makes of the options of a survey, and what it refuses.
+// The pings of each kind of device for the options of a survey, and the options that it refuses.
 #include <chrono>
 #include <memory>
 #include <numbers>
@@ -25,7 +25,7 @@ std::unique_ptr<Survey> survey(const DeviceKind& kind, const SurveyOptions& opti
   return kind.survey(kind.make_default(), options);
 }
 
-/// One option, and no other.
+/// Options with one option set.
 template <class Value>
 SurveyOptions with(Value SurveyOptions::*option, const std::type_identity_t<Value>& value) {
   SurveyOptions options;
@@ -33,7 +33,7 @@ SurveyOptions with(Value SurveyOptions::*option, const std::type_identity_t<Valu
   return options;
 }
 
-/// "--option: what is wrong with it"
+/// The error message for the options, as "--option: problem"; empty if the kind accepts them.
 std::string complaint(const DeviceKind& kind, const SurveyOptions& options) {
   try {
     survey(kind, options);
@@ -118,7 +118,7 @@ TEST(Survey, every_kind_makes_records_of_its_pings) {
     EXPECT_EQ(record.settings.bins, job.bins());
     EXPECT_EQ(record.settings.beams, static_cast<int>(beams));
     EXPECT_NEAR(record.settings.bin_m, job.bin_m(), 1e-3 * job.bin_m());
-    if (kind->type() != "gemini_720i") {  // its pings do not say
+    if (kind->type() != "gemini_720i") {  // a Gemini's pings lack the frequency
       EXPECT_GT(record.settings.frequency_hz, 5e5);
     }
     EXPECT_EQ(record.bearings_rad,
@@ -126,7 +126,7 @@ TEST(Survey, every_kind_makes_records_of_its_pings) {
   }
 }
 
-// docs/protocols/oculus.md 2: the two frequencies of an M750d, and the narrower fan of the higher one.
+// docs/protocols/oculus.md 2: an M750d has two frequencies, and the fan of the higher one is narrower.
 TEST(Survey, an_oculus_has_two_frequencies_and_other_heads_refuse_the_option) {
   for (const DeviceKind* kind : device_kinds()) {
     SCOPED_TRACE(kind->type());

@@ -45,7 +45,7 @@ TEST(PingTimes, MayBeGiven) {
   EXPECT_EQ(times.at(2), 9);
 }
 
-// Points at 0, 1, 2 and 3 s, and a ping that listens for a tenth of a second.
+// Points at 0, 1, 2 and 3 s, and a ping that listens for 0.1 s.
 TEST(VehicleTrajectory, RestsInPingsThatFallIntoAGivenStep) {
   std::vector<pose::TrajectoryPoint> points;
   for (int k = 0; k < 4; ++k) {

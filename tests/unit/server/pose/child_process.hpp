@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program run beside the test.
+// A child process of a test.
 #pragma once
 
 #include <fcntl.h>
@@ -19,10 +19,10 @@ extern char** environ;
 
 namespace sonard::test {
 
-/// Output of both streams goes to a file. Killed, if need be, with the object.
+/// A child process. Its standard output and error go to a file. The destructor kills it if it still runs.
 class ChildProcess {
  public:
-  /// @param arguments the first is the path of the program
+  /// @param arguments the first one is the path of the program
   explicit ChildProcess(std::vector<std::string> arguments)
       : output_file_(testing::TempDir() + "child_" + std::to_string(getpid()) + "_" +
                      std::to_string(++count_)) {
@@ -50,7 +50,7 @@ class ChildProcess {
 
   void send(int signal) const { kill(pid_, signal); }
 
-  /// nullopt while it runs; -1 when a signal ended it.
+  /// nullopt while it runs; -1 if a signal ended it.
   std::optional<int> exit_status() {
     int status = 0;
     if (!ended_ && waitpid(pid_, &status, WNOHANG) == pid_) {

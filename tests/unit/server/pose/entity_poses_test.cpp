@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entities of a simulator as vehicle and bodies; the expected poses follow from the geometry by hand.
+// Entities of a simulator as vehicle and bodies. The expected poses were derived from the geometry by hand.
 #include "server/pose/entity_poses.hpp"
 
 #include <gmock/gmock.h>
@@ -54,7 +54,7 @@ TEST(EntityMap, TakesAWorldPoseAsItIs) {
 
 TEST(EntityMap, MountsTheVehicleInTheAxesOfTheEntity) {
   IgnitionPoseInput input = follow("rov");
-  input.T_entity_vehicle.position_m = {2, 0, 0};  // ahead of it, which is north after a quarter turn
+  input.T_entity_vehicle.position_m = {2, 0, 0};  // ahead, which is north after a quarter turn
   EntityMap map{input};
   const auto sample = map.map(message({at("rov", 1, 2, -3, quarter_to_port)}));
   ASSERT_TRUE(sample);
@@ -63,7 +63,7 @@ TEST(EntityMap, MountsTheVehicleInTheAxesOfTheEntity) {
 
 TEST(EntityMap, ComposesRelativePosesFromTheOutermostParentInwards) {
   EntityMap map{follow("sonar", {"rov", "arm"})};
-  // Ahead of the vehicle is north; ahead of the arm, which is turned as much again, is west.
+  // The vehicle's forward is north. The arm is turned by another quarter, so its forward is west.
   const auto sample = map.map(message(
       {at("sonar", 1, 0, 0), at("arm", 2, 0, 0, quarter_to_port), at("rov", 10, 20, -30, quarter_to_port)}));
   ASSERT_TRUE(sample);

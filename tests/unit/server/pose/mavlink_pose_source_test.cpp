@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MAVLink by UDP over loopback, as frames made by tests/support/mavlink_bytes.hpp.
+// MAVLink over UDP on loopback, with frames from tests/support/mavlink_bytes.hpp.
 #include "server/pose/mavlink_pose_source.hpp"
 
 #include <gmock/gmock.h>

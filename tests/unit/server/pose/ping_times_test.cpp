@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pings there are by the clock of a source, worked out by hand from the stamps.
+// Times of pings by the clock of a source, calculated by hand from the stamps.
 #include "server/pose/ping_times.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ struct PingTimesTest : testing::Test {
   PingTimesTest() { spdlog::set_level(spdlog::level::off); }
   ~PingTimesTest() override { spdlog::set_level(spdlog::level::info); }
 
-  /// Arrivals tell nothing: one message a minute here.
+  /// Inserts a pose. Arrival times must not matter, so poses arrive one minute apart.
   void pose(std::int64_t time_ms, double x_m = 0.0) {
     pose::PoseSample sample;
     sample.time_ns = time_ms * 1'000'000;
@@ -45,7 +45,7 @@ struct PingTimesTest : testing::Test {
       pose(time);
     }
   }
-  /// Of all pings that can begin now, ms.
+  /// Begins all pings that can begin now, and returns their times in ms.
   std::vector<std::int64_t> begun() {
     std::vector<std::int64_t> result;
     while (const auto time = times.begin(period, listening)) {
@@ -125,7 +125,7 @@ TEST_F(PingTimesTest, TheFirstOfANewLifeIsThatOfItsFirstStampHoweverLateItIsAske
   EXPECT_THAT(begun(), IsEmpty());
   poses_every(10, 10, 340);
   EXPECT_THAT(begun(), ElementsAre(0, 100, 200, 300));
-  poses_every(10, 40, 540);  // while the head is busy with the ping of 300
+  poses_every(10, 40, 540);  // while the head is busy with the ping at 300
   EXPECT_EQ(times.lead(), milliseconds(540 - 30 - 100));
   EXPECT_THAT(begun(), ElementsAre(100, 200, 300, 400, 500));
 }
@@ -135,7 +135,7 @@ TEST_F(PingTimesTest, NoPingIsInAGapOfTheSource) {
   begun();
   poses_every(10, 1010, 1150);
   EXPECT_THAT(begun(), ElementsAre(1000, 1100));
-  pose(100'004);  // nobody knows what was between
+  pose(100'004);  // poses in between are unknown
   poses_every(10, 100'010, 100'250);
   EXPECT_THAT(begun(), ElementsAre(100'100, 100'200));
   EXPECT_EQ(times.counters().unknown, 989U);
@@ -175,7 +175,7 @@ TEST_F(PingTimesTest, PosesThatAreNoLongerKeptAreSaid) {
   begun();
   poses_every(1, 1, 10'000);
   const auto all = begun();
-  // 4096 are kept, the oldest of 5905 ms.
+  // 4096 poses are kept, and the oldest is at 5905 ms.
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front(), 6000);
   EXPECT_EQ(times.counters().lost, 60U);

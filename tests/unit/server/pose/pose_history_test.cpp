@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose of a ping against closed forms of motion.
+// The pose of a ping against closed-form motion.
 #include "server/pose/pose_history.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::Field;
 
 constexpr std::int64_t ms_ns = 1'000'000;
-/// Our clock minus the publisher's.
+/// Our clock minus the publisher's clock.
 constexpr nanoseconds offset = seconds{1000};
 
 PoseConfig config(StalePolicy policy = StalePolicy::hold) {
@@ -41,12 +41,12 @@ pose::Quat yaw(double angle_rad) {
   return {std::cos(angle_rad / 2), 0, 0, std::sin(angle_rad / 2)};
 }
 
-/// Time of ours at which the publisher's clock shows `time_ms`.
+/// Time on our clock at which the publisher's clock shows `time_ms`.
 TimePoint ours(double time_ms) {
   return offset + nanoseconds{std::llround(time_ms * 1e6)};
 }
 
-/// Inserts without any delay on the way.
+/// Inserts a sample that arrives without delay.
 void insert(PoseHistory& history, const PoseSample& sample) {
   history.insert(sample, offset + nanoseconds{sample.time_ns});
 }
@@ -93,7 +93,7 @@ TEST(PoseHistory, InterpolatesAStraightLine) {
 
 TEST(PoseHistory, InterpolatesAConstantTurn) {
   PoseHistory history{config()};
-  const double rate_radps = 1.3;  // many turns, so the heading crosses +-180 degrees, and q changes its sign
+  const double rate_radps = 1.3;  // many turns, so the heading crosses +-180 degrees and q changes sign
   for (int i = 0; i <= 250; ++i) {
     PoseSample sample = at_x(20 * i, 0);
     sample.T_world_vehicle.orientation = yaw(rate_radps * 0.02 * i);
@@ -168,7 +168,7 @@ TEST(PoseHistory, StampsMayBeOnAnyClock) {
   for (const std::int64_t epoch_ns : {std::int64_t{0}, std::int64_t{1'760'000'000'000'000'000},
                                       pose::max_time_ns - 1'000'000'000, -pose::max_time_ns}) {
     PoseHistory history{config()};
-    // Ours is past 2^31 ms, as after a month of uptime.
+    // Our clock is past 2^31 ms, as after a month of uptime.
     const nanoseconds arrival = milliseconds{(std::int64_t{1} << 31) + 5};
     for (int i = 0; i < 10; ++i) {
       PoseSample sample = at_x(0, i);
@@ -180,7 +180,7 @@ TEST(PoseHistory, StampsMayBeOnAnyClock) {
 }
 
 TEST(PoseHistory, JitterOfTheNetworkDoesNotMoveThePose) {
-  // 1 m/s, every 10 ms; every second message is 8 ms late, as if the vehicle jerked.
+  // 1 m/s, one message per 10 ms. Every second message is 8 ms late, which looks like a jerk of the vehicle.
   PoseHistory history{config()};
   for (int i = 0; i <= 100; ++i) {
     history.insert(at_x(10 * i, 0.01 * i), ours(10 * i) + milliseconds{i % 2 == 0 ? 0 : 8});
@@ -194,10 +194,10 @@ TEST(PoseHistory, LateAndRepeatedSamplesFindTheirPlace) {
   PoseHistory history{config()};
   insert(history, at_x(0, 0));
   insert(history, at_x(40, 0.4));
-  history.insert(at_x(20, 0.3), ours(41));  // came late
+  history.insert(at_x(20, 0.3), ours(41));  // arrives late
   EXPECT_NEAR(x_at(history, 10), 0.15, 1e-12);
   EXPECT_NEAR(x_at(history, 30), 0.35, 1e-12);
-  history.insert(at_x(20, 0.1), ours(42));  // said again, differently
+  history.insert(at_x(20, 0.1), ours(42));  // repeated with another position
   EXPECT_NEAR(x_at(history, 10), 0.05, 1e-12);
   EXPECT_EQ(history.counters().samples, 4U);
   EXPECT_EQ(history.counters().late, 1U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the log says of pose inputs, as it comes to be read.
+// Log lines about pose inputs.
 #include "server/pose/pose_inputs.hpp"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ class PoseInputsTest : public SourceTest {
   }
   ~PoseInputsTest() override { spdlog::set_default_logger(before_); }
 
-  /// Lines in which the pattern is found.
+  /// Number of matches of the pattern in the log.
   std::size_t said(const std::string& pattern) const {
     const std::string text = text_.str();
     const std::regex regex(pattern);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What waits for pings in lock-step, and what does not.
+// Poses that wait for pings in lock-step, and poses that do not wait.
 #include "server/pose/pose_intake.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST_F(PoseIntakeTest, AndSoDoesTheOneAfterThat) {
   lead = nanoseconds{0};
   pose(0);
   pose(1000);
-  pose(0);  // once more
+  pose(0);  // the clock starts again
   lead.reset();
   run_a_little();
   EXPECT_EQ(newest_ms(), 0);

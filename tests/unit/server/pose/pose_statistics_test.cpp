@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well poses come, with times that are stepped by hand.
+// Statistics about received poses, at times set by hand.
 #include "server/pose/pose_statistics.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr TimePoint start = std::chrono::hours{5};
 
 class PoseStatisticsTest : public testing::Test {
  protected:
-  /// A pose with a stamp, after some time.
+  /// Counts a pose with stamp `stamp`, which arrives `later` after the last one.
   void pose(std::chrono::nanoseconds later, std::chrono::nanoseconds stamp, double x_m = 0.0) {
     now_ += later;
     pose::PoseSample sample;
@@ -22,7 +22,7 @@ class PoseStatisticsTest : public testing::Test {
     sample.T_world_vehicle.position_m.x = x_m;
     statistics_.observe(sample, now_);
   }
-  /// One every 20 ms, whose stamps go on by `step`.
+  /// Counts one pose every 20 ms, with stamps `step` apart.
   void steady(int count, std::chrono::nanoseconds step) {
     for (int i = 0; i < count; ++i) {
       stamp_ += step;
@@ -72,7 +72,7 @@ TEST_F(PoseStatisticsTest, TellsHowFastSimulatedTimeGoes) {
 
 TEST_F(PoseStatisticsTest, CountsGapsOverTheLimit) {
   steady(2, milliseconds{20});
-  pose(milliseconds{500}, stamp_ += milliseconds{500});  // as long as the limit, not longer
+  pose(milliseconds{500}, stamp_ += milliseconds{500});  // equal to the limit, not longer
   pose(milliseconds{501}, stamp_ += milliseconds{501});
   pose(seconds{3}, stamp_ += seconds{3});
   const PoseStatistics::Summary summary = statistics_.take(now_);
@@ -88,20 +88,20 @@ TEST_F(PoseStatisticsTest, CountsTheGapThatIsStillOpen) {
   EXPECT_EQ(summary.age, seconds{2});
 }
 
-// 100 m/s is the limit: 2 m in 20 ms.
+// The limit is 100 m/s, which is 2 m in 20 ms.
 TEST_F(PoseStatisticsTest, CountsJumps) {
   pose(milliseconds{20}, seconds{1}, 0.0);
   pose(milliseconds{20}, seconds{1} + milliseconds{20}, 1.9);
   EXPECT_EQ(statistics_.in_all(now_).jumps, 0U);
   pose(milliseconds{20}, seconds{1} + milliseconds{40}, 4.0);
   EXPECT_EQ(statistics_.in_all(now_).jumps, 1U);
-  pose(milliseconds{20}, seconds{1} + milliseconds{40}, 4.5);  // elsewhere at the same time
+  pose(milliseconds{20}, seconds{1} + milliseconds{40}, 4.5);  // another place at the same time
   EXPECT_EQ(statistics_.in_all(now_).jumps, 2U);
 }
 
 TEST_F(PoseStatisticsTest, TellsAClockThatBeganAgainFromJumpsAndLateMessages) {
   pose(milliseconds{20}, seconds{60}, 50.0);
-  pose(milliseconds{20}, seconds{60} - milliseconds{200}, 50.0);  // late, no more
+  pose(milliseconds{20}, seconds{60} - milliseconds{200}, 50.0);  // late, but no restart
   EXPECT_EQ(statistics_.in_all(now_).clock_restarts, 0U);
   pose(milliseconds{20}, seconds{1}, 0.0);
   const PoseStatistics::Summary summary = statistics_.in_all(now_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The publisher's time as told from its messages.
+// The publisher's time, estimated from its messages.
 #include "server/pose/publisher_clock.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(PublisherClock, SeesThroughAConstantOffset) {
 }
 
 TEST(PublisherClock, KeepsJitterOut) {
-  // 100 messages a second, true offset 2 s, under way for 1 ms and up to 30 ms more.
+  // 100 messages per second, a true offset of 2 s, and a delay of 1 ms plus up to 30 ms.
   PublisherClock clock{longest_delay};
   std::mt19937 random{1};
   for (int i = 0; i < 1000; ++i) {
@@ -33,7 +33,7 @@ TEST(PublisherClock, KeepsJitterOut) {
     const milliseconds jitter{random() % 30};
     clock.observe(sent.count(), sent + seconds{2} + milliseconds{1} + jitter);
     if (i > 100) {
-      // In 100 draws the smallest is surely below 3 ms.
+      // The smallest of 100 delays is almost certainly below 3 ms.
       EXPECT_NEAR(static_cast<double>(clock.stamp_at(sent + seconds{2}) - sent.count()), -2e6, 1e6) << i;
     }
   }
@@ -50,7 +50,7 @@ TEST(PublisherClock, FollowsAFastClock) {
 }
 
 TEST(PublisherClock, NeverLagsASlowClockByMoreThanTheLongestDelay) {
-  // A simulation at a tenth of real time: after ten seconds the first offset would be nine seconds wrong.
+  // A simulation at a tenth of real time. After ten seconds the first offset is wrong by nine seconds.
   PublisherClock clock{longest_delay};
   for (int i = 0; i < 1000; ++i) {
     const nanoseconds now = milliseconds{10 * i};
@@ -63,7 +63,7 @@ TEST(PublisherClock, NeverLagsASlowClockByMoreThanTheLongestDelay) {
 TEST(PublisherClock, StandsWhileThePublisherIsPausedAndGoesOnAtOnce) {
   PublisherClock clock{longest_delay};
   clock.observe(0, seconds{1});
-  for (int i = 0; i < 2000; ++i) {  // 20 s of the same stamp
+  for (int i = 0; i < 2000; ++i) {  // 20 s with one stamp
     clock.observe(0, seconds{1} + milliseconds{10 * i});
   }
   EXPECT_LE(clock.stamp_at(seconds{21}), 60 * millisecond_ns);
@@ -73,7 +73,7 @@ TEST(PublisherClock, StandsWhileThePublisherIsPausedAndGoesOnAtOnce) {
 }
 
 TEST(PublisherClock, ForgetsAnOldMinimumAfterTwoSeconds) {
-  // The way to us becomes 20 ms longer and stays so.
+  // The delay rises by 20 ms and stays there.
   PublisherClock clock{longest_delay};
   clock.observe(0, nanoseconds{0});
   for (int i = 1; i <= 100; ++i) {
@@ -89,7 +89,7 @@ TEST(PublisherClock, ForgetsAnOldMinimumAfterTwoSeconds) {
 TEST(PublisherClock, ALateMessageDoesNotHoldTheClockBack) {
   PublisherClock clock{longest_delay};
   clock.observe(100 * millisecond_ns, milliseconds{100});
-  clock.observe(20 * millisecond_ns, milliseconds{200});  // 180 ms under way
+  clock.observe(20 * millisecond_ns, milliseconds{200});  // 180 ms late
   EXPECT_EQ(clock.stamp_at(milliseconds{200}), 200 * millisecond_ns);
 }
 

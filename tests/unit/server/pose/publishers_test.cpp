@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that publish poses, as processes of their own: posecast and the Python example of docs/poses.md.
+// Programs that publish poses, as child processes: posecast and the Python example of docs/poses.md.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 class PublishersTest : public SourceTest {
  protected:
   std::string file(const std::string& text) const { return write_file(text).string(); }
-  /// North at 2 m/s for half a second.
+  /// A trajectory file: north at 2 m/s for half a second.
   std::string motion() const {
     return file("t,x,y,z,qx,qy,qz,qw\n0,0,0,-5,0,0,0,1\n0.25,0,0.5,-5,0,0,0,1\n0.5,0,1,-5,0,0,0,1\n");
   }
@@ -33,8 +33,8 @@ class PublishersTest : public SourceTest {
     EXPECT_TRUE(run_until([&] { return child.exit_status().has_value(); }, std::chrono::seconds{30}));
     return child.exit_status().value_or(-1);
   }
-  /// The poses of motion() at 100 Hz, all of them, as a publisher that may be slow but does not lie sends
-  /// them.
+  /// Checks that all poses are on the path of motion(), played at `speed`. The publisher may be slow, but its
+  /// stamps must be right.
   void expect_motion(double speed) {
     ASSERT_GE(delivered_.size(), 2U);
     for (const Delivery& delivery : delivered_) {
@@ -71,8 +71,8 @@ TEST_F(PublishersTest, PosecastByTcpAtDoubleSpeed) {
   expect_motion(2.0);
 }
 
-// Every 10 ms of the file from its first stamp to its last, whatever the speed, so that every run sends the
-// same.
+// One pose per 10 ms of the file, from its first to its last stamp, at any speed. Every run therefore sends
+// equal poses.
 TEST_F(PublishersTest, PosecastSendsTheStampsOfTheFile) {
   TcpPoseSource source{io_, {{localhost, 0}, loopback, 8}, clock_, sink_};
   source.start();
@@ -94,7 +94,7 @@ TEST_F(PublishersTest, PosecastSendsTheStampsOfTheFile) {
   }
 }
 
-// Beyond the end of the file the way begins again, and stamps go on.
+// After the end of the file the path begins again, and the stamps continue.
 TEST_F(PublishersTest, PosecastGoesOnWithTheStampsInALoop) {
   UdpPoseSource source{io_, {{localhost, 0}, loopback}, clock_, sink_};
   source.start();
@@ -199,7 +199,8 @@ TEST_F(PublishersTest, PythonExample) {
   EXPECT_EQ(run(example), 0) << example.output();
   ASSERT_GE(delivered_.size(), 5U) << example.output();
   EXPECT_EQ(source.counters().samples, delivered_.size()) << "every message was good";
-  // It drives a circle: heading along the tangent, speed and turn rate as the poses themselves show.
+  // The example drives a circle: its heading is along the tangent, and speed and turn rate agree with its
+  // poses.
   const pose::PoseSample& first = delivered_.front().sample;
   const pose::PoseSample& last = delivered_.back().sample;
   ASSERT_TRUE(first.twist);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests of pose sources share: the I/O thread (which is the test's), a clock and a sink.
+// Shared parts of tests of pose sources: I/O on the test's thread, a clock and a sink.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class SourceTest : public testing::Test {
     TimePoint arrival;
   };
 
-  /// Runs the I/O until the condition holds. @return false when it does not within the limit.
+  /// Runs the I/O until the condition holds. @return false if it does not hold within the limit.
   bool run_until(const std::function<bool()>& condition,
                  std::chrono::milliseconds limit = std::chrono::seconds{10}) {
     return test::wait_for(
@@ -40,7 +40,7 @@ class SourceTest : public testing::Test {
   bool run_until_delivered(std::size_t count) {
     return run_until([&] { return delivered_.size() >= count; });
   }
-  /// Gives what must not happen the time to happen.
+  /// Runs the I/O for a while, so that a forbidden event would occur.
   void run_for(std::chrono::milliseconds time) {
     EXPECT_FALSE(run_until([] { return false; }, time));
   }
@@ -50,7 +50,7 @@ class SourceTest : public testing::Test {
     result.time_ns = time_ns;
     return result;
   }
-  /// A pose message with a NaN, which decode() refuses as a bad value.
+  /// A pose with a NaN, whose message decode() refuses as a bad value.
   static pose::PoseSample nan_sample() {
     pose::PoseSample result;
     result.T_world_vehicle.position_m.x = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stamps that mean nothing, with arrivals that are stepped by hand.
+// Useless stamps, with arrival times set by hand.
 #include "server/pose/stamp_watch.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@ using Looks = StampWatch::Looks;
 
 class StampWatchTest : public testing::Test {
  protected:
-  /// Poses every 20 ms whose vehicle goes on by `step_m`; `stamp` makes the stamp of a time.
+  /// Observes poses every 20 ms, each `step_m` further along x. `stamp` maps a time to its stamp.
   template <class Stamp>
   Looks stream(int poses, double step_m, Stamp stamp) {
     for (int i = 0; i < poses; ++i) {
@@ -57,7 +57,7 @@ TEST_F(StampWatchTest, SoDoOthersThatAreAllAlike) {
 }
 
 TEST_F(StampWatchTest, SoDoThoseOfAVehicleThatOnlyTurns) {
-  for (int i = 0; i < 50; ++i) {  // 10 degrees a second
+  for (int i = 0; i < 50; ++i) {  // 10 degrees per second
     const double half_rad = 0.5 * 0.0035 * i;
     sample_.T_world_vehicle.orientation = {std::cos(half_rad), 0, 0, std::sin(half_rad)};
     stream(1, 0.0, left_out);
@@ -87,12 +87,12 @@ TEST_F(StampWatchTest, AVehicleAtRestWhoseStampsNeverMovedIsToldFromOneThatMoves
 
 TEST_F(StampWatchTest, WholeSecondsGoOnInSteps) {
   EXPECT_EQ(stream(225, 0.02, whole_seconds), Looks::in_steps);
-  EXPECT_EQ(watch_.last_step(), milliseconds{980});  // from the first to the last pose of a second
+  EXPECT_EQ(watch_.last_step(), milliseconds{980});  // from the first to the last pose within a second
   EXPECT_EQ(stream(60, 0.02, good), Looks::good);
 }
 
 TEST_F(StampWatchTest, PhysicsThatIsSlowerThanTheMessagesIsGood) {
-  // 10 Hz: five poses have one stamp, and two centimetres of noise.
+  // At 10 Hz five poses share a stamp, although the vehicle moves by 2 cm from pose to pose.
   const auto tenths = [](std::int64_t now_ns) { return now_ns / 100'000'000 * 100'000'000; };
   EXPECT_EQ(stream(500, 0.02, tenths), Looks::good);
 }

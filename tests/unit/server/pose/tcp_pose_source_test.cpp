@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses by TCP over loopback: good publishers, slow ones and garbage.
+// Poses over TCP on loopback: good publishers, slow publishers and garbage.
 #include "server/pose/tcp_pose_source.hpp"
 
 #include <gmock/gmock.h>
@@ -176,7 +176,7 @@ TEST_F(TcpPoseSourceTest, ClosesAPeerThatLeavesAMessageUnfinished) {
   pose::PoseSample large = sample(1);
   large.bodies = {{std::string(1000, 'n'), {}}};
   const Bytes message = pose::encode_frame(large);
-  // Further bytes of the same message do not win time.
+  // More bytes of the unfinished message do not extend its deadline.
   const auto began = std::chrono::steady_clock::now();
   std::size_t sent = 0;
   EXPECT_TRUE(run_until([&] {
@@ -293,7 +293,7 @@ TEST_F(TcpPoseSourceTest, MayBeDestroyedWithHandlersWaiting) {
   for (int i = 0; i < 200; ++i) {
     auto source = started();
     tcp::socket publisher = connect(*source);
-    // The second message is left unfinished, so a timer waits as well.
+    // The second message stays unfinished, so a timer waits too.
     send(publisher, std::span{stream}.first(stream.size() - 1));
     if (i % 2 == 0) {
       ASSERT_TRUE(run_until_delivered(1));

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 class TrajectoryPoseSourceTest : public SourceTest {
  protected:
-  /// East at 1 m/s for 0.3 s.
+  /// A trajectory file: east at 1 m/s for 0.3 s.
   std::filesystem::path file() const {
     return write_file("t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n10.3,0.3,0,0,0,0,0,1\n");
   }

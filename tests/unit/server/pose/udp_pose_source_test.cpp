@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses by UDP over loopback.
+// Poses over UDP on loopback.
 #include "server/pose/udp_pose_source.hpp"
 
 #include <gmock/gmock.h>

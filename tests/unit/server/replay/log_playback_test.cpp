@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads are given of a log, and when it is over.
+// Pings of a log that heads receive, and the end of playback.
 #include "server/replay/log_playback.hpp"
 
 #include <chrono>
@@ -58,7 +58,7 @@ LoggedHead scan() {
   return head;
 }
 
-/// The job of a ping that has been fed.
+/// The job that a device makes of a fed ping.
 PingJob answering(const RecordedPing& ping, TimePoint transmit_time) {
   PingJob job;
   job.number = 77;
@@ -187,9 +187,9 @@ TEST_F(LoggedDifferences, of_none_nothing_is_said) {
   EXPECT_EQ(taken(), "");
 }
 
-// ---- In place of the renderer
+// ---- The recording instead of the renderer
 
-/// The samples of a ping are its place, as often as it has samples.
+/// A recording in which every sample of a ping equals the ping's place.
 class PlacesAsSamples final : public Recording {
  public:
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override {

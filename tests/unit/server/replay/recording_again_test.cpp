@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log played back and recorded again is the same log: what a head sends for a recorded image, put together
-// as a topside does or as the head itself tells a recorder, and written down as the recorder writes it, is
-// that image.
+// A log that is played back and recorded again must be equal. The images come from the datagrams of a head,
+// joined as in a topside, and from the records of the head itself. Both are written as by the recorder.
 #include <cmath>
 #include <deque>
 #include <numeric>
@@ -30,7 +29,7 @@ std::int64_t transmit_unix_ns(int number) {
   return 1'795'184'553'000'000'000 + 100'000'000LL * number;
 }
 
-/// A ping as a head with these settings sends it, every sample different from its neighbours.
+/// A ping as a head with these settings sends it. Every sample differs from its neighbours.
 PingRecord ping(int number, int compression_log2, double sound_speed_mps, bool told) {
   gemini::PingHead head;
   head.header.sonar_id = sonar_id;
@@ -76,7 +75,7 @@ BytesReceived from_topside(const gemini::Command& command) {
   return {{0, {topside, gemini::topside_port}, 0}, SharedBytes(gemini::encode(command))};
 }
 
-/// A continuous client that asks for something else altogether.
+/// The request of a continuous client with other settings than the log.
 BytesReceived request() {
   gemini::PingConfig config;
   config.header.sonar_id = sonar_id;
@@ -112,7 +111,7 @@ void receive(std::vector<Received>& pings, const Outgoing& message) {
   }
 }
 
-/// Plays all images on a head of its own, in steps of virtual time; what arrives, and what is recorded.
+/// Plays all images on a new head, in virtual time. Returns the received and the recorded pings.
 Played played(const GlfRecording& recording) {
   gemini::DeviceConfig config;
   config.sonar_id = sonar_id;
@@ -147,7 +146,7 @@ Played played(const GlfRecording& recording) {
   return played;
 }
 
-/// But for the time, which a .glf rounds.
+/// Compares two images except for the exact time, which a .glf rounds.
 void expect_same(glf::ImageRecord again, const glf::ImageRecord& written) {
   EXPECT_NEAR(again.transmit_time_s, written.transmit_time_s, 1e-6);
   again.transmit_time_s = again.origin.time_s = written.origin.time_s;

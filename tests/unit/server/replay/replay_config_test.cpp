@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which recorded head is served as which, and what a head cannot play.
+// The heads that serve recorded heads, and the recordings that a head cannot play.
 #include "server/replay/replay_config.hpp"
 
 #include <filesystem>
@@ -36,7 +36,7 @@ RecordedSettings settings(double bin_m = 1500.0 / (2 * 90422.0)) {
   return settings;
 }
 
-/// A fan of a Gemini, in a log that does not say so.
+/// A head of a Gemini, in a log that does not name the device.
 LoggedHead fan(std::uint16_t device_id, const std::string& name = "") {
   LoggedHead head;
   head.name = name;
@@ -79,11 +79,11 @@ struct ReplayConfigTest : testing::Test {
   DaemonConfig loopback(const std::vector<LoggedHead>& logged) const {
     return loopback_config(logged, LogFile(path));
   }
-  /// What is said against playing these on loopback, without the name of the log.
+  /// The error message for playing these heads on loopback, without the name of the log.
   std::string complaint(const std::vector<LoggedHead>& logged) const {
     return complaint([&] { replay_config(loopback(logged), logged, LogFile(path)); });
   }
-  /// What is said against playing these on the heads of `config`.
+  /// The error message for playing these heads on the heads of `config`.
   std::string configured_complaint(const std::vector<LoggedHead>& logged) const {
     return complaint([&] { replay(logged); });
   }
@@ -285,7 +285,7 @@ TEST_F(ReplayConfigTest, lines_that_are_too_long_are_an_error) {
   EXPECT_EQ(complaint(logged), why);
 }
 
-// ---- Logs that say which device it was
+// ---- Logs that name the device
 
 TEST_F(ReplayConfigTest, a_log_says_of_which_kind_its_heads_are) {
   std::vector<LoggedHead> logged{fan(513), scan("", 7)};
@@ -308,7 +308,7 @@ TEST_F(ReplayConfigTest, a_kind_that_a_log_names_is_asked_whether_it_can_play_it
 
 TEST_F(ReplayConfigTest, heads_of_a_device_that_nobody_knows_are_an_error) {
   LoggedHead wide = fan(513, "bow");
-  wide.pings[0].settings.beams = 512;  // nor does it matter what a Gemini would say of it
+  wide.pings[0].settings.beams = 512;  // a width that a Gemini would refuse
   for (LoggedHead head : {fan(513, "bow"), wide, scan("bow", 7)}) {
     head.device = "other_900";
     EXPECT_THAT(complaint({head}),

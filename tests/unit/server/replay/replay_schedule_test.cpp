@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When pings of a recording are due, by hand.
+// Due times of recorded pings, against times calculated by hand.
 #include "server/replay/replay_schedule.hpp"
 
 #include <chrono>
@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 constexpr std::int64_t one_ms = 1'000'000;
 const std::vector<std::int64_t> four{1000 * one_ms, 1100 * one_ms, 1250 * one_ms, 1300 * one_ms};
 
-/// Starts the next ping of a head when it is due, but not before `wanted_at`; its image and time.
+/// Starts the next ping of a head when it is due, but not before `wanted_at`. Returns its image and time.
 std::pair<std::size_t, TimePoint> play(ReplaySchedule& schedule, TimePoint wanted_at, std::size_t head = 0) {
   const auto ping = schedule.next(head, wanted_at);
   if (!ping) {
@@ -75,7 +75,7 @@ TEST(ReplaySchedule, as_asked_knows_no_times) {
 }
 
 TEST(ReplaySchedule, a_loop_goes_on_after_the_usual_interval) {
-  // Intervals 100, 150, 50: the middle one is 100.
+  // The intervals are 100, 150 and 50 ms, and their median is 100 ms.
   ReplaySchedule schedule({four}, {.loop = true}, 0ns);
   for (int i = 0; i < 4; ++i) {
     play(schedule, 0s);

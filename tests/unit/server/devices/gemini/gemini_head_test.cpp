@@ -31,7 +31,7 @@ namespace {
 namespace asio = boost::asio;
 using Bytes = std::vector<std::uint8_t>;
 
-// docs/protocols/gemini.md 10, for sonar ID 601.
+// Commands of docs/protocols/gemini.md 10, for sonar ID 601.
 const Bytes status_request{0x20, 0x01, 0x59, 0x02, 0, 0, 0, 0};
 // Single ping, 8 bit, pings out of water too, 483 lines, speed of sound from the configuration.
 const Bytes ping_config{0x21, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
@@ -135,7 +135,7 @@ struct GeminiHeadTest : testing::Test {
   }
 };
 
-// Where the first ping goes out there is no memory for people who watch.
+// When the first ping is sent, memory runs out for its viewers.
 TEST_F(GeminiHeadTest, MemoryThatRunsOutCostsAPingAtMost) {
   struct : PingViewer {
     int shown = 0;
@@ -171,7 +171,7 @@ TEST_F(GeminiHeadTest, AnswersToPort52900WhateverTheSourcePort) {
 TEST_F(GeminiHeadTest, BoundToAllAddressesItAnswersFromTheOneAddressed) {
   gemini_config.bind_address = 0;
   gemini_config.command_port =
-      static_cast<std::uint16_t>(20000 + getpid() % 20000);  // all addresses: 52901 may be taken
+      static_cast<std::uint16_t>(20000 + getpid() % 20000);  // on all addresses, because 52901 may be in use
   start();
   const Ipv4 other = test::own_loopback_address(77);
   topside.send({{{other, gemini_config.command_port}, 0, SharedBytes(status_request)}});
@@ -200,7 +200,7 @@ TEST_F(GeminiHeadTest, SendsWhatTheRendererHandedOver) {
 }
 
 TEST_F(GeminiHeadTest, RendersFromVehiclePoseTimesMount) {
-  // Vehicle at (10, 0, -5), turned 90 degrees to port; the sonar sits 1 m ahead of it.
+  // The vehicle is at (10, 0, -5), turned 90 degrees to port. The sonar is 1 m ahead of it.
   pose_config.T_world_vehicle_initial =
       render::Pose{{10, 0, -5}, glm::dquat(std::sqrt(0.5), 0, 0, std::sqrt(0.5))};
   config.T_vehicle_sonar.position_m = {1, 0, 0};
@@ -216,7 +216,8 @@ TEST_F(GeminiHeadTest, RendersFromVehiclePoseTimesMount) {
   EXPECT_EQ(request.settings.range.count, config_lines);
 }
 
-// 483 lines of 2 / 180844 s: the twist of the newest pose says where the vehicle is by then.
+// The ping listens for 483 lines of 2 / 180844 s. The twist of the newest pose gives the pose after that
+// time.
 TEST_F(GeminiHeadTest, SaysWhereTheSonarIsWhenTheLastEchoIsHeard) {
   start();
   pose::PoseSample sample;
@@ -255,7 +256,7 @@ TEST_F(GeminiHeadTest, ForwardsPosesOfBodies) {
   EXPECT_EQ(renderer->moved_bodies(), std::vector<std::string>{"door"});
 }
 
-// The pose stream has a word on the model of the vehicle, too, which does not count.
+// The pose stream has a pose for the model of the vehicle too, which is ignored.
 TEST_F(GeminiHeadTest, MovesTheModelOfTheVehicleWithTheVehicle) {
   vehicle_model = "rov";
   start();
@@ -286,7 +287,7 @@ TEST_F(GeminiHeadTest, DropsAndCountsUnauthorisedPeers) {
   unauthorised.start([&](const Datagram&) { ++answers; });
   unauthorised.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "not_allowed") == 1; }));
-  // An answer to somebody allowed, sent afterwards, arrives; none to the unauthorised peer has.
+  // A later answer to a permitted client has arrived, but no answer to the unauthorised peer.
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(answers, 0u);
@@ -303,7 +304,7 @@ TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
   EXPECT_EQ(renderer->pings, 0);
 }
 
-// Rendering further ahead than a ping period, the next ping is due at once when one could not be made.
+// If rendering is further ahead than a ping period, the next ping is due at once after one that failed.
 TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
   pose_config.T_world_vehicle_initial.reset();
   gemini_config.device.render_lead = std::chrono::milliseconds{35};
@@ -314,7 +315,7 @@ TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
   continuous[25] = 0x80;
   continuous[26] = 0x00;
   command(continuous);
-  // 20 periods are 0.67 s: less than a status period, whose timer would otherwise move things on.
+  // 20 periods are 0.67 s, less than a status period. The status timer can therefore not cause these pings.
   EXPECT_TRUE(run_until([&] { return head->render_counters().pings_without_pose >= 20; },
                         std::chrono::milliseconds{950}));
 }
@@ -364,7 +365,7 @@ TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
   EXPECT_EQ(renderer->pings, 1);
 }
 
-// docs/protocols/gemini.md 3.7 and 3.9: bank 2 holds address and mask, a reboot applies them.
+// docs/protocols/gemini.md 3.7 and 3.9: bank 2 holds address and mask, and a reboot applies them.
 TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
   gemini_config.device.reboot_time = std::chrono::milliseconds{50};
   start();

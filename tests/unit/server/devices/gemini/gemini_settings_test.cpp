@@ -36,8 +36,8 @@ TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
   EXPECT_TRUE(std::is_sorted(edges.rbegin(), edges.rend()));
 }
 
-// Bearings printed in docs/protocols/gemini.md 6.5, positive to starboard: each lies inside its beam, in the
-// middle of it in the sine.
+// Bearings printed in docs/protocols/gemini.md 6.5, positive to starboard. Each is in the middle of its beam,
+// by its sine.
 TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
   const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for every kind of device that the program is built with, and what of a head goes to its logs.
+// Requirements on every kind of device in the program, and the description of a head for logs.
 #include "server/devices/kinds/kinds.hpp"
 
 #include <set>

@@ -31,7 +31,7 @@ namespace {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-/// 20 bins of 48 mm, all round in steps of 7.2 degrees: lines are quick.
+/// A full turn in steps of 7.2 degrees with 20 bins of 48 mm, for quick lines.
 micron::HeadCommand quick_scan() {
   micron::HeadCommand command;
   command.bins = 20;
@@ -40,7 +40,7 @@ micron::HeadCommand quick_scan() {
   return command;
 }
 
-// One head and its host on one io_context that the test runs, the host on a socket or a tty of its own.
+// One head and its host on one io_context that the test runs. The host has a socket or a tty of its own.
 struct MicronHeadTest : testing::Test {
   asio::io_context io;
   SteadyClock clock;
@@ -61,7 +61,7 @@ struct MicronHeadTest : testing::Test {
     pose_config.T_world_vehicle_initial = render::Pose{};
     config.name = "head";
     micron_config.serial.tcp = {{{0x7F000001, 0}, {{0x7F000000, 8}}}};
-    // As quick as a head may be.
+    // Short times for quick tests.
     micron_config.device.boot_time = 10ms;
     micron_config.device.alive_period = 100ms;
     micron_config.device.reconfiguration_time = 10ms;
@@ -113,7 +113,7 @@ struct MicronHeadTest : testing::Test {
   }
 
  private:
-  /// What the host has to say and to hear.
+  /// Exchanges bytes between host and head, and collects lines.
   void talk() {
     if (!client || !host) {
       return;
@@ -166,7 +166,7 @@ TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
     EXPECT_EQ(request.settings.output_scale, render::OutputScale::half_decibels);
     EXPECT_EQ(request.seed, 77u);
     EXPECT_NEAR(glm::length(request.T_world_sonar.position_m - glm::dvec3(10, 1, -5)), 0, 1e-12);
-    // The first ping looks ahead, to the north; each one 7.2 degrees further to starboard, to the east.
+    // The first ping looks ahead, to the north. Each ping is 7.2 degrees further to starboard, towards east.
     const double turned = static_cast<double>(i) * 7.2 * std::numbers::pi / 180;
     const glm::dvec3 axis = request.T_world_sonar.orientation * glm::dvec3(1, 0, 0);
     EXPECT_NEAR(glm::length(axis - glm::dvec3(std::sin(turned), std::cos(turned), 0)), 0, 1e-9) << i;
@@ -174,7 +174,7 @@ TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
   }
 }
 
-// 20 bins of 100 x 640 ns.
+// The ping listens for 20 bins of 100 x 640 ns.
 TEST_F(MicronHeadTest, SaysWhereTheTransducerIsWhenTheLastEchoIsHeard) {
   pose_config.extrapolation_limit = 60s;
   start();
@@ -215,7 +215,7 @@ TEST_F(MicronHeadTest, AClientThatVanishesInTheMiddleOfALineLeavesTheNextOneACle
   ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "connections") == 1 && service; }, 200ms));
   lines.clear();
   connect();
-  // The head has its parameters and has turned on meanwhile: it scans again at once, without a new power-up.
+  // The head has kept its parameters and has turned further. It scans again at once, without a new power-up.
   host->start(clock.now(), quick_scan(), 5);
   ASSERT_TRUE(run_until_lines(5));
   EXPECT_EQ(test::device_count(*head, "bad_frames"), 0u);
@@ -272,7 +272,7 @@ TEST_F(MicronHeadTest, StopsInTheMiddleOfAPing) {
   head.reset();
   service->stop();
   while (io.poll() > 0) {
-    io.restart();  // what was posted meanwhile finds nobody
+    io.restart();  // posted tasks must not use the deleted head
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise as lossless recordings of an M1200d show it, at its high frequency with 256 beams: envelopes of
-// neighbouring beams are correlated by .53, .115 and .03; at a gamma of 127 it has a coefficient of variation
-// of .28 to .30, and no sample is above 254.
+// Noise as in lossless recordings of an M1200d at its high frequency with 256 beams. Envelopes of
+// neighbouring beams are correlated by .53, .115 and .03. At a gamma of 127 the coefficient of variation is
+// .28 to .30. No sample is above 254.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +29,7 @@ HeadConfig m1200d() {
   return head;
 }
 
-/// A ping into nothing at all, or with an even echo.
+/// A ping into empty water, or with a uniform echo.
 render::PingSamples ping(std::uint8_t gamma, bool sixteen_bit, float intensity = 0.0F) {
   const HeadConfig head = m1200d();
   oculus::SimpleFire fire;
@@ -48,8 +48,8 @@ render::PingSamples ping(std::uint8_t gamma, bool sixteen_bit, float intensity =
   return receiver.receive(render::EchoImage{beams, lines, echo, {}}, request, 0, workers);
 }
 
-/// Codes beyond 6 m, of beams away from the stripe in the middle of the fan, over the mean of the lines
-/// around: the level rises along the range.
+/// Codes beyond 6 m, divided by the mean of the lines around them, because the level rises with range. Beams
+/// of the stripe in the middle are left out.
 std::vector<double> codes_of(const std::vector<std::uint16_t>& samples, int lag_beams) {
   constexpr std::size_t beams = 256;
   constexpr std::size_t end_beam = 110;
@@ -70,7 +70,7 @@ std::vector<double> codes_of(const std::vector<std::uint16_t>& samples, int lag_
   return codes;
 }
 
-/// Of numbers whose mean is 1.
+/// Coefficient of variation of numbers whose mean is 1.
 double variation(const std::vector<double>& codes) {
   double square = 0;
   for (const double code : codes) {
@@ -89,7 +89,7 @@ TEST(OculusNoise, neighbouring_beams_are_correlated_as_recorded) {
   EXPECT_NEAR(lag(3), 0.03, 0.03);
 }
 
-// A Rayleigh amplitude, whose coefficient is 0.5227, to the power of about a half: 0.2805.
+// A Rayleigh amplitude has a coefficient of 0.5227; to the power of about a half it has 0.2805.
 TEST(OculusNoise, varies_as_recorded_at_the_gamma_of_clients) {
   const double at_gamma = variation(codes_of(ping(127, true).u16, 0));
   EXPECT_GE(at_gamma, 0.275);

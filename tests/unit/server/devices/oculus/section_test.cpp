@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loader makes of a head of type oculus, and what it says about bad ones.
+// Values and errors of the loader for a head of type oculus.
 #include "server/devices/oculus/section.hpp"
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the renderer is asked for by a ping of an Oculus.
+// Settings of the renderer for a ping of an Oculus.
 #include "server/devices/oculus/settings.hpp"
 
 #include <cmath>
@@ -30,8 +30,8 @@ render::SonarSettings settings_of(const oculus::SimpleFire& fire,
   return oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
 }
 
-// docs/protocols/oculus.md 4.5: positive to starboard, where the renderer counts to port; in the sine each
-// bearing is the middle of its beam.
+// docs/protocols/oculus.md 4.5: bearings are positive to starboard, but the renderer counts to port. By its
+// sine, each bearing is the middle of its beam.
 TEST(OculusSettings, beams_hold_the_bearings_of_the_table_at_both_frequencies) {
   for (const auto& [mode, half_deg] : {std::pair{1, 65.0}, {2, 35.0}}) {
     for (const int beams : {256, 512}) {
@@ -71,10 +71,10 @@ TEST(OculusSettings, frequencies_have_beams_water_and_noise_of_their_own) {
   EXPECT_NEAR(low.physical.multipath.wavelength_m / high.physical.multipath.wavelength_m, 1200.0 / 750.0,
               1e-9);
   EXPECT_GT(high.physical.absorption_db_per_m, 1.5 * low.physical.absorption_db_per_m);
-  // The head knows its water at both.
+  // The time-varied gain uses the absorption at each frequency.
   EXPECT_NEAR(high.physical.tvg_absorption_db_per_m - low.physical.tvg_absorption_db_per_m,
               high.physical.absorption_db_per_m - low.physical.absorption_db_per_m, 1e-12);
-  // Thermal noise: 20 log10 of the frequency.
+  // Thermal noise rises with 20 log10 of the frequency.
   EXPECT_NEAR(high.physical.noise_level_db - low.physical.noise_level_db, 20 * std::log10(1200.0 / 750.0),
               1e-9);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings that `sonard render` makes of its options, and what an Oculus refuses.
+// The pings that `sonard render` makes for its options, and the options that an Oculus refuses.
 #include "server/devices/oculus/survey.hpp"
 
 #include <numbers>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loader makes of a head of type ping360, and what it says about bad ones.
+// Values and errors of the loader for a head of type ping360.
 #include "server/devices/ping360/section.hpp"
 
 #include <numbers>
@@ -111,7 +111,7 @@ TEST_F(Ping360Section, says_what_is_wrong) {
               ElementsAre(HasSubstr("devise")));
 }
 
-// Its socket is at all addresses where `bind` is left out; nobody would be answered.
+// Without `bind` its socket is on all addresses, and without `allow` it would answer no client.
 TEST_F(Ping360Section, discovery_is_told_whom_to_answer_unless_bound_to_loopback) {
   const std::string head = "name: m, udp: [{bind: 127.0.0.1:1}], discovery: {address: 127.0.0.1";
   EXPECT_THAT(complaints(document(head + "}")), ElementsAre(HasSubstr("discovery.allow")));
@@ -121,7 +121,7 @@ TEST_F(Ping360Section, discovery_is_told_whom_to_answer_unless_bound_to_loopback
   EXPECT_THAT(complaints(document(head + ", bind: 127.0.0.1:30303}")), IsEmpty());
 }
 
-// 5: the answer names no port.
+// docs/protocols/ping360.md 5: the answer names no port.
 TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
   const auto warnings = [this](const std::string& udp) {
     return load(document("name: m, udp: [" + udp +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the renderer is asked for by a ping of a Ping360.
+// Settings of the renderer for a ping of a Ping360.
 #include "server/devices/ping360/settings.hpp"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,8 @@ ping360::Transducer usual_command() {
   return command;
 }
 
-// docs/protocols/ping360.md 2.3: the sample interval is 888 * 25 ns, two ways; a pulse of 100 us is 75 mm
-// long.
+// docs/protocols/ping360.md 2.3: the sample interval is the two-way time 888 * 25 ns. A pulse of 100 us is 75
+// mm long.
 TEST(Ping360Settings, ranges_and_pulse_are_those_of_the_command) {
   const render::SonarSettings settings = settings_of(usual_command());
   EXPECT_EQ(settings.range.count, 1200);
@@ -35,7 +35,7 @@ TEST(Ping360Settings, ranges_and_pulse_are_those_of_the_command) {
   EXPECT_TRUE(settings.transmit);
 }
 
-// Until a tone is over the transducer cannot listen: one of 1000 us is 0.71 m longer than the usual 53 us.
+// The transducer cannot receive before its tone ends. A tone of 1000 us is 0.675 m longer than one of 100 us.
 TEST(Ping360Settings, the_ring_down_lasts_as_much_longer_as_the_tone) {
   const render::RingDown usual = settings_of(usual_command()).physical.ring_down;
   ping360::Transducer command = usual_command();
@@ -47,7 +47,8 @@ TEST(Ping360Settings, the_ring_down_lasts_as_much_longer_as_the_tone) {
   EXPECT_NEAR(settings_of(command).physical.ring_down.end_m, 0.75, 1e-9);
 }
 
-// Absorption in the sea by Francois & Garrison, cool water: some 0.13 dB/m at 500 kHz, 0.36 at 1000.
+// Absorption in the sea by Francois & Garrison, cool water: about 0.13 dB/m at 500 kHz, 0.36 dB/m at 1000
+// kHz.
 TEST(Ping360Settings, level_and_absorption_are_those_of_the_frequency) {
   ping360::Transducer command = usual_command();
   EXPECT_NEAR(settings_of(command).physical.band_loss_db, 0, 0.01);

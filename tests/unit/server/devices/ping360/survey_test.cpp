@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scan that `sonard render` makes of its options, and what a Ping360 refuses.
+// The scan that `sonard render` makes for its options, and the options that a Ping360 refuses.
 #include "server/devices/ping360/survey.hpp"
 
 #include <type_traits>
@@ -37,8 +37,8 @@ std::string complaint(const SurveyOptions& options) {
   }
 }
 
-// docs/protocols/ping360.md 2.3: 20 m at 1500 m/s are 1200 samples of 888 ticks; 3.7: a ping of one gradian
-// takes 1200 * 888 * 25 ns + 18 ms + 6.1 ms.
+// docs/protocols/ping360.md 2.3: 20 m at 1500 m/s are 1200 samples of 888 ticks. 3.7: a ping with a step of
+// one gradian takes 1200 * 888 * 25 ns + 18 ms + 6.1 ms.
 TEST(Ping360Survey, samples_and_times_are_those_of_clients_and_of_the_head) {
   const std::unique_ptr<Survey> all_round =
       survey(with(&SurveyOptions::range_m, 20.0, with(&SurveyOptions::gain_percent, 100.0)));
@@ -68,7 +68,7 @@ TEST(Ping360Survey, a_sector_is_swept_to_and_fro) {
   EXPECT_NEAR(sector->job(11).bearing_rad, 36.0 * degree, 1e-12);
 }
 
-// 3.3: the way back to the start is the short one, which is on in the same direction.
+// 3.3: the head takes the short way back to the start, which continues in the same direction.
 TEST(Ping360Survey, a_sector_of_more_than_half_a_turn_is_scanned_one_way) {
   const std::unique_ptr<Survey> sector =
       survey(with(&SurveyOptions::step_deg, 9.0, with(&SurveyOptions::sector_deg, {-135.0, 135.0})));
