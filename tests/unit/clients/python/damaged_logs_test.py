@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""sonard_client.read_log() on logs with one wrong bit, each bit of the log in turn. The truth is what was written.
+"""Tests sonard_client.read_log() on logs with one wrong bit, for each bit, against the samples written.
 
     damaged_logs_test.py [DamagedLogs.test_name ...]
 """
@@ -51,7 +51,7 @@ def chunk(records):
 
 
 def mcap_log():
-    """As sonard writes it (docs/logs.md 2): chunks, each with a message index, schema and channel repeated, a summary."""
+    """A log as sonard writes it (docs/logs.md 2): chunks, message indexes, schema and channel, a summary."""
     schema = record(3, struct.pack("<H", 1) + text(b"sonard.log.ScanLine") + text(b"protobuf") + text(b"\1\2\3"))
     channel = record(4, struct.pack("<HH", 1, 1) + text(b"/bow/line") + text(b"protobuf") + text(b""))
     parts = [MAGIC, record(1, text(b"") + text(b"sonard 0.1.0"))]
@@ -71,7 +71,7 @@ class DamagedLogs(unittest.TestCase):
         self.folder = folder.name
 
     def read(self, suffix, content):
-        """Samples of the pings, and the warnings."""
+        """Returns the samples of the pings, and the warnings."""
         path = os.path.join(self.folder, "log" + suffix)
         with open(path, "wb") as file:
             file.write(content)

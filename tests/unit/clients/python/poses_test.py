@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""sonard_client.poses against the module that protobuf generates from protocol/pose/pose.proto.
+"""Tests sonard_client.poses against the module that protobuf generates from protocol/pose/pose.proto.
 
     poses_test.py --modules DIR [Encoding.test_name ...]
 """
@@ -85,7 +85,7 @@ class Encoding(unittest.TestCase):
             self.assertEqual(sonard.recv(2048), encode_pose(7, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd"))
 
     def test_publisher_by_tcp(self):
-        """Each message behind its length as a varint, as docs/poses.md has it."""
+        """Each message follows its length, a varint (docs/poses.md)."""
         with socket.create_server(("127.0.0.1", 0)) as sonard:
             poses = PosePublisher("127.0.0.1", sonard.getsockname()[1], tcp=True)
             connection, _ = sonard.accept()
@@ -101,7 +101,7 @@ class Encoding(unittest.TestCase):
         expected = b""
         for message in (encode_pose(7, POSITION_M, QUATERNION_XYZW),
                         encode_pose(8, POSITION_M, QUATERNION_XYZW, (1, 2, 3), (4, 5, 6), "ned_frd")):
-            # 7 bits a byte, low ones first, the highest bit set in all but the last.
+            # 7 bits per byte, low bits first. The highest bit is set in all bytes but the last.
             length = bytes([len(message)]) if len(message) < 128 else bytes([len(message) % 128 + 128, len(message) // 128])
             expected += length + message
         self.assertEqual(received, expected)
@@ -114,7 +114,7 @@ class Encoding(unittest.TestCase):
             return probe.getsockname()[1]
 
     def test_needs_no_numpy(self):
-        """With a module in the place of NumPy that cannot be imported."""
+        """Replaces NumPy by a module whose import fails."""
         program = ("import sys; sys.modules['numpy'] = None\n"
                    "from sonard_client import PosePublisher, encode_pose\n"
                    "PosePublisher().send(1, (0, 0, 0), (0, 0, 0, 1))\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the words of a command line mean, and which are refused.
+// Command lines and their meaning, and command lines that are refused.
 #include "clients/sonarview/command_line.hpp"
 
 #include <gmock/gmock.h>
@@ -39,7 +39,8 @@ Parsed parse(std::vector<const char*> words) {
   return parsed;
 }
 
-/// What the words after a subcommand mean to its arguments; the program takes them, too.
+/// The options that the arguments of a subcommand read from these words. The whole program must accept them
+/// too.
 template <class Arguments>
 auto options_of(const char* subcommand, std::vector<const char*> words) {
   CLI::App app;
@@ -171,9 +172,9 @@ TEST(CommandLine, SectorsAreDegreesFromAhead) {
   };
   EXPECT_EQ(sector("-45", "45").left, 2400);
   EXPECT_EQ(sector("-45", "45").right, 4000);
-  EXPECT_EQ(sector("135", "-135").left, 5600);  // through astern
+  EXPECT_EQ(sector("135", "-135").left, 5600);  // across astern
   EXPECT_EQ(sector("135", "-135").right, 800);
-  EXPECT_EQ(sector("135", "225").right, 800);  // the same
+  EXPECT_EQ(sector("135", "225").right, 800);  // equal to -135
   EXPECT_EQ(sector("-180", "0").left, 0);
   expect_refused({"micron", "--tty", "x", "--sector", "-180", "180"}, "omit --sector to scan all round");
   expect_refused({"micron", "--tty", "x", "--sector", "10"}, "--sector");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pictures are in the folder, by their brightness, when several are written under one name.
+// Pictures in the folder, identified by their brightness, when several are written under one name.
 #include "clients/sonarview/common/image_writer.hpp"
 
 #include <gtest/gtest.h>

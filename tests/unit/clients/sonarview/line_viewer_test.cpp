@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a viewer ends, whatever becomes of its line: against a server on its own thread that speaks in single
-// bytes.
+// How a viewer ends in each fault of its line, against a server on its own thread that sends single bytes.
 #include "clients/sonarview/common/line_viewer.hpp"
 
 #include <gmock/gmock.h>
@@ -18,16 +17,16 @@ using namespace std::chrono_literals;
 using boost::asio::ip::tcp;
 using testing::HasSubstr;
 
-/// What the server does with those who connect.
+/// Behaviour of the server towards its clients.
 struct Server {
-  bool there = true;          ///< false: nobody listens
-  std::size_t bytes = 3;      ///< it sends to each
-  bool closes = false;        ///< after that
-  bool leaves = false;        ///< and nobody listens any more
-  bool says_goodbye = false;  ///< sends a byte for a goodbye
+  bool there = true;          ///< false: the port is closed
+  std::size_t bytes = 3;      ///< number of bytes sent to each client
+  bool closes = false;        ///< closes the connection after these bytes
+  bool leaves = false;        ///< also closes the port
+  bool says_goodbye = false;  ///< answers a goodbye with one byte
 };
 
-/// Each byte is a ping; the first word of the head, too.
+/// A viewer for which each byte is a ping. The first byte also shows that the head is there.
 class Bytes final : public LineViewer {
  public:
   Bytes(const RunOptions& options, Server server)
@@ -154,7 +153,7 @@ TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
   EXPECT_EQ(viewer.counters->pings, 3U);
 }
 
-/// A head that has another client takes the connection and ends it.
+/// A head that serves another client accepts the connection and closes it.
 TEST(LineViewer, a_line_that_is_closed_whenever_it_opens_is_given_up_and_said_once) {
   RunOptions run = options();
   run.wait = 1200ms;

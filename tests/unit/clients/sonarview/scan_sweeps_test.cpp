@@ -31,7 +31,7 @@ std::vector<int> bearings(const Sweep& sweep) {
   return all;
 }
 
-/// A scan, and the turns that came of it.
+/// A scan, and the turns that it has completed.
 struct Scan {
   explicit Scan(const micron::ScanSettings& settings) : sweeps(micron::make_head_command(settings)) {}
   void receive(const std::vector<int>& all) {
@@ -45,7 +45,7 @@ struct Scan {
   std::vector<Sweep> done;
 };
 
-// Steps of 200 units, 11.25 degrees: 32 to the turn.
+// Steps of 200 units, 11.25 degrees: 32 per turn.
 micron::ScanSettings wide_steps(bool clockwise = true) {
   return {.step = 200, .clockwise = clockwise};
 }
@@ -84,7 +84,7 @@ TEST(ScanSweeps, CounterClockwiseIsTheSame) {
 
 TEST(ScanSweeps, StepsThatDoNotDivideTheTurnMakeItALineLonger) {
   micron::ScanSettings settings;
-  settings.step = 250;  // 25.6 to the turn
+  settings.step = 250;  // 25.6 per turn
   Scan scan(settings);
   int bearing = 3200;
   for (int line = 0; line < 52; ++line, bearing = (bearing + 250) % 6400) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables that Wireshark's dissectors load are those of the codecs, for every device of
-// cmake/devices.cmake. What they mean on the wire is held to byte examples by tests/logs/wireshark.
+// The tables that Wireshark's dissectors load equal the tables of the codecs, for every device of
+// cmake/devices.cmake. tests/logs/wireshark compares their meaning with byte examples.
 #include "clients/wireshark/field_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(FieldTables, files_are_up_to_date) {
   }
 }
 
-// A name that is missing in the code that makes a table comes out as "unknown".
+// If the code that makes a table lacks a name, the table has "unknown" there.
 TEST(FieldTables, name_every_message) {
   for (const FieldTables& tables : device_field_tables()) {
     const std::string lua = tables.lua();

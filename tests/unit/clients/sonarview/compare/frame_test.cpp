@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that can be compared, written byte by byte as their formats say, and those that are refused.
+// Files that can be compared, written byte by byte in their formats, and files that are refused.
 #include "clients/sonarview/compare/frame.hpp"
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ class Frame : public testing::Test {
                                   testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
-/// NumPy's format 1.0, padded so that the samples begin at a multiple of 64.
+/// A file in NumPy's format 1.0, padded so that the samples begin at a multiple of 64.
 std::string npy(const std::string& descr, const std::string& shape, const std::string& samples) {
   std::string header = "{'descr': '" + descr + "', 'fortran_order': False, 'shape': " + shape + ", }";
   header.resize(117, ' ');
@@ -72,7 +72,7 @@ TEST_F(Frame, SixteenBitsHaveTheSameScale) {
   const cv::Mat frame =
       load_frame(write("ping.npy", npy("<u2", "(1, 2)", std::string("\xff\xff\x01\x01", 4))));
   EXPECT_DOUBLE_EQ(frame.at<double>(0, 0), 255);
-  EXPECT_DOUBLE_EQ(frame.at<double>(0, 1), 1);  // 257 of 65535
+  EXPECT_DOUBLE_EQ(frame.at<double>(0, 1), 1);  // 257 of 65535 in 8 bits
 }
 
 TEST_F(Frame, PingOfADump) {
@@ -88,8 +88,8 @@ TEST_F(Frame, PingOfADump) {
 }
 
 TEST_F(Frame, TurnOfAScan) {
-  // Steps of 90 degrees; bearing 3200 is ahead, in the middle of a picture that begins astern. 8
-  // bits, all round.
+  // Steps of 90 degrees, 8 bits, all round. Bearing 3200 is ahead, in the middle of the picture, which begins
+  // astern.
   const auto line = [](int turn, int bearing, const char* bins) {
     return R"({"number":0,"turn":)" + std::to_string(turn) + R"(,"unix_s":1.5,"bearing":)" +
            std::to_string(bearing) +
@@ -99,15 +99,15 @@ TEST_F(Frame, TurnOfAScan) {
   const std::string steps = line(0, 3200, "1020");
   std::string text = steps + line(1, 3200, "01ff") + line(1, 4800, "0304") + line(1, 0, "0506");
   for (std::size_t at = text.find("1600"); at != std::string::npos; at = text.find("1600", at)) {
-    text.replace(at, 4, "160");  // the step is a byte: 9 degrees, 40 columns
+    text.replace(at, 4, "160");  // the step is one byte: 9 degrees, 40 columns
   }
   const std::string file = write("turn.jsonl", text);
   const cv::Mat frame = load_frame(file + "#1");
   ASSERT_EQ(frame.size(), cv::Size(40, 2));
-  EXPECT_EQ(frame.at<double>(0, 20), 255);  // far bin, ahead
-  EXPECT_EQ(frame.at<double>(1, 30), 3);    // near bin, to starboard
+  EXPECT_EQ(frame.at<double>(0, 20), 255);  // the far bin, ahead
+  EXPECT_EQ(frame.at<double>(1, 30), 3);    // the near bin, to starboard
   EXPECT_EQ(frame.at<double>(0, 0), 6);     // astern
-  EXPECT_EQ(frame.at<double>(0, 10), 0);    // no line came from port
+  EXPECT_EQ(frame.at<double>(0, 10), 0);    // there is no line to port
   expect_refused(file + "#2", "has no turn 2");
   expect_refused(file, "#TURN");
   expect_refused(write("other.jsonl", line(0, 3200, "10") + "[3\n") + "#0",
@@ -130,7 +130,7 @@ TEST_F(Frame, OtherFilesAreRefused) {
   expect_refused(write("text.jsonl", "no line\n") + "#0", "text.jsonl:1:");
 }
 
-// Two lines of three beams, laid out by docs/logs.md 1.3 and 1.4: raw pixels, zeros where nothing is said.
+// Two lines of three beams, laid out by docs/logs.md 1.3 and 1.4, with raw pixels and zeros in unused fields.
 std::string dat_of(const std::string& pixels) {
   const auto bytes = [](std::uint64_t value, int count) {
     std::string text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `sonarview compare` prints and writes, and how it fails.
+// Output and files of `sonarview compare`, and its errors.
 #include "clients/sonarview/compare/report.hpp"
 
 #include <gmock/gmock.h>
@@ -34,7 +34,8 @@ class Report : public testing::Test {
 };
 
 TEST_F(Report, TableAndFile) {
-  // Flat images, 100 against 150: MSE 2500, PSNR 14.1514 dB, no keypoint; too small for five scales.
+  // Flat images, 100 against 150: MSE 2500, PSNR 14.1514 dB, no keypoints. They are too small for five
+  // scales.
   const CompareOptions options{flat("a.png", 64, 48, 100), flat("b.png", 64, 48, 150), path("out.json")};
   testing::internal::CaptureStdout();
   EXPECT_EQ(compare(options), ExitStatus::ok);

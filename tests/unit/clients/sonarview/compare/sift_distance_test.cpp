@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What SIFT promises: the same things are found again, also turned and shifted, and other things are not.
+// SIFT must find equal content again, also turned and shifted, and must not match other content.
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
@@ -27,7 +27,7 @@ TEST(SiftDistance, ATurnedImageIsFoundAgain) {
 }
 
 TEST(SiftDistance, GrowsWithWhatIsNew) {
-  // An image of which the right half is replaced.
+  // An image whose right half is replaced.
   const cv::Mat image = random_texture(200, 150, 15);
   cv::Mat half_new = image.clone();
   random_texture(200, 150, 16).colRange(100, 200).copyTo(half_new.colRange(100, 200));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MSE, PSNR, SSIM and MS-SSIM against numbers worked out by hand and against the formulas of Wang et al.,
+// MSE, PSNR, SSIM and MS-SSIM against numbers calculated by hand and against the formulas of Wang et al.,
 // summed pixel by pixel.
 #include "clients/sonarview/compare/similarity.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 constexpr double c1 = 6.5025;   // (0.01 * 255)^2
 constexpr double c2 = 58.5225;  // (0.03 * 255)^2
 
-/// Means of contrast times structure, and of that times luminance, over all windows (Wang et al. 2004, eq.
-/// 12-16), with sums written out.
+/// Means over all windows of contrast times structure, and of contrast times structure times luminance
+/// (Wang et al. 2004, eq. 12-16), with sums written out.
 std::pair<double, double> terms_by_hand(const cv::Mat& a, const cv::Mat& b) {
   double sum_cs = 0;
   double sum_all = 0;
@@ -85,7 +85,7 @@ TEST(Similarity, IdenticalImages) {
 }
 
 TEST(Similarity, MeanSquaredErrorByHand) {
-  // Of 16 pixels 4 differ by 10, 1 by -20: (4 * 100 + 400) / 16 = 50.
+  // 4 of 16 pixels differ by 10, and 1 by -20: (4 * 100 + 400) / 16 = 50.
   const cv::Mat a = flat_image(4, 4, 100);
   cv::Mat b = a.clone();
   b.row(2) += 10;
@@ -106,7 +106,7 @@ TEST(Similarity, BlackAgainstWhiteIsTheWorst) {
 }
 
 TEST(Similarity, ConstantOffsetChangesLuminanceOnly) {
-  // (2 a b + c1) / (a^2 + b^2 + c1) with a = 100, b = 150; at the last scale to the power 0.1333.
+  // (2 a b + c1) / (a^2 + b^2 + c1) with a = 100, b = 150. At the last scale it has the power 0.1333.
   const cv::Mat a = flat_image(192, 180, 100);
   const cv::Mat b = flat_image(192, 180, 150);
   EXPECT_NEAR(structural_similarity(a, b).value(), 30006.5025 / 32506.5025, 1e-9);
@@ -120,15 +120,16 @@ TEST(Similarity, SumsOverWindows) {
 }
 
 TEST(Similarity, InvertedContrastIsNegative) {
-  // Variances s^2 each, covariance -s^2: (c2 - 2 s^2) / (c2 + 2 s^2), s = 50; means are alike.
+  // Both variances are s^2 and the covariance is -s^2: (c2 - 2 s^2) / (c2 + 2 s^2) with s = 50. The means are
+  // equal.
   const cv::Mat a = checkerboard(40, 30, 50);
   const cv::Mat b = checkerboard(40, 30, -50);
   EXPECT_NEAR(structural_similarity(a, b).value(), (58.5225 - 5000) / (58.5225 + 5000), 1e-4);
 }
 
 TEST(Similarity, OneScaleOfFive) {
-  // A board of single pixels is flat at all scales but the first: to the power of that scale's weight,
-  // 0.0448.
+  // A board of single pixels is flat at all scales but the first, so the result has the power of the first
+  // scale's weight, 0.0448.
   const cv::Mat a = checkerboard(180, 180, 60);
   const cv::Mat b = checkerboard(180, 180, 15);
   const double first = (2 * 60.0 * 15 + c2) / (60.0 * 60 + 15.0 * 15 + c2);

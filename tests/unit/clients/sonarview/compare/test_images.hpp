@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images whose measures are known.
+// Images with known measures.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,13 @@
 
 namespace sonard::client {
 
-/// CV_64FC1.
+/// An image of one value, CV_64FC1.
 cv::Mat flat_image(int width, int height, double value);
 
-/// +-`contrast` about 128 from pixel to pixel.
+/// 128 plus and minus `contrast`, alternating from pixel to pixel.
 cv::Mat checkerboard(int width, int height, double contrast);
 
-/// Random blobs of some five pixels, 0..255. The same for the same seed.
+/// Random blobs of about five pixels, 0..255. Equal seeds give equal images.
 cv::Mat random_texture(int width, int height, std::uint64_t seed);
 
 }  // namespace sonard::client

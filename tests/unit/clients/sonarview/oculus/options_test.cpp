@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fire that the words of `sonarview oculus` mean.
+// The fire command for the options of `sonarview oculus`.
 #include "clients/sonarview/oculus/options.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scan that the words of `sonarview ping360` mean.
+// The scan for the options of `sonarview ping360`.
 #include "clients/sonarview/ping360/options.hpp"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ std::string complaint(const std::vector<const char*>& words) {
   }
 }
 
-// docs/protocols/ping360.md 2.3: clients cover 20 m by 1200 samples of 888 ticks, with a pulse of 107 us.
+// docs/protocols/ping360.md 2.3: clients cover 20 m with 1200 samples of 888 ticks and a pulse of 107 us.
 TEST(Ping360Options, a_range_becomes_the_samples_that_clients_choose) {
   const Ping360Options scan = options({"--range", "20"});
   EXPECT_EQ(scan.line.text(), "udp 127.0.0.1:12345");

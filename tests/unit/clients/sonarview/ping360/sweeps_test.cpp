@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a turn of a scan ends, whatever is lost on the way.
+// Ends of a scan's turns, also if pings are lost.
 #include "clients/sonarview/ping360/sweeps.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Numbers of pings of the turns that end on these angles.
+/// Number of pings in each turn that ends within these angles.
 std::vector<std::size_t> turns(bool all_round, const std::vector<int>& angles) {
   SweepCollector collector(all_round);
   std::vector<std::size_t> sizes;
