@@ -29,8 +29,8 @@ HeadCommand with_limits(std::uint16_t left, std::uint16_t right) {
 
 // libminiking and miniking_ros. It reads the user blocks and takes the next message for an alive; any other
 // type ends it. It sends its parameters at least once, until byte 13 of the next alive is 0. The node later
-// changes them in this way too. Then it requests two lines, waits for both without a timeout, and repeats
-// this.
+// changes them in this way too. From then on it sends one request for two lines and waits for both, again and
+// again.
 TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
   DeviceConfig config;
   config.user_blocks = UserBlocks::dst_alone;
@@ -333,7 +333,8 @@ TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
 }
 
 // DelphinROSv3: sends parameters, waits 0.1 s and reads once. It repeats this until it reads an alive,
-// whatever the alive holds. It then discards all bytes received so far. Its commands repeat the node as 0xFF.
+// whatever the alive holds. It then discards all bytes received so far. Its commands have 0xFF as the second
+// node number.
 TEST(PublicDrivers, S4_an_alive_is_there_a_tenth_of_a_second_after_parameters) {
   Driver driver(steady);
   Bytes command = fixture("head_command_ros");
