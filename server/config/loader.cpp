@@ -105,49 +105,48 @@ void read_log(YamlSection& section, LogLevel& level, LogFormat& format) {
                   {"info", LogLevel::info},
                   {"warn", LogLevel::warn},
                   {"error", LogLevel::error}},
-                 "least severe events shown; `--log-level` overrides it");
+                 "minimum severity of the logged events; `--log-level` overrides this key");
   section.choice("format", format, {{"text", LogFormat::text}, {"json", LogFormat::json}},
-                 "`json` writes each line as a JSON object for programs that collect logs "
-                 "([deploy.md](deploy.md#logs-for-programs)); `--log-format` overrides it");
+                 "`text`, or `json` with one JSON object per line for programs that collect logs "
+                 "([deploy.md](deploy.md#logs-for-programs)); `--log-format` overrides this key");
 }
 
 void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
-  section.path("file", config.world_file, folder, "SDF world ([worlds.md](worlds.md))");
+  section.path("file", config.world_file, folder, "SDF file of the world ([worlds.md](worlds.md))");
   section.default_is("file", "**required**, unless `empty` is true");
   section.boolean(
       "empty", config.open_water,
-      "whether the world may be without a surface, as open water is: images then hold noise and water "
-      "clutter alone. Without `file` there is nothing but water. `world: empty` is short for "
-      "`world: {empty: true}`");
+      "true: the world may have no surface, as in open water. Images then contain only noise and water "
+      "clutter. Without `file`, the world is only water. `world: empty` is short for `world: {empty: true}`");
   if (!config.open_water && !section.describing()) {
     section.require("file", "an SDF world; for open water, empty: true");
   }
-  section.choice(
-      "missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
-      "what becomes of an include, or a mesh, whose file is not there: the daemon does not start, or it does "
-      "without, and warns");
-  section.integer(
-      "max_triangles", config.world_max_triangles, 1, 2'000'000'000,
-      "most triangles of the world, each use of a mesh counted: a world that has more is refused");
+  section.choice("missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
+                 "reaction to an include or a mesh whose file does not exist: `error`: sonard does not "
+                 "start; `skip`: sonard leaves it out and prints a warning");
+  section.integer("max_triangles", config.world_max_triangles, 1, 2'000'000'000,
+                  "maximum number of triangles in the world, counting each use of a mesh; sonard rejects a "
+                  "world with more");
   section.text("vehicle_model", config.vehicle_model,
-               "model of the world that is the vehicle itself: it moves as the vehicle does, whatever the "
-               "pose stream says of a body of this name. Its frame is the vehicle's");
-  section.default_is("vehicle_model", "the model with the sonars of `mount.from_world`; without any, none");
-  section.section("origin",
-                  "where the world's (0, 0, 0) is on Earth, in the place of `<spherical_coordinates>` in the "
-                  "file: maps and "
-                  "GLOBAL_POSITION_INT need it ([worlds.md](worlds.md#where-on-earth))",
-                  [&](YamlSection& inner) {
-                    render::GeographicOrigin& origin = config.origin.emplace();
-                    inner.require("latitude_deg", "degrees, WGS 84, north is positive");
-                    inner.require("longitude_deg", "degrees, WGS 84, east is positive");
-                    inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
-                                 "WGS 84, north is positive");
-                    inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
-                                 "WGS 84, east is positive");
-                    inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
-                                 "of z = 0 above mean sea level, metres");
-                  });
+               "model of the world that is the vehicle itself. It moves with the vehicle, and poses of a "
+               "body with this name in the pose stream have no effect. Its frame is the vehicle frame");
+  section.default_is("vehicle_model",
+                     "the model with the sonars of `mount.from_world`; no model if no head has `from_world`");
+  section.section(
+      "origin",
+      "position of the world's (0, 0, 0) on Earth, instead of `<spherical_coordinates>` in the file. Maps "
+      "and GLOBAL_POSITION_INT require this position ([worlds.md](worlds.md#where-on-earth))",
+      [&](YamlSection& inner) {
+        render::GeographicOrigin& origin = config.origin.emplace();
+        inner.require("latitude_deg", "degrees, WGS 84, north is positive");
+        inner.require("longitude_deg", "degrees, WGS 84, east is positive");
+        inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
+                     "WGS 84 latitude; north is positive");
+        inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
+                     "WGS 84 longitude; east is positive");
+        inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
+                     "altitude of z = 0 above mean sea level");
+      });
 }
 
 render::Water properties(const WaterConfig& water) {
@@ -157,65 +156,70 @@ render::Water properties(const WaterConfig& water) {
 /// Fills the water and what the heads take from it.
 void read_water(YamlSection& section, HeadContext& context) {
   section.introduce(
-      "Sets the absorption (Francois & Garrison 1982, at the frequency of each head) and, if asked to, the "
-      "true speed of sound (Mackenzie 1981; Medwin 1975 outside 2 to 30 degrees or 25 to 40 ppt).");
+      "These keys set the absorption (Francois & Garrison 1982, at the frequency of each head). With "
+      "`sound_speed_mps: computed` they also set the true speed of sound (Mackenzie 1981; Medwin 1975 "
+      "outside 2 to 30 degrees Celsius or 25 to 40 ppt).");
   WaterConfig& water = context.water;
-  section.number("temperature_c", water.temperature_c, Range::from(-4.0, 45.0), "degrees Celsius");
+  section.number("temperature_c", water.temperature_c, Range::from(-4.0, 45.0),
+                 "water temperature, degrees Celsius");
   section.number("salinity_ppt", water.salinity_ppt, Range::from(0.0, 50.0),
-                 "parts per thousand; 0 is fresh water");
+                 "salinity, parts per thousand; 0 is fresh water");
   section.number("depth_m", water.depth_m, Range::from(0.0, 11'000.0),
-                 "depth for these formulas; it does not follow the vehicle");
-  section.number("ph", water.ph, Range::from(5.0, 10.0), "acidity; hardly matters above 100 kHz");
+                 "water depth for these formulas; it does not follow the vehicle");
+  section.number("ph", water.ph, Range::from(5.0, 10.0), "acidity; it has little effect above 100 kHz");
   double absorption_db_per_km = -1.0;
   section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
                          {{"computed", -1.0}},
-                         "one way; computed outside -2 to 30 degrees or 30 to 35 ppt it is an extrapolation, "
-                         "and a warning says so");
+                         "one-way absorption. Outside -2 to 30 degrees Celsius or 30 to 35 ppt, `computed` "
+                         "is an extrapolation, and sonard prints a warning");
   context.absorption_db_per_m = absorption_db_per_km < 0.0 ? -1.0 : absorption_db_per_km / 1000.0;
   section.number_or_word(
       "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
       {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}},
-      "true speed of sound. With `ping_configuration` the water has the speed the client assumes (where the "
-      "head is not told, 1500 m/s), so its ranges are true; otherwise ranges are off by the ratio, as at "
-      "sea");
-  section.number(
-      "sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0),
-      "by how much sound gets faster per metre upwards (m/s per m). 0: it goes straight. Warm water above "
-      "cold, 0.5 to 1.8: rays sink, echoes of the bed come nearer. Water of one temperature: -0.017, which "
-      "no sonar here would notice. Facets are divided for it ([acoustics.md](acoustics.md#refraction))");
+      "true speed of sound. With `ping_configuration` it is the speed that the client assumes (1500 m/s if "
+      "the client does not send one), so the client's ranges are correct. With other values, ranges are "
+      "wrong by the ratio of the two speeds, as at sea");
+  section.number("sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0),
+                 "increase of the sound speed with height (m/s per m). 0: sound travels in straight lines. "
+                 "0.5 to 1.8 is warm water above cold: rays bend down, and echoes of the bed appear nearer. "
+                 "-0.017 is water of one temperature; no sonar here shows its effect. With a gradient, "
+                 "sonard subdivides facets ([acoustics.md](acoustics.md#refraction))");
 }
 
 void read_trajectory(YamlSection& section, const std::filesystem::path& folder, TrajectoryInput& trajectory) {
   section.require("file", "a trajectory file, CSV or TUM");
-  section.path("file", trajectory.file, folder, "CSV or TUM ([poses.md](poses.md))");
+  section.path("file", trajectory.file, folder, "trajectory file, CSV or TUM ([poses.md](poses.md))");
   section.boolean("loop", trajectory.loop,
-                  "start again at the end; otherwise the last pose stays the newest");
-  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0), "2: twice as fast as recorded");
+                  "true: playback starts again at the end; false: the last pose remains the newest one");
+  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0),
+                 "playback speed; 2 is twice as fast as recorded");
   section.choice("axes", trajectory.axes,
                  {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}},
-                 "axes of world and vehicle in the file");
+                 "convention for the axes of world and vehicle in the file");
 }
 
 void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
-  read_socket(section, mavlink.bind, mavlink.allow, endpoint_form, "the example uses 127.0.0.1:14660",
-              "who may send");
-  section.integer("system_id", mavlink.system_id, 1, 255, "the vehicle; messages of others are ignored");
+  read_socket(section, mavlink.bind, mavlink.allow, endpoint_form,
+              "UDP address that receives the telemetry; the example uses 127.0.0.1:14660",
+              "address blocks that may send telemetry");
+  section.integer("system_id", mavlink.system_id, 1, 255,
+                  "MAVLink system ID of the vehicle; sonard ignores messages from other systems");
   section.integer("component_id", mavlink.component_id, 1, 255,
-                  "the part of the vehicle that is believed; 1 is the autopilot");
-  section.choice(
-      "messages", mavlink.messages,
-      {{"auto", MavlinkMessages::automatic},
-       {"odometry", MavlinkMessages::odometry},
-       {"local_position", MavlinkMessages::local_position},
-       {"global_position", MavlinkMessages::global_position}},
-      "ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with the attitude of its time. `auto` takes "
-      "the "
-      "first of these that comes; GLOBAL_POSITION_INT needs a world with an `origin`, or is at latitude 0, "
-      "longitude 0 and then gives the depth alone");
-  section.section("origin", "where the vehicle's own origin is in the world", [&](YamlSection& inner) {
-    read_pose(inner, mavlink.T_world_local,
-              "what the vehicle calls (0, 0, 0), in the world (x east, y north, z up), metres",
-              "as in `poses.initial`; yaw 90 turns the vehicle's north to west of the world");
+                  "MAVLink component whose messages sonard uses; 1 is the autopilot");
+  section.choice("messages", mavlink.messages,
+                 {{"auto", MavlinkMessages::automatic},
+                  {"odometry", MavlinkMessages::odometry},
+                  {"local_position", MavlinkMessages::local_position},
+                  {"global_position", MavlinkMessages::global_position}},
+                 "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
+                 "the attitude at the same time. `auto` uses the first message in this list that arrives. "
+                 "GLOBAL_POSITION_INT requires a world with an `origin`; at latitude 0, longitude 0 it needs "
+                 "no origin and gives only the depth");
+  section.section("origin", "pose of the vehicle's own origin in the world", [&](YamlSection& inner) {
+    read_pose(
+        inner, mavlink.T_world_local,
+        "position in the world (x east, y north, z up) of the point that the vehicle reports as (0, 0, 0)",
+        "rotation, as in `poses.initial`; yaw 90 turns the vehicle's north to the west of the world");
   });
 }
 
@@ -236,23 +240,23 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   enum class Frame { world, relative };
   Frame frame = Frame::world;
   section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
-  section.text("topic", ignition.topic, "with messages `Pose_V` or `Pose`");
-  section.text("partition", ignition.partition, "of the transport");
-  section.default_is("partition", "that of `IGN_PARTITION`");
-  read_own_address(
-      section, "address", ignition.address,
-      "this machine's address on the network to Gazebo, instead of `IGN_IP` or `GZ_IP`. An "
-      "address of loopback: Gazebo on this machine only. Any other: whoever reaches that network "
-      "can publish poses");
+  section.text("topic", ignition.topic, "topic with `Pose_V` or `Pose` messages");
+  section.text("partition", ignition.partition, "partition of the Gazebo transport");
+  section.default_is("partition", "value of `IGN_PARTITION`");
+  read_own_address(section, "address", ignition.address,
+                   "address of this machine on the network to Gazebo, instead of `IGN_IP` or `GZ_IP`. With a "
+                   "loopback address, only Gazebo on this machine can publish poses. With any other address, "
+                   "every machine on that network can publish poses");
   section.require("frame", "world, or relative for poses that are relative to parents");
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
-                 "what poses are relative to: the world, or `parents`");
+                 "reference frame of the poses: `world`, or `relative` to `parents`");
   const bool relative = frame == Frame::relative;
   section.text("vehicle", ignition.vehicle.name,
-               "entity that carries the sonars; **required** where no model is the vehicle");
-  section.default_is("vehicle", "`world.vehicle_model`, and with `relative` no parents");
+               "entity that carries the sonars; **required** if no model of the world is the vehicle");
+  section.default_is("vehicle", "`world.vehicle_model`; with `relative` it has no parents");
   read_parents(section, relative, ignition.vehicle,
-               "what its pose is relative to, the outermost first; [] for a model that stands in the world");
+               "entities that the pose of `vehicle` is relative to, the outermost first; [] for a model "
+               "directly in the world");
   section.default_is("parents", "**required** with `relative` and `vehicle`");
   const bool named = section.has("vehicle");
   if (relative && named) {
@@ -265,62 +269,74 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
       section.report(key, "is of `vehicle`, which is not given (expected both, or neither)");
     }
   }
-  section.section("mount", "where the vehicle frame sits on the entity; only with `vehicle`",
-                  [&](YamlSection& inner) {
-                    read_pose(inner, ignition.T_entity_vehicle, "in the axes of the entity, metres",
-                              "as in `poses.initial`");
-                  });
-  section.sections("bodies", "entities that move bodies of the world", [&](YamlSection& inner) {
+  section.section(
+      "mount", "pose of the vehicle frame on the entity; only with `vehicle`", [&](YamlSection& inner) {
+        read_pose(inner, ignition.T_entity_vehicle, "origin of the vehicle frame in the axes of the entity",
+                  "rotation, as in `poses.initial`");
+      });
+  section.sections("bodies", "simulator entities that move bodies of the world", [&](YamlSection& inner) {
     IgnitionPoseInput::Body& body = ignition.bodies.emplace_back();
     inner.require("entity", "the name of an entity of the simulator");
-    inner.text("entity", body.entity.name, "name in the simulator");
-    read_parents(inner, relative, body.entity, "only with `frame: relative`, as above");
+    inner.text("entity", body.entity.name, "name of the entity in the simulator");
+    read_parents(inner, relative, body.entity,
+                 "entities that the pose of `entity` is relative to, the outermost first; only with `frame: "
+                 "relative`");
     inner.require("body", "the name of a model of the world");
-    inner.text("body", body.body, "name of the model in the world here");
+    inner.text("body", body.body, "name of the model in the world of sonard");
   });
 }
 
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.introduce(
-      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `ignition` and `trajectory`; a trajectory "
-      "excludes the live inputs.");
+      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `ignition` and `trajectory` is required. "
+      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `ignition`.");
   section.section(
-      "initial", "pose until the first one arrives; without it the heads answer but do not ping before that",
+      "initial",
+      "pose until the first pose arrives. Without it, the heads answer clients but do not ping before the "
+      "first pose",
       [&](YamlSection& inner) {
         inner.require("position_m", "a list of three numbers");
-        read_pose(inner, poses.T_world_vehicle_initial.emplace(),
-                  "origin of the vehicle in the world (x east, y north, z up), metres",
-                  "roll, pitch, yaw about the fixed x, y and z axes, in this order; vehicle x forward, y to "
-                  "port, z up, so positive pitch is nose down and positive yaw turns to port");
+        read_pose(
+            inner, poses.T_world_vehicle_initial.emplace(),
+            "origin of the vehicle in the world (x east, y north, z up)",
+            "roll, pitch and yaw about the fixed x, y and z axes, in this order. On the vehicle, x is "
+            "forward, y to port and z up, so positive pitch is nose down and positive yaw turns to port");
       });
-  section.section("udp", "one pose message per datagram ([poses.md](poses.md))", [&](YamlSection& inner) {
-    UdpPoseInput& udp = poses.udp.emplace();
-    read_socket(inner, udp.bind, udp.allow, endpoint_form, "the demo uses 127.0.0.1:14600",
-                "who may publish");
-  });
-  section.section("tcp", "varint-delimited pose messages ([poses.md](poses.md))", [&](YamlSection& inner) {
-    TcpPoseInput& tcp = poses.tcp.emplace();
-    read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "where publishers connect", "who may publish");
-    inner.integer("max_clients", tcp.max_clients, 1, 1000, "further connections are closed at once");
-  });
+  section.section("udp", "pose messages by UDP, one per datagram ([poses.md](poses.md))",
+                  [&](YamlSection& inner) {
+                    UdpPoseInput& udp = poses.udp.emplace();
+                    read_socket(inner, udp.bind, udp.allow, endpoint_form,
+                                "UDP address that receives poses; the demo uses 127.0.0.1:14600",
+                                "address blocks that may publish poses");
+                  });
+  section.section(
+      "tcp", "varint-delimited pose messages by TCP ([poses.md](poses.md))", [&](YamlSection& inner) {
+        TcpPoseInput& tcp = poses.tcp.emplace();
+        read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "TCP address that publishers connect to",
+                    "address blocks that may publish poses");
+        inner.integer("max_clients", tcp.max_clients, 1, 1000,
+                      "maximum number of connections; sonard closes further ones at once");
+      });
   section.section("mavlink",
                   "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
                   [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
-  section.section("ignition", "a pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
+  section.section("ignition", "pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
                   [&](YamlSection& inner) { read_ignition(inner, poses.ignition.emplace()); });
-  section.section("trajectory", "a file, played from the start of the daemon",
+  section.section("trajectory", "trajectory file, played from the start of the daemon",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0),
-                   "past the newest pose the twist is followed (without one the pose is held) for this long");
-  section.choice(
-      "stale", poses.stale_policy, {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
-      "after that: go on from the last pose, or stop pinging (status packets go on) until a pose arrives");
+                   "time after the newest pose for which sonard follows its twist; without a twist, sonard "
+                   "holds the pose");
+  section.choice("stale", poses.stale_policy,
+                 {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
+                 "behaviour after `extrapolation_limit_ms`: `hold`: pings continue from the last pose; "
+                 "`silence`: pings stop until a pose arrives, and status packets continue");
   section.choice(
       "clock", poses.clock,
       {{"wall", PingClock::wall}, {"source", PingClock::source}, {"lock_step", PingClock::lock_step}},
-      "whose time pings keep: this machine's, or that of the stamps of the poses, for a simulation that is "
-      "slow, fast or paused; `lock_step` leaves no ping out, however slow the rendering "
-      "([poses.md](poses.md#time-of-the-simulation))");
+      "clock for the pings: `wall` is the clock of this machine; `source` and `lock_step` follow the stamps "
+      "of the poses, for a simulation that is slow, fast or paused. `lock_step` skips no ping, however slow "
+      "the rendering ([poses.md](poses.md#time-of-the-simulation))");
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.ignition;
   if (live && poses.trajectory) {
@@ -340,25 +356,27 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
 
 void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adaptive_quality) {
   section.introduce(
-      "The error of the echo that is aimed at; what it takes is found by itself. See "
-      "[accuracy.md](accuracy.md) for what is measured and [benchmark.md](benchmark.md) for what it costs.");
+      "Target error of the echo. sonard chooses the samples for it automatically. [accuracy.md](accuracy.md) "
+      "lists measured errors, and [benchmark.md](benchmark.md) lists the cost.");
   using Preset = render::Sampling::Preset;
   section.choice("preset", sampling.preset,
                  {{"fast", Preset::fast},
                   {"default", Preset::normal},
                   {"reference", Preset::reference},
                   {"grid", Preset::grid}},
-                 "5 %, 1 %, as close as it gets (for offline use), or a fixed grid of samples");
+                 "target error: `fast` 5 %, `default` 1 %, `reference` as small as possible (for offline "
+                 "use); `grid` renders a fixed grid of samples");
   section.integer("views", sampling.views, 1, 32,
-                  "only with `grid`, like the two below: side-by-side views across the fan; more are used "
-                  "where one would exceed 60 degrees");
-  section.integer("columns_per_view", sampling.columns_per_view, 8, 4096, "pixels of a view across the fan");
-  section.integer("rows", sampling.rows, 8, 4096, "pixels over the elevation of the fan");
-  section.choice(
-      "adaptive_quality", adaptive_quality, {{"off", false}, {"on", true}},
-      "`on` takes the next faster preset while a client asks for more pings than this machine can make, "
-      "and comes back when there is time; the log says so. Images then depend on the machine and its "
-      "load. Not with `grid`; without effect where poses bring the time (`poses.clock`)");
+                  "only with `grid`: number of side-by-side views across the fan; sonard uses more if one "
+                  "view would exceed 60 degrees");
+  section.integer("columns_per_view", sampling.columns_per_view, 8, 4096,
+                  "only with `grid`: pixels of one view across the fan");
+  section.integer("rows", sampling.rows, 8, 4096, "only with `grid`: pixels over the elevation of the fan");
+  section.choice("adaptive_quality", adaptive_quality, {{"off", false}, {"on", true}},
+                 "`on`: while a client requests more pings than this machine can render, sonard uses the "
+                 "next faster preset. It returns to `preset` when there is time, and logs each change. "
+                 "Images then depend on the machine and its load. Invalid with `grid`; no effect if pings "
+                 "follow the stamps of the poses (`poses.clock`)");
   if (sampling.preset == Preset::grid && adaptive_quality) {
     section.report("adaptive_quality", "a grid has no faster preset (expected off, or another `preset`)");
   }
@@ -372,26 +390,25 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
 }
 
 void read_gpu(YamlSection& section, render::GpuOptions& gpu) {
-  section.introduce("Only where the engine is `gpu`, or `auto` takes it ([gpu.md](gpu.md)).");
-  section.text(
-      "device", gpu.device,
-      "which EGL device: its number in the list of `sonard selftest`, or a part of its name there. Without "
-      "it, hardware comes before software, then most memory");
+  section.introduce(
+      "These keys apply if the engine is `gpu`, or if `auto` selects the GPU ([gpu.md](gpu.md)).");
+  section.text("device", gpu.device,
+               "EGL device: its number in the list of `sonard selftest`, or a part of its name there. "
+               "Without this key, sonard prefers hardware to software, then the device with the most memory");
   section.integer(
       "memory_mib", gpu.memory_mib, 1, 1'048'576,
-      "MiB of video memory for meshes and normal maps, for each renderer: all fans share one, all "
-      "scanning heads another. What was not drawn for the longest time makes room; if what one "
-      "sonar sees does not fit, the CPU goes on ([engines.md](engines.md#video-memory))");
-  section.number(
-      "retry_s", gpu.retry_s, Range::from(0.0, 86'400.0),
-      "after a loss of the GPU it is tried again each time so long has passed, in the middle of a ping, "
-      "which then waits for it; 0: the CPU goes on to the end");
+      "video memory for meshes and normal maps in MiB, for each renderer. All fans share one renderer, and "
+      "all scanning heads another. sonard first releases data that it drew least recently. If the data for "
+      "one sonar do not fit, the CPU renders instead ([engines.md](engines.md#video-memory))");
+  section.number("retry_s", gpu.retry_s, Range::from(0.0, 86'400.0),
+                 "time between attempts to use the GPU again after it was lost. An attempt takes place "
+                 "during a ping, which waits for it. 0: no attempt, the CPU renders until the daemon ends");
 }
 
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   section.introduce(
-      "The daemon leaves out what does not change the image, by rules that [skipping.md](skipping.md) lists "
-      "with what each may change and saves. How often each did is in the log.");
+      "sonard skips work that does not change the image. [skipping.md](skipping.md) lists the rules, with "
+      "the largest change and the saving of each. The log counts how often each rule applied.");
   std::vector<std::string_view> names;
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     names.push_back(entry.name);
@@ -400,7 +417,7 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   const std::string schema = fmt::format(R"("enum": ["{}"])", fmt::join(names, R"(", ")"));
   std::vector<render::SkipRule> off;
   section.parsed_list("off", off, &render::skip_rule_named, {expected, "rules", schema},
-                      "these do not apply: what they would leave out is worked out in full");
+                      "rules that do not apply; sonard does the work that they would skip");
   for (const render::SkipRule rule : off) {
     skip.turn_off(rule);
   }
@@ -408,130 +425,136 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
 
 void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
   section.introduce(
-      "Logs that users' tools open, of all heads. [logs.md](logs.md#5-recording) says what is in them, what "
-      "happens when the disk is full, and what a daemon that was killed leaves behind.");
+      "Logs of all heads, in formats that common tools open. [logs.md](logs.md#5-recording) describes their "
+      "content, what happens if the disk is full, and the files that remain after the daemon was killed.");
   section.require("directory", "a folder for the logs");
-  section.path("directory", recording.directory, folder,
-               "folder of the logs, made when it is not there; one daemon at a time records into it");
-  section.boolean("glf", recording.glf, "a `.glf` of each head whose users know such logs");
-  section.boolean("mcap", recording.mcap, "one MCAP file: images, poses, and the bytes of both directions");
+  section.path(
+      "directory", recording.directory, folder,
+      "folder of the logs, created if it does not exist; only one daemon at a time can record into it");
+  section.boolean("glf", recording.glf, "writes a `.glf` for each head whose users work with such logs");
+  section.boolean("mcap", recording.mcap,
+                  "writes one MCAP file with images, poses, and the bytes of both directions");
   section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
-                  "whether these bytes are in it; a capture has them too, and images and replay do without");
+                  "includes the bytes of both directions in the MCAP file. A capture (`pcapng`) contains "
+                  "them too; images and replay do not need them");
   section.boolean("mcap_foxglove", recording.mcap_foxglove,
-                  "whether each ping is in it as Foxglove shows it, too: a picture, the place of the sonar, "
-                  "and echoes as points. It takes the time to draw a picture for each ping");
+                  "also writes each ping in the form that Foxglove shows: a picture, the pose of the sonar, "
+                  "and echoes as points. This costs the time to draw a picture for each ping");
   section.choice("mcap_compression", recording.mcap_zstd, {{"none", false}, {"zstd", true}},
-                 "of each mebibyte or second of it, when that is full: `zstd` takes some processor time for "
-                 "a smaller file");
-  section.boolean("pcapng", recording.pcapng, "one capture for Wireshark: the bytes of both directions");
+                 "compression of each finished chunk of the MCAP file (1 MiB or one second); `zstd` makes "
+                 "the file smaller and takes some processor time");
+  section.boolean("pcapng", recording.pcapng,
+                  "writes one capture for Wireshark with the bytes of both directions");
   if (!recording.glf && !recording.mcap && !recording.pcapng) {
     section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
   section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and a ping may still come
-                  "when one of the files has so many mebibytes, all are closed, and new ones begun");
+                  "file size in MiB; when one file reaches it, sonard closes all files and begins new ones");
   recording.rotate_bytes = mebibytes << 20;
   section.duration("rotate_min", recording.rotate_after, Range::from(0.05, 10'080.0),
-                   "and so they are after so many minutes");
-  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
-                 "clock of the times in a `.glf` and of all names; a `.glf` does not say which it is");
+                   "time in minutes after which sonard closes all files and begins new ones");
+  section.choice(
+      "zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
+      "time zone of the times in a `.glf` and in all file names; a `.glf` does not state its time zone");
   section.choice("sync", recording.sync,
                  {{"never", RecordingSync::never},
                   {"on_close", RecordingSync::on_close},
                   {"every_second", RecordingSync::every_second}},
-                 "when files are forced onto the disk, against power cuts; a process that is killed loses "
-                 "nothing by any of them");
+                 "when sonard forces files onto the disk, as protection against power cuts. If the process "
+                 "is killed, nothing is lost with any of these values");
   mebibytes = recording.queue_bytes >> 20;
-  section.integer(
-      "queue_mib", mebibytes, 1, 16'384,
-      "what waits to be written; beyond that is dropped and counted, for nothing ever waits for the disk");
+  section.integer("queue_mib", mebibytes, 1, 16'384,
+                  "maximum amount of data that waits to be written, in MiB. Data beyond it are dropped and "
+                  "counted, because nothing in sonard waits for the disk");
   recording.queue_bytes = mebibytes << 20;
-  section.duration(
-      "stop_deadline_s", recording.stop_deadline, Range::from(0.0, 3600.0),
-      "when the daemon ends, it waits no longer than this for the disk; it then logs what is not "
-      "on the disk, and the next start repairs the logs");
+  section.duration("stop_deadline_s", recording.stop_deadline, Range::from(0.0, 3600.0),
+                   "maximum time that the daemon waits for the disk when it ends. It then logs which data "
+                   "are not on the disk, and the next start repairs the logs");
 }
 
 void read_web(YamlSection& section, WebConfig& web) {
   section.introduce(
-      "A page in the browser that shows each head's pictures, the world, poses and what is wrong "
-      "([page.md](page.md)), and what monitors ask: `/health`, `/ready`, `/metrics`, `/api/status`.");
-  read_socket(section, web.bind, web.allow, endpoint_form, "the demo uses 127.0.0.1:8014",
-              "who may look; all may see what all see");
+      "A page in the browser shows the images of each head, the world, the poses and current problems "
+      "([page.md](page.md)). Monitors read `/health`, `/ready`, `/metrics` and `/api/status`.");
+  read_socket(section, web.bind, web.allow, endpoint_form,
+              "HTTP address of the page; the demo uses 127.0.0.1:8014",
+              "address blocks that may open the page; every viewer sees everything");
   section.text("token", web.token,
-               "whoever sends it may also change state, as turning the recording on and off does; browsers "
-               "of this machine may without");
-  section.default_is("token", "none: nobody from elsewhere may");
+               "clients that send this token may also change state, for example start or stop the recording; "
+               "browsers on this machine need no token");
+  section.default_is("token", "no token: only browsers on this machine may change state");
   constexpr TextForm origins{"an origin such as https://example.org", "origins", R"("type": "string")"};
-  section.parsed_list("origins", web.origins, &any_text, origins,
-                      "other sites whose pages may connect from a browser; the page's own always may");
-  section.integer(
-      "max_viewers", web.max_viewers, 1, 1000,
-      "WebSockets at a time; further ones are refused with status 503. Monitors always get a place");
-  section.integer(
-      "max_viewers_per_peer", web.max_viewers_per_peer, 1, 1000,
-      "WebSockets of one address at a time. A tab of the page has one. Programs behind one gateway "
-      "or proxy, such as Docker's, share its address");
+  section.parsed_list(
+      "origins", web.origins, &any_text, origins,
+      "other sites whose pages may connect from a browser; the page itself may always connect");
+  section.integer("max_viewers", web.max_viewers, 1, 1000,
+                  "maximum number of WebSockets at a time; sonard refuses further ones with status 503. "
+                  "Monitors can always connect");
+  section.integer("max_viewers_per_peer", web.max_viewers_per_peer, 1, 1000,
+                  "maximum number of WebSockets from one address at a time. Each tab of the page uses one. "
+                  "Programs behind one gateway or proxy, such as Docker's, share its address");
 }
 
 void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config) {
   HeadContext context;
   context.folder = config.file.parent_path();
-  root.section("log", "the log",
+  root.section("log", "level and format of the log",
                [&](YamlSection& section) { read_log(section, config.log_level, config.log_format); });
   root.require("world", "a mapping with the world's file, or `empty` for open water");
   const std::string_view word = root.word("world");
   const bool is_open_water = word == "empty";
   if (is_open_water || root.describing()) {
-    root.choice("world", config.open_water, {{"empty", true}}, "what the sonars see; `empty` is open water");
+    root.choice("world", config.open_water, {{"empty", true}},
+                "scene around the vehicle; `empty` is open water");
   }
   if (!is_open_water && !word.empty()) {
     root.report("world", fmt::format("is {} (expected a mapping such as {{file: sea.sdf}}, or empty for "
                                      "open water)",
                                      in_quotes(word)));
   } else if (!is_open_water) {
-    root.section("world", "what the sonars see; `empty` is open water",
+    root.section("world", "scene around the vehicle; `empty` is open water",
                  [&](YamlSection& section) { read_world(section, context.folder, config); });
   }
-  root.choice(
-      "engine", config.engine,
-      {{"auto", render::EngineKind::automatic},
-       {"gpu", render::EngineKind::gpu},
-       {"cpu", render::EngineKind::cpu}},
-      "what renders: OpenGL 4.5 on the graphics card, or the cores of the CPU, which needs no OpenGL. "
-      "`auto` renders the first ping of each head with both and takes the faster; the log gives both "
-      "times. If OpenGL runs in software, `auto` takes the CPU at once. Where a GPU fails while it serves, "
-      "the CPU goes on with the same ping. The images agree "
-      "within the error of the preset ([accuracy.md](accuracy.md))");
-  root.section("gpu", "what engine `gpu` runs on",
+  root.choice("engine", config.engine,
+              {{"auto", render::EngineKind::automatic},
+               {"gpu", render::EngineKind::gpu},
+               {"cpu", render::EngineKind::cpu}},
+              "renderer: `gpu` uses OpenGL 4.5 on the graphics card; `cpu` uses the cores of the CPU and "
+              "needs no OpenGL. `auto` renders the first ping of each head with both, uses the faster one, "
+              "and logs both times. If OpenGL runs in software, `auto` selects the CPU at once. If a GPU "
+              "fails while sonard runs, the CPU continues with the same ping. The images of both agree "
+              "within the error of the preset ([accuracy.md](accuracy.md))");
+  root.section("gpu", "settings of engine `gpu`",
                [&](YamlSection& section) { read_gpu(section, config.gpu); });
   if (config.engine == render::EngineKind::cpu) {
     root.warn_if_given("gpu", "the engine is `cpu`");
   }
   root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
   root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
-  root.section("skip", "what need not be worked out",
+  root.section("skip", "rules that skip unnecessary work",
                [&](YamlSection& section) { read_skip(section, config.skip); });
-  root.section("water", "what they swim in", [&](YamlSection& section) { read_water(section, context); });
+  root.section("water", "properties of the water",
+               [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;
   root.require("poses", "a mapping that says where poses come from");
-  root.section("poses", "where the vehicle is",
+  root.section("poses", "sources of the vehicle's pose",
                [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   context.pings_by_source = config.poses.clock != PingClock::wall;
-  root.section("sampling", "the error that is aimed at", [&](YamlSection& section) {
+  root.section("sampling", "target error of the images", [&](YamlSection& section) {
     read_sampling(section, context.sampling, context.adaptive_quality);
     if (context.pings_by_source && context.adaptive_quality) {
       section.warn_if_given("adaptive_quality", "pings keep the time of the poses (`poses.clock`)");
     }
   });
   root.section(
-      "recording", "logs of what the heads say; without it there are none",
+      "recording", "logs of the heads' data; without this section, sonard records no logs",
       [&](YamlSection& section) { read_recording(section, context.folder, config.recording.emplace()); });
-  root.section("web", "a page to watch on, and metrics; without it there is none",
+  root.section("web", "web page for viewing, and metrics; without this section, there is no page",
                [&](YamlSection& section) { read_web(section, config.web.emplace()); });
   root.require("heads", "a list of sonar heads");
-  root.sections("heads", "the sonars, one or more",
+  root.sections("heads", "sonar heads, one or more",
                 [&](YamlSection& section) { config.heads.push_back(read_head(section, context, kinds)); });
   if (root.is_list("heads") && config.heads.empty()) {
     root.report("heads", "no head is listed (expected at least one)");
