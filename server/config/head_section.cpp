@@ -22,40 +22,42 @@ constexpr Range level_db = Range::from(-300.0, 300.0);
 
 double read_noise_budget(YamlSection& section, double carrier_hz) {
   section.introduce(
-      "The level of the noise by the sonar equation: `spectral_level_db` - `directivity_db` + 10 log10 of "
-      "the bandwidth - `source_level_db`. The defaults make -138.2 at 720 kHz.");
+      "The sonar equation gives the noise level: `spectral_level_db` - `directivity_db` + 10 log10 of the "
+      "bandwidth - `source_level_db`. The defaults give -138.2 dB at 720 kHz.");
   render::NoiseBudget budget;
   budget.spectral_level_db = render::thermal_noise_db(carrier_hz);
-  section.number("source_level_db", budget.source_level_db, level_db, "dB re 1 uPa at 1 m");
-  section.number("spectral_level_db", budget.spectral_level_db, level_db,
-                 "dB re 1 uPa^2/Hz; thermal noise at the frequency of the head");
+  section.number("source_level_db", budget.source_level_db, level_db, "source level, dB re 1 uPa at 1 m");
+  section.number(
+      "spectral_level_db", budget.spectral_level_db, level_db,
+      "noise spectral level, dB re 1 uPa^2/Hz; the default is thermal noise at the frequency of the head");
   section.number("directivity_db", budget.directivity_db, Range::from(0.0, 100.0),
                  "directivity index of the receive array");
-  section.number("bandwidth_khz", budget.bandwidth_hz, Range::above(0.0, 10'000.0), "of the receiver", 1e-3);
+  section.number("bandwidth_khz", budget.bandwidth_hz, Range::above(0.0, 10'000.0),
+                 "bandwidth of the receiver", 1e-3);
   return render::noise_level_db(budget);
 }
 
 void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.introduce(
-      "It rises from nothing at half of `peak_m`, or is as loud from the first sample on, and falls from the "
-      "peak to `end_m` by 80 dB.");
-  section.boolean("on", ring_down.on, "whether the transducer rings after its pulse");
+      "The ring-down rises from zero at half of `peak_m`, or is at its peak level from the first sample on "
+      "(`from_start`). From the peak to `end_m` it falls by 80 dB.");
+  section.boolean("on", ring_down.on, "true: the transducer rings after its pulse");
   section.number("level_db", ring_down.level_db, level_db,
                  "intensity of the peak re the source intensity at 1 m, before TVG");
   section.number("peak_m", ring_down.peak_m, Range::above(0.0, 10.0), "range of the peak");
-  section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0), "where it is over; beyond `peak_m`");
+  section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0),
+                 "range at which the ring-down ends; must be larger than `peak_m`");
   section.boolean("from_start", ring_down.from_start,
-                  "the pulse overdrives the receiver: all samples up to `peak_m` are as bright as the peak; "
-                  "false: the ring-down rises from half of `peak_m`");
+                  "true: the pulse overdrives the receiver, so all samples up to `peak_m` are as bright as "
+                  "the peak; false: the ring-down rises from half of `peak_m`");
   section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
-                 "standard deviation of its level from ping to ping");
-  section.number_or_word(
-      "vehicle_level_db", ring_down.vehicle_level_db, level_db,
-      {{"off", -std::numeric_limits<double>::infinity()}},
-      "what the vehicle sends back behind it: mean intensity at 1 m re the source intensity at 1 m, "
-      "before TVG");
+                 "standard deviation of the level from ping to ping");
+  section.number_or_word("vehicle_level_db", ring_down.vehicle_level_db, level_db,
+                         {{"off", -std::numeric_limits<double>::infinity()}},
+                         "level of the vehicle's own echo, which follows the ring-down: mean intensity at 1 "
+                         "m re the source intensity at 1 m, before TVG");
   section.number("vehicle_fall_db_per_m", ring_down.vehicle_fall_db_per_m, Range::above(0.0, 1000.0),
-                 "how fast that dies off");
+                 "decay of the vehicle's own echo with range");
   if (ring_down.end_m <= ring_down.peak_m) {
     section.report("end_m", "is not beyond peak_m (expected a larger range)");
   }
@@ -63,15 +65,16 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
 
 void read_interference(YamlSection& section, render::Interference& interference) {
   section.introduce(
-      "A ping that is hit has a burst of noise: which pings, from where and by how much is drawn evenly, by "
-      "the seed.");
-  section.number("probability", interference.probability, Range::from(0.0, 1.0), "of a ping to be hit");
-  section.number("least_db", interference.least_db, Range::from(0.0, 100.0), "noise rises by this at least");
-  section.number("most_db", interference.most_db, Range::from(0.0, 100.0), "and by this at most");
+      "A disturbed ping contains one burst of noise. The seed draws the disturbed pings and the start and "
+      "level of each burst, with uniform distributions.");
+  section.number("probability", interference.probability, Range::from(0.0, 1.0),
+                 "probability that a ping is disturbed");
+  section.number("least_db", interference.least_db, Range::from(0.0, 100.0), "minimum rise of the noise");
+  section.number("most_db", interference.most_db, Range::from(0.0, 100.0), "maximum rise of the noise");
   section.number("median_length_m", interference.median_length_m, Range::above(0.0, 1000.0),
-                 "median length of a burst; drawn between half and twice of it");
+                 "median length of a burst; lengths are between half and twice the median");
   section.number("to_the_end_probability", interference.to_the_end_probability, Range::from(0.0, 1.0),
-                 "of a burst to last to the end of the ping instead");
+                 "probability that a burst lasts to the end of the ping instead");
   if (interference.most_db < interference.least_db) {
     section.report("most_db", "is less than least_db (expected at least as much)");
   }
@@ -79,35 +82,34 @@ void read_interference(YamlSection& section, render::Interference& interference)
 
 void read_water_clutter(YamlSection& section, render::WaterClutter& clutter) {
   section.introduce(
-      "They lie at places of the world that the seed draws, within 20 m, and are seen before the first echo "
-      "of a "
-      "beam.");
-  section.number("density_per_m3", clutter.density_per_m3, Range::from(0.0, 10.0), "how many; 0: none");
+      "The seed draws the places of the scatterers in the world. They are visible within 20 m and before the "
+      "first echo of a beam.");
+  section.number("density_per_m3", clutter.density_per_m3, Range::from(0.0, 10.0),
+                 "number of scatterers per cubic metre; 0: off");
   section.number("target_strength_db", clutter.target_strength_db, level_db,
-                 "of the mean intensity of one, re 1 m");
+                 "target strength of one scatterer (mean intensity), re 1 m");
 }
 
 void read_multipath(YamlSection& section, render::MultipathSettings& multipath) {
   section.introduce(
-      "What mirrors follows from the materials of the world ([worlds.md](worlds.md)); the rule `multipath` "
-      "spares it where nothing does.");
+      "The materials of the world determine which surfaces act as mirrors ([worlds.md](worlds.md)). If no "
+      "surface does, the rule `multipath` skips this work.");
   using Level = render::MultipathSettings::Level;
   section.choice("level", multipath.level,
                  {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}},
-                 "`full`: every surface that is smooth enough mirrors, and corners of two or three are "
+                 "`full`: every surface that is smooth enough mirrors, corners of two or three surfaces are "
                  "corner reflectors, and rough surfaces send sound on to one another; `surface`: only the "
                  "water surface of the world mirrors");
   section.integer("most_bounces", multipath.most_bounces, 0, 32,
-                  "how many surfaces sound may meet one after the other, with level `full`; below 2 nothing "
-                  "bounces between rough ones");
-  section.number(
-      "bounce_loss_db", multipath.bounce_loss_db, Range::from(0.0, 60.0),
-      "what a rough surface takes each time that it sends sound on, besides what its material says: "
-      "growth, thin plates");
+                  "with level `full`: maximum number of surfaces that sound may meet one after the other; "
+                  "below 2, rough surfaces send no sound on to one another");
+  section.number("bounce_loss_db", multipath.bounce_loss_db, Range::from(0.0, 60.0),
+                 "extra loss each time that a rough surface sends sound on, in addition to the loss of its "
+                 "material: growth, thin plates");
   section.number("water_surface_rms_height_mm", multipath.water_surface_rms_height_m,
                  Range::from(0.0, 10'000.0),
-                 "rms height of waves and ripples on that surface: 0 mirrors like glass, some 20 under a "
-                 "light breeze only at the flattest angles, a wind sea never",
+                 "rms height of waves and ripples on the water surface. 0 mirrors like glass; about 20 is a "
+                 "light breeze and mirrors only at the flattest angles; a wind sea never mirrors",
                  1000.0);
 }
 
@@ -119,115 +121,123 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                   {"frozen", Speckle::frozen},
                   {"per_ping", Speckle::per_ping},
                   {"off", Speckle::off}},
-                 "`ou`: the same while the sonar rests, fading as it moves; `frozen`: always the same; "
-                 "`per_ping`: drawn anew");
+                 "`ou`: constant while the sonar is at rest, fades as the sonar moves; `frozen`: always the "
+                 "same; `per_ping`: drawn anew for each ping");
   section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0),
-                 "length of the array: half of it is the motion over which speckle changes");
+                 "length of the array; speckle changes over a motion of half this length");
   using Backscatter = render::PhysicalModel::Backscatter;
   section.choice("backscatter", model.backscatter,
                  {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}},
-                 "whether materials show their facets near normal incidence, or scatter diffusely alone");
-  section.boolean("noise", model.noise, "additive noise, amplified with range by the TVG");
+                 "`lambert_facet`: materials show their facets near normal incidence; `lambert`: materials "
+                 "only scatter diffusely");
+  section.boolean("noise", model.noise, "adds noise, which the TVG amplifies with range");
   if (section.has("noise_budget") && section.has("noise_level_db")) {
     section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
   }
   section.number("noise_level_db", model.noise_level_db, level_db,
                  "noise intensity re the source intensity at 1 m, before TVG");
-  section.section("noise_budget", "what `noise_level_db` follows from, instead of that key",
+  section.section("noise_budget", "sonar equation for `noise_level_db`, instead of that key",
                   [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
   if (!model.noise) {
     for (const char* key : {"noise_level_db", "noise_budget", "noise_cell_m", "broadside_stripe_db"}) {
       section.warn_if_given(key, "`noise` is false");
     }
   }
-  section.number_or_word("output_noise_db", model.output_noise_db, level_db,
-                         {{"off", -std::numeric_limits<double>::infinity()}},
-                         "noise that enters behind TVG and gain, re full scale: what is seen in near water");
-  section.number(
-      "noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
-      "c / 2B of the receiver's band B, in which noise is even; 0: noise has the band of the pulse, and the "
-      "longer a tone, the lower is the noise");
-  section.number(
-      "tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
-      "c / 2B of the transducer's band B, there and back, which rounds the ends of a tone and keeps its "
-      "level; 0: sharp");
+  section.number_or_word(
+      "output_noise_db", model.output_noise_db, level_db, {{"off", -std::numeric_limits<double>::infinity()}},
+      "noise that is added after TVG and gain, re full scale; it is visible in near water");
+  section.number("noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
+                 "c / 2B of the receiver's band B, within which noise is even. 0: noise has the band of the "
+                 "pulse, so the longer a tone is, the lower is the noise");
+  section.number("tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
+                 "c / 2B of the transducer's two-way band B, which rounds the ends of a tone and keeps its "
+                 "level; 0: sharp ends");
   section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
-                 "scatterers in a cell at `texture_range_m`, growing with the range: sand 5 to 20, gravel "
-                 "and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
-  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0), "see there");
+                 "number of scatterers in a cell at `texture_range_m`, proportional to the range: sand 5 to "
+                 "20, gravel and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
+  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0),
+                 "range at which a cell contains `texture_nu` scatterers");
   if (model.texture_nu == 0.0) {
     section.warn_if_given("texture_range_m", "`texture_nu` is 0");
   }
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
                          {{"off", -std::numeric_limits<double>::infinity()}},
-                         "what a cubic metre of water scatters: -80 clear, -60 turbid or full of bubbles");
-  section.section("water_clutter", "single things that drift in the water: fish, weed, bubbles",
+                         "scattering strength of a cubic metre of water: -80 if the water is clear, -60 if "
+                         "it is turbid or full of bubbles");
+  section.section("water_clutter", "single objects that drift in the water: fish, weed, bubbles",
                   [&](YamlSection& inner) { read_water_clutter(inner, model.water_clutter); });
   section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
-                 "X of the gain X log10 r + 2 alpha r");
+                 "X of the time-varying gain (TVG), X log10 r + 2 alpha r");
   section.number("tvg_absorption_db_per_km", model.tvg_absorption_db_per_m, Range::from(0.0, 10'000.0),
-                 "alpha of this gain, one way: what the device believes the water to be", 1000.0);
+                 "alpha of the TVG, one way: the absorption that the device assumes for the water", 1000.0);
   section.default_is("tvg_absorption_db_per_km", "absorption of the water");
   section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0),
-                 "ceiling of this gain: 78 dB at 720 kHz in the sea, X being 40, are reached at 37 m");
+                 "ceiling of the TVG; with X = 40 at 720 kHz in the sea, 78 dB is reached at 37 m");
   section.number("gain_db", model.gain_db, level_db,
-                 "level of unit intensity after TVG, re full scale (80 dB where samples are decibels); the "
-                 "client's gain is added");
+                 "output level of unit intensity after TVG, re full scale (80 dB if samples are decibels); "
+                 "the client's gain is added");
   section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0),
-                 "output is exactly 0 nearer than this");
+                 "range below which the output is exactly 0");
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0),
-                 "extra noise in the middle of the fan, as recordings show; 0 is off");
-  section.number("noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
-                 "of a scanning head: the noise of its bearings differs by as much, in each sweep alike");
+                 "extra noise in the middle of the fan, as in recordings; 0: off");
+  section.number(
+      "noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
+      "scanning heads: amount by which the noise differs between bearings, the same in each sweep");
   section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
-                "of a scanning head: standard deviation of the bearings at which its sweeps stop");
+                "scanning heads: standard deviation of the bearings at which sweeps stop");
   if (!scanning) {
     for (const char* key : {"noise_by_bearing_db", "bearing_jitter_deg"}) {
       section.warn_if_given(key, "this head does not scan");
     }
   }
-  section.section("ring_down", "the transducer's own ringing after the pulse",
+  section.section("ring_down", "ringing of the transducer after the pulse",
                   [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
-  section.section("interference", "pings that another sonar or the vehicle disturbs",
+  section.section("interference", "noise from another sonar or from the vehicle, in some pings",
                   [&](YamlSection& inner) { read_interference(inner, model.interference); });
-  section.section("multipath", "ghosts in smooth surfaces, corner reflectors",
+  section.section("multipath", "ghosts in smooth surfaces, and corner reflectors",
                   [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
-  section.boolean("motion_within_ping", model.motion_within_ping,
-                  "receive beams turn with the vehicle while echoes return; needs a twist in the poses, or a "
-                  "trajectory. false: the whole ping is received at the pose it was sent from");
+  section.boolean(
+      "motion_within_ping", model.motion_within_ping,
+      "true: receive beams turn with the vehicle while echoes return, which requires a twist in the poses, "
+      "or a trajectory; false: the whole ping is received at the pose at which it was sent");
 }
 
 void read_paper_model(YamlSection& section, render::PaperModel& model) {
   using Speckle = render::PaperModel::Speckle;
   bool later_release = false;
-  section.choice("preset", later_release, {{"paper2017", false}, {"paper2018", true}},
-                 "what the other keys start from: the paper, or the authors' later releases (attenuation "
-                 "0.024 per m, folded Gaussian speckle of mean 0.95 and sd 0.30, floor 0.03)");
+  section.choice(
+      "preset", later_release, {{"paper2017", false}, {"paper2018", true}},
+      "start values of the other keys: `paper2017` as in the paper, `paper2018` as in the authors' later "
+      "releases (attenuation 0.024 per m, folded Gaussian speckle of mean 0.95 and sd 0.30, floor 0.03)");
   if (later_release) {
     model = render::PaperModel::release_2018();
   }
   section.number("sigmoid_slope", model.sigmoid_slope, Range::above(0.0, 1000.0),
-                 "beta of S(x) = 1 / (1 + exp(-beta (x - x0)))");
-  section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0), "x0");
-  section.boolean("two_sided", model.two_sided, "false: surfaces seen from behind are invisible");
-  section.boolean("legacy_bin_index", model.legacy_bin_index,
-                  "scale ranges to the last bin as the authors' code does: the last bin stays empty");
+                 "beta of the sigmoid S(x) = 1 / (1 + exp(-beta (x - x0)))");
+  section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0), "x0 of the sigmoid");
+  section.boolean("two_sided", model.two_sided,
+                  "true: surfaces are visible from both sides; false: surfaces are invisible from behind");
+  section.boolean(
+      "legacy_bin_index", model.legacy_bin_index,
+      "true: ranges are scaled to the last bin as in the authors' code, so the last bin stays empty");
   section.boolean("legacy_columns", model.legacy_columns,
-                  "a pixel column belongs whole to one beam, instead of being cut at beam edges");
+                  "true: each pixel column belongs to one beam; false: columns are cut at beam edges");
   section.boolean("elevation_mask", model.elevation_mask,
-                  "false: the whole planar view counts, so edge beams see less elevation");
+                  "false: the whole planar view counts, so edge beams cover less elevation");
   section.boolean("footprint", model.footprint,
                   "false: a sample is a point in range, so the image has holes");
   section.number("attenuation_per_m", model.attenuation_per_m, Range::from(0.0, 10.0),
-                 "a of exp(-2 a r), applied before the sigmoid");
-  section.number("gain", model.gain, Range::from(0.0, 1.0), "applied after speckle; 0.5 is neutral");
+                 "a of the attenuation exp(-2 a r), applied before the sigmoid");
+  section.number("gain", model.gain, Range::from(0.0, 1.0), "gain, applied after speckle; 0.5 is neutral");
   section.choice(
       "speckle", model.speckle,
       {{"gaussian", Speckle::gaussian}, {"folded_gaussian", Speckle::folded_gaussian}, {"off", Speckle::off}},
-      "multiplicative, drawn for each ping");
-  section.number("speckle_mean", model.speckle_mean, Range::from(0.0, 10.0), "of that factor");
-  section.number("speckle_sd", model.speckle_sd, Range::from(0.0, 10.0), "its standard deviation");
-  section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0), "the least that it is");
+      "distribution of the multiplicative speckle, drawn for each ping");
+  section.number("speckle_mean", model.speckle_mean, Range::from(0.0, 10.0), "mean of the speckle factor");
+  section.number("speckle_sd", model.speckle_sd, Range::from(0.0, 10.0),
+                 "standard deviation of the speckle factor");
+  section.number("speckle_floor", model.speckle_floor, Range::from(0.0, 1.0),
+                 "minimum of the speckle factor");
 }
 
 /// Whether an angle is a multiple of 5 degrees in radians, of at least 10, as people write it: with two
@@ -259,14 +269,14 @@ bool look_like_radians(const glm::dvec3& angles) {
 constexpr double longest_arm_m = 10.0;
 
 void read_mount(YamlSection& section, HeadConfig& head) {
-  section.introduce("T_vehicle_sonar, the pose of the sonar on the vehicle.");
+  section.introduce("The pose of the sonar on the vehicle, T_vehicle_sonar.");
   read_pose(section, head.T_vehicle_sonar,
-            "origin of the sonar in the vehicle frame (x forward, y to port, z up), metres",
-            "as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
+            "origin of the sonar in the vehicle frame (x forward, y to port, z up)",
+            "rotation, as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
   section.text("from_world", head.mount_from_world,
-               "instead of the other two: the sonar of the world ([worlds.md](worlds.md#sonars)) that says "
-               "both, `bow`, or as much of `rov::sonar_link::bow` as tells it from others. It has to "
-               "be of this head's type");
+               "instead of the other two keys: sonar of the world that gives both "
+               "([worlds.md](worlds.md#sonars)). Its name is `bow`, or as much of `rov::sonar_link::bow` as "
+               "distinguishes it from others. It must have the type of this head");
   if (const double arm_m = glm::length(head.T_vehicle_sonar.position_m); arm_m > longest_arm_m) {
     section.warn(
         "position_m",
@@ -306,7 +316,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context,
   const HeadKind* kind = kinds.front();
   report_model(section, kinds);
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
-  const bool known = section.choice("type", kind, types, "device") && section.has("type");
+  const bool known = section.choice("type", kind, types, "type of device") && section.has("type");
   if (!known && !section.describing()) {
     section.ignore_rest();  // which keys a head of another type has is not known
     return {};
@@ -318,16 +328,16 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   head.acoustics.sampling = context.sampling;
   head.adaptive_quality = context.adaptive_quality;
   section.require("name", "a name of this head for the log");
-  section.text("name", head.name, "unique; appears in every log line of this head");
-  section.section("mount", "where the sonar sits on the vehicle",
+  section.text("name", head.name, "unique name; appears in every log line of this head");
+  section.section("mount", "pose of the sonar on the vehicle",
                   [&](YamlSection& inner) { read_mount(inner, head); });
   section.boolean("hides_vehicle", head.hides_vehicle,
-                  "leaves the vehicle's own model (`world.vehicle_model`) out of the images of this head; "
-                  "other heads may still show it");
-  section.section("dump", "pings written to disk as the renderer handed them over", [&](YamlSection& inner) {
+                  "true: the vehicle's own model (`world.vehicle_model`) is left out of the images of this "
+                  "head; other heads may still show it");
+  section.section("dump", "writes pings to disk as the renderer returned them", [&](YamlSection& inner) {
     inner.require("directory", "a folder to write to");
     inner.path("directory", head.dump_directory.emplace(), context.folder,
-               "folder, made if needed; one file per ping, so it fills up fast");
+               "folder, created if it does not exist; it receives one file per ping, so it fills quickly");
   });
 }
 
@@ -339,34 +349,35 @@ void read_single_beam(YamlSection& section, render::Aperture& aperture) {
 
 void read_receive_array(YamlSection& section, render::Aperture& aperture) {
   section.angle("receive_beamwidth_deg", aperture.receive_beamwidth_rad, Range::from(0.1, 60.0),
-                "-3 dB width of one beam at broadside: the pattern of the beams, and over how many beams "
-                "speckle and noise are correlated");
+                "-3 dB width of one beam at broadside. It sets the pattern of the beams, and over how many "
+                "beams speckle and noise are correlated");
   using Taper = render::Aperture::Taper;
   using Azimuth = render::Aperture::Azimuth;
   section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}},
-                 "beams overlap and have side lobes as a straight array's do, or receive what lies between "
-                 "their edges and nothing else");
+                 "`array`: beams overlap and have side lobes, as in a straight array; `ideal`: beams receive "
+                 "only echoes between their edges");
   section.choice("taper", aperture.taper,
                  {{"hamming", Taper::hamming},
                   {"hann", Taper::hann},
                   {"kaiser", Taper::kaiser},
                   {"uniform", Taper::uniform}},
-                 "weights of the array's elements: side lobes of -43, -31, -21 (beta 2.5) or -13 dB");
+                 "weights of the array's elements: `hamming` has side lobes of -43 dB, `hann` of -31 dB, "
+                 "`kaiser` (beta 2.5) of -21 dB, `uniform` of -13 dB");
   section.integer("fine_beams", aperture.fine_beams, 1, 16,
-                  "with `array`: a bearing is known to one part in this many of a beam");
+                  "with `array`: number of parts of a beam to which a bearing is resolved");
   using Bearing = render::Aperture::Bearing;
   section.choice("bearing", aperture.bearing, {{"planar", Bearing::planar}, {"conical", Bearing::conical}},
-                 "with `array`: a beam looks at an azimuth, or, as a straight array does, along a cone: what "
-                 "lies off the horizontal appears nearer to the axis");
+                 "with `array`: a `planar` beam looks at an azimuth; a `conical` beam looks along a cone, as "
+                 "in a straight array, so echoes from off the horizontal appear nearer to the axis");
   section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0),
-                 "with `array`: standard deviation of the elements' amplitude errors, as a share; they let "
-                 "strong echoes leak into all beams. The errors belong to `seed`");
+                 "with `array`: standard deviation of the elements' amplitude errors, as a fraction. They "
+                 "let strong echoes leak into all beams. `seed` draws the errors");
   section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0),
-                "the same of their phase errors");
+                "with `array`: standard deviation of the elements' phase errors");
   std::uint64_t element_seed = 0;
   section.integer("element_seed", element_seed, 0, max_u64,
-                  "draws the errors of the elements in the place of `seed`: with a fixed value every `seed` "
-                  "gives other noise of the same array");
+                  "seed of the element errors, instead of `seed`; with a fixed value, each `seed` gives "
+                  "different noise of the same array");
   section.default_is("element_seed", "`seed`");
   if (section.has("element_seed")) {
     aperture.element_seed = element_seed;
@@ -375,19 +386,20 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
 
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
-  section.choice("mode", settings.model,
-                 {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
-                 "sonar equation with Rayleigh speckle and noise, or the model of Cerqueira et al. 2017");
+  section.choice(
+      "mode", settings.model, {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
+      "`physical`: sonar equation with Rayleigh speckle and noise; `paper`: model of Cerqueira et al. 2017");
   section.integer("seed", head.seed, 0, max_u64,
-                  "of speckle and noise: the same seed, poses and pings give the same bytes");
+                  "seed of speckle and noise; the same seed, poses and pings give the same bytes");
   section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0),
-                "-3 dB full width");
+                "-3 dB full width of the vertical beam");
   using Elevation = render::Aperture::Elevation;
   section.choice(
       "elevation_pattern", settings.aperture.elevation,
       {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}, {"sinc_two_way", Elevation::sinc_two_way}},
-      "sharp vertical edges, the pattern of a line array, or its square, as where transmitting and receiving "
-      "share the array's height; the last two are followed to 1.25 beamwidths on either side");
+      "`top_hat`: sharp vertical edges; `sinc`: pattern of a line array; `sinc_two_way`: its square, for a "
+      "head that transmits and receives with the same array height. The last two are rendered to 1.25 "
+      "beamwidths on either side");
   const bool scanning = settings.aperture.beam_count() == 1;
   const bool paper = settings.model == render::Model::paper;
   section.warn_if_given(paper ? "physical" : "paper",
