@@ -22,8 +22,8 @@ void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket
                   std::string_view meaning) {
   section.sections(key, meaning, [&](YamlSection& inner) {
     Socket socket;
-    read_socket(inner, socket.bind, socket.allow, serial_endpoint_form, "where clients come",
-                "who may; up to 16 connections at a time");
+    read_socket(inner, socket.bind, socket.allow, serial_endpoint_form, "address for clients",
+                "address blocks of clients that may use it; up to 16 connections at a time");
     report_if_taken(inner, socket.bind, sockets);
     sockets.push_back(std::move(socket));
   });
@@ -36,8 +36,8 @@ void read_ptys(YamlSection& section, const std::filesystem::path& folder,
     SerialPtyConfig pty;
     inner.path(
         "link", pty.link, folder,
-        "symbolic link to the pseudo terminal, whose own name (`/dev/pts/3`) is new at each start. Replaces "
-        "a link that leads to a pseudo terminal, and nothing else; gone when the daemon ends");
+        "symbolic link to the pseudo terminal, whose own name (such as `/dev/pts/3`) is new at each start. "
+        "sonard replaces only a link that leads to a pseudo terminal, and removes its link when it ends");
     pty.link = pty.link.lexically_normal();
     const bool taken = std::any_of(ptys.begin(), ptys.end(), [&](const SerialPtyConfig& other) {
       return other.link == pty.link && !pty.link.empty();
@@ -47,7 +47,8 @@ void read_ptys(YamlSection& section, const std::filesystem::path& folder,
     }
     ptys.push_back(std::move(pty));
   };
-  section.sections("pty", "pseudo terminals: serial devices of this machine; `- {}` is one without a link",
+  section.sections("pty",
+                   "pseudo terminals, used like serial devices of this machine; `- {}` is one without a link",
                    read_pty);
   section.default_is("pty", "[]", "[]");
 }
@@ -56,10 +57,12 @@ void read_faults(YamlSection& section, LinkFaults& faults) {
   constexpr Range probability = Range::from(0.0, 1.0);
   constexpr Range up_to_a_minute = Range::from(0.0, 60'000.0);
   section.number("loss", faults.loss, probability, "probability that a datagram is lost");
-  section.number("duplicate", faults.duplicate, probability, "probability that it comes twice");
-  section.number("reorder", faults.reorder, probability, "probability that the next one overtakes it");
-  section.duration("delay_ms", faults.delay, up_to_a_minute, "added to each");
-  section.duration("jitter_ms", faults.jitter, up_to_a_minute, "plus up to so much, drawn for each");
+  section.number("duplicate", faults.duplicate, probability, "probability that a datagram arrives twice");
+  section.number("reorder", faults.reorder, probability,
+                 "probability that the next datagram overtakes a datagram");
+  section.duration("delay_ms", faults.delay, up_to_a_minute, "delay of each datagram");
+  section.duration("jitter_ms", faults.jitter, up_to_a_minute,
+                   "maximum of the extra delay, drawn for each datagram");
 }
 
 }  // namespace
@@ -87,19 +90,22 @@ void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const T
 
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder) {
   section.introduce(
-      "Any number of each kind, at least one in all. Every client gets every frame, and what they send comes "
-      "in the order in which it arrives. Clients may come and go at any byte. The log says where each port "
-      "is to be found.");
+      "At least one of `tcp`, `udp` and `pty` is required, and each may have any number of entries. Every "
+      "client receives every frame. The head receives the clients' bytes in the order of their arrival. "
+      "Clients may connect and disconnect at any byte. The log names the place of each port.");
   SerialLinkConfig link;
   read_sockets(section, "tcp", link.tcp,
-               "raw bytes to and from each client, as serial device servers do; no telnet, no RFC 2217");
-  read_sockets(section, "udp", link.udp, "one datagram for each frame, to the peer that sent last");
+               "TCP ports with raw bytes to and from each client, as in serial device servers; no telnet, no "
+               "RFC 2217");
+  read_sockets(section, "udp", link.udp,
+               "UDP ports with one datagram for each frame, to the peer that sent last");
   read_ptys(section, folder, link.pty);
-  section.integer("baud", link.baud, 300, 4'000'000,
-                  "bytes take ten bits each, in both directions. A head that keeps the pace of its line does "
-                  "so without that; this makes single frames as slow as they are: at 115200 one of 445 bytes "
-                  "arrives 38.6 ms after it was sent");
-  section.default_is("baud", "as fast as it goes");
+  section.integer(
+      "baud", link.baud, 300, 4'000'000,
+      "simulated speed of the line in bits per second, with ten bits per byte, in both directions. A head "
+      "that keeps the pace of its line does so without this key. This key also delays single frames as on "
+      "the line: at 115200, a frame of 445 bytes arrives 38.6 ms after it was sent");
+  section.default_is("baud", "no limit");
   if (link.tcp.empty() && link.udp.empty() && link.pty.empty()) {
     section.report("tcp",
                    "no client could reach the device (expected tcp, udp or pty with at least one item)");
@@ -108,21 +114,20 @@ SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::p
 }
 
 void read_lock_to_first(YamlSection& section, bool& lock_to_first, std::string_view free_again) {
-  section.choice(
-      "lock_to_first", lock_to_first, {{"off", false}, {"on", true}},
-      fmt::format("`on`: the first address whose commands come has the head, and those of all others "
-                  "are dropped, until {} ([security.md](security.md))",
-                  free_again));
+  section.choice("lock_to_first", lock_to_first, {{"off", false}, {"on", true}},
+                 fmt::format("`on`: the first address that sends commands controls the head. Commands from "
+                             "all other addresses are dropped until {} ([security.md](security.md))",
+                             free_again));
 }
 
 void read_link_faults(YamlSection& section, LinkConfig& link) {
   section.introduce(
-      "Faults are drawn from the seed and the number of the datagram alone: the same traffic meets the same "
-      "fate.");
-  section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max(), "of the faults");
-  section.section("to_surface", "faults on what the head sends",
+      "Faults depend only on the seed and the number of the datagram, so the same traffic meets the same "
+      "faults.");
+  section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max(), "seed of the faults");
+  section.section("to_surface", "faults of datagrams that the head sends",
                   [&](YamlSection& inner) { read_faults(inner, link.to_client); });
-  section.section("from_surface", "faults on what it receives",
+  section.section("from_surface", "faults of datagrams that the head receives",
                   [&](YamlSection& inner) { read_faults(inner, link.from_client); });
 }
 

@@ -140,7 +140,8 @@ GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, 
   read_identity(section, config);
   section.require("network", "a mapping with alternate_address and netmask");
   section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config); });
-  read_lock_to_first(section, config.device.lock_to_first, "it is silent for `timing.surface_timeout_ms`");
+  read_lock_to_first(section, config.device.lock_to_first,
+                     "the first address is silent for `timing.surface_timeout_ms`");
   section.section("timing", "rates, time-outs, pacing",
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("acoustics", "how its image is formed",

@@ -114,7 +114,8 @@ MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, 
   section.require("serial", "a mapping with tcp, udp or pty");
   section.section("serial", "how clients reach the line",
                   [&](YamlSection& inner) { config.serial = read_serial_link(inner, context.folder); });
-  read_lock_to_first(section, config.serial.lock_to_first, "it is silent for 10 s; others still receive");
+  read_lock_to_first(section, config.serial.lock_to_first,
+                     "the first address is silent for 10 s; other clients still receive answers");
   section.section("device", "what it says of itself, and choices in which drivers and heads differ",
                   [&](YamlSection& inner) { read_device(inner, config.device); });
   section.section("timing", "reboot, pace", [&](YamlSection& inner) { read_timing(inner, config.device); });

@@ -180,7 +180,7 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
     section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
   }
   read_lock_to_first(section, config.device.lock_to_first,
-                     "it is silent for `timing.idle_timeout_ms`, which then must not be 0");
+                     "the first address is silent for `timing.idle_timeout_ms`, which must not be 0");
   config.serial.lock_to_first = config.device.lock_to_first;
   section.section("discovery", "answers those who look for heads on the network; without it none is found",
                   [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
