@@ -66,8 +66,9 @@ void read_status_destination(YamlSection& section, std::string_view address_key,
                              StatusDestination& status) {
   using Mode = StatusDestination::Mode;
   const std::string meaning = fmt::format(
-      "where status packets go, once a second: 255.255.255.255 as the device does, the broadcast address of "
-      "`{}` under `netmask`, or these hosts",
+      "destination of the status packets, sent once per second: `limited_broadcast` is 255.255.255.255, as "
+      "on the device; `directed_broadcast` is the broadcast address of `{}` under `netmask`; a list names "
+      "the hosts",
       address_key);
   if (!section.is_list("status")) {
     section.choice(
