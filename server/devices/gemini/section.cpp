@@ -22,36 +22,38 @@ void read_identity(YamlSection& section, GeminiConfig& config) {
   // 0 means "not set" and 1 is reserved for production: clients send nothing to either
   // (docs/protocols/gemini.md 1.4).
   section.require("sonar_id", "a whole number from 2 to 65535");
-  section.integer("sonar_id", config.device.sonar_id, 2, 65535, "unique; clients never talk to 0 and 1");
+  section.integer("sonar_id", config.device.sonar_id, 2, 65535,
+                  "unique ID of the head; clients never send to 0 and 1");
 }
 
 void read_network(YamlSection& section, GeminiConfig& config) {
   gemini::DeviceConfig& device = config.device;
   section.require("alternate_address", "the address that clients find in the status packets");
-  config.interface = read_own_address(
-      section, "alternate_address", device.alternate_address,
-      "the address that clients find in the status packets and send to, or the interface whose "
-      "address it is, and which is followed when it changes; the head must be reachable there");
+  config.interface =
+      read_own_address(section, "alternate_address", device.alternate_address,
+                       "address that clients find in the status packets and send to, or the interface with "
+                       "this address. If the address of the interface changes, the head follows it. Clients "
+                       "must be able to reach the head at this address");
   if (section.has("alternate_address")) {
     check_host_address(section, "alternate_address", device.alternate_address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  config.netmask_interface = read_own_netmask(
-      section, "netmask", device.netmask,
-      "the true mask of the interface served: some clients send nothing when it is not that of "
-      "their own interface");
+  config.netmask_interface =
+      read_own_netmask(section, "netmask", device.netmask,
+                       "true mask of the interface on which the head is served. Some clients send nothing if "
+                       "it differs from the mask of their own interface");
   check_inside_network(section, "alternate_address", device.alternate_address, device.netmask);
   const std::string fixed_address = address_text(device.fixed_address);
   section.parsed("fixed_address", device.fixed_address, &parse_ipv4, address_form,
-                 "the hard-wired address of a 720i, reported in the status packets; served too where the "
-                 "machine has it and `bind` is 0.0.0.0");
+                 "hard-wired address of a 720i, reported in the status packets. If this machine has it and "
+                 "`bind` is 0.0.0.0, the head is served there too");
   section.default_is("fixed_address", fixed_address, '"' + fixed_address + '"');
   check_host_address(section, "fixed_address", device.fixed_address);
 
   config.bind_address = device.alternate_address;
   section.place_default("bind", "alternate_address");
   section.parsed("bind", config.bind_address, &parse_ipv4, bind_form,
-                 "address of the command socket; 0.0.0.0 for all of the machine");
+                 "address of the command socket; 0.0.0.0 is all addresses of this machine");
   section.default_is("bind", "the alternate address");
   if (config.bind_address != 0 && config.bind_address != device.alternate_address) {
     section.warn("bind",
@@ -59,54 +61,59 @@ void read_network(YamlSection& section, GeminiConfig& config) {
                              address_text(device.alternate_address), address_text(config.bind_address)));
   }
   section.integer("command_port", config.command_port, 1, 65535,
-                  "commands arrive here, replies come from here");
+                  "port that receives commands and sends replies");
   section.integer("surface_port", device.topside_port, 1, 65535,
-                  "every reply and status packet goes to this port");
+                  "destination port of all replies and status packets");
 
   const std::uint16_t id = device.sonar_id;
   device.mac = {
       0x00, 0x12, 0x34, 0x00, static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 255U)};
-  section.parsed("mac", device.mac, &parse_mac, mac_form, "reported in the status packets");
+  section.parsed("mac", device.mac, &parse_mac, mac_form, "MAC address in the status packets");
   section.default_is("mac", "00:12:34:00 and the sonar ID");
-  section.boolean("accept_id_zero", device.accept_id_zero, "also take commands with the header ID 0");
+  section.boolean("accept_id_zero", device.accept_id_zero,
+                  "true: the head also accepts commands with the header ID 0");
 
   read_status_destination(section, "alternate_address", device.netmask, config.status);
-  read_allow_list(section, config.bind_address, config.allow, "clients that are served");
+  read_allow_list(section, config.bind_address, config.allow,
+                  "address blocks of clients that the head serves");
   warn_of_status_without_access(section, config.status, config.allow);
 }
 
 void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms),
-                   "from status packet to status packet");
+                   "period of the status packets");
   section.duration("min_ping_period_ms", device.min_ping_period, Range::from(1.0, minute_ms),
-                   "shortest time from ping to ping, whatever the client asks");
+                   "shortest time from ping to ping, whatever the client requests");
   section.duration("surface_timeout_ms", device.topside_timeout, Range::from(10.0, 3600.0 * 1000.0),
-                   "without a command for this long the head forgets its topside and suspends pinging");
+                   "time without a command after which the head drops its topside and suspends pinging");
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms),
                    "silence after a reboot command");
-  section.duration("line_period_us", device.line_period, Range::from(1.0, 10'000.0),
-                   "least mean distance of ping datagrams: a line on a 100 Mbit/s link");
-  section.integer("burst_lines", device.burst_lines, 1, 1024, "most ping datagrams sent back to back");
+  section.duration(
+      "line_period_us", device.line_period, Range::from(1.0, 10'000.0),
+      "minimum mean time between ping datagrams; the default is the time of a line on a 100 Mbit/s link");
+  section.integer("burst_lines", device.burst_lines, 1, 1024,
+                  "maximum number of ping datagrams sent back to back");
   section.duration("retry_hold_ms", device.retry_hold, Range::from(0.0, 10'000.0),
-                   "a new ping waits this long after the last request to send lines again");
+                   "time that a new ping waits after the last request to send lines again");
   section.duration("retry_hold_max_ms", device.retry_hold_max, Range::from(0.0, 10'000.0),
-                   "but never longer than this");
+                   "maximum of the wait by `retry_hold_ms`");
   if (device.retry_hold_max < device.retry_hold) {
     section.report("retry_hold_max_ms", "is shorter than retry_hold_ms (expected at least as long)");
   }
-  section.duration(
-      "render_lead_ms", device.render_lead, Range::from(0.0, 1000.0),
-      "how long before its transmit time a ping may be rendered. 0: when the pose at that time is known. "
-      "More raises the ping rate of a slow renderer; the pose is then extrapolated by so much");
+  section.duration("render_lead_ms", device.render_lead, Range::from(0.0, 1000.0),
+                   "how long before its transmit time a ping may be rendered. 0: rendering starts when the "
+                   "pose at the transmit time is known. A longer time raises the ping rate of a slow "
+                   "renderer, and the pose is then extrapolated by this time");
 }
 
 void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
-  section.introduce("The device's own law is not published; this one is inferred from what clients send.");
+  section.introduce(
+      "The device's own gain law is not published. This law is inferred from the values that clients send.");
   section.number("reference_spreading", law.reference_spreading, Range::above(0.0, 1023.0),
-                 "value of the `spreading` field that gives 0 dB: what early clients send for 50 percent. "
-                 "Later ones send 213");
+                 "value of the `spreading` field that gives 0 dB. The default is the value that early "
+                 "clients send for 50 percent; later clients send 213");
   section.number("db_per_percent", law.db_per_percent, Range::from(0.0, 10.0),
-                 "dB per percent of gain, as early clients count it");
+                 "dB per percent of gain, with the percentages of early clients");
   section.number("nominal_main_gain_db", law.nominal_main_gain_db, Range::from(0.0, 100.0),
                  "main gain at which the level is 0 dB");
 }
@@ -116,13 +123,14 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
   read_receive_array(section, head.acoustics.aperture);
   using Pulse = render::PhysicalModel::Pulse;
   section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
-                 "as long as the client asks for, or without length");
-  section.boolean("snap_sound_speed", config.device.snap_sound_speed,
-                  "report speeds of sound on the grid of the real head, 1400 m/s and steps of 3.2 m/s");
+                 "`tone`: as long as the client requests; `point`: no length");
+  section.boolean(
+      "snap_sound_speed", config.device.snap_sound_speed,
+      "true: the head reports sound speeds on the grid of the real head, 1400 m/s and steps of 3.2 m/s");
   section.boolean("steering_error", config.steering_error,
-                  "where the water has another speed of sound than the ping configuration says, beams point "
-                  "where those of a flat array do then; false: only ranges are off");
-  section.section("gain_law", "what the client's gain does",
+                  "true: if the sound speed of the water differs from the ping configuration, beams point in "
+                  "wrong directions, as in a flat array; false: only ranges are wrong");
+  section.section("gain_law", "effect of the client's gain",
                   [&](YamlSection& inner) { read_gain_law(inner, config.device.gain); });
 }
 
@@ -131,7 +139,7 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
 GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Tritech Gemini 720i ([protocols/gemini.md](protocols/gemini.md)). The x axis of its mount is the "
-      "acoustic axis, so the down tilt of the head is part of the mount.");
+      "acoustic axis, so the mount includes the down tilt of the head.");
   GeminiConfig config;
   apply_water(section, context, gemini::carrier_hz, head);
   config.device.water_sound_speed_mps = context.water_sound_speed_mps;
@@ -139,20 +147,20 @@ GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, 
   read_common(section, context, head);
   read_identity(section, config);
   section.require("network", "a mapping with alternate_address and netmask");
-  section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config); });
+  section.section("network", "addresses and ports", [&](YamlSection& inner) { read_network(inner, config); });
   read_lock_to_first(section, config.device.lock_to_first,
                      "the first address is silent for `timing.surface_timeout_ms`");
-  section.section("timing", "rates, time-outs, pacing",
+  section.section("timing", "rates, timeouts, pacing",
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
-  section.section("acoustics", "how its image is formed",
+  section.section("acoustics", "formation of the image",
                   [&](YamlSection& inner) { read_gemini_acoustics(inner, head, config); });
-  section.section("link", "faults put on its datagrams, to test drivers with",
+  section.section("link", "faults of the head's datagrams, to test drivers",
                   [&](YamlSection& inner) { read_link_faults(inner, config.link); });
   section.section("trigger", "external trigger input", [&](YamlSection& inner) {
     inner.require("bind", trigger_form.expected);
     inner.parsed("bind", config.trigger.emplace(), &parse_endpoint, trigger_form,
-                 "every UDP datagram that arrives here counts as one edge of the external trigger. Only "
-                 "senders in the head's `network.allow` count");
+                 "UDP address of the trigger input. Each datagram counts as one edge of the external "
+                 "trigger. Only senders in the head's `network.allow` count");
   });
   return config;
 }
