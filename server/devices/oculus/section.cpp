@@ -20,10 +20,10 @@ constexpr double minute_ms = 60'000.0;
 void read_identity(YamlSection& section, oculus::DeviceConfig& device) {
   enum class Name : std::uint8_t { m750d, m1200d } name = Name::m750d;
   section.choice("model", name, {{"m750d", Name::m750d}, {"m1200d", Name::m1200d}},
-                 "which says frequencies, apertures and ranges");
+                 "model of the device; it sets frequencies, apertures and ranges");
   device.plan.model = name == Name::m750d ? oculus::m750d : oculus::m1200d;
   section.integer("device_id", device.id, 1, 65535,
-                  "unique; clients drop what does not have the ID of the status");
+                  "unique ID of the head; clients drop messages without the ID of the status packets");
 }
 
 void read_network(YamlSection& section, OculusConfig& config) {
@@ -31,83 +31,90 @@ void read_network(YamlSection& section, OculusConfig& config) {
   section.require("address", "the address that clients connect to");
   config.interface = read_own_address(
       section, "address", device.address,
-      "the address that clients find in the status packets and connect to: one of this machine, "
-      "or the interface whose address it is, and which is followed when it changes");
+      "address that clients find in the status packets and connect to: an address of this machine, or the "
+      "interface with this address. If the address of the interface changes, the head follows it");
   if (section.has("address")) {
     check_host_address(section, "address", device.address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  config.netmask_interface = read_own_netmask(section, "netmask", device.netmask, "of that interface");
+  config.netmask_interface =
+      read_own_netmask(section, "netmask", device.netmask, "netmask of that interface");
   check_inside_network(section, "address", device.address, device.netmask);
-  section.integer("tcp_port", config.tcp_port, 1, 65535, "the head listens here; clients know no other");
-  section.integer("status_port", config.status_port, 1, 65535, "status packets go to this port");
+  section.integer("tcp_port", config.tcp_port, 1, 65535,
+                  "TCP port of the head; clients have the default built in");
+  section.integer("status_port", config.status_port, 1, 65535, "destination port of the status packets");
   const std::uint16_t id = device.id;
   device.mac = {
       0x00, 0x1E, 0x63, 0x00, static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 255U)};
-  section.parsed("mac", device.mac, &parse_mac, mac_form, "reported in the status packets");
+  section.parsed("mac", device.mac, &parse_mac, mac_form, "MAC address in the status packets");
   section.default_is("mac", "00:1e:63:00 and the device ID");
   read_status_destination(section, "address", device.netmask, config.status);
-  read_allow_list(section, device.address, config.allow, "clients that are served");
+  read_allow_list(section, device.address, config.allow, "address blocks of clients that the head serves");
   warn_of_status_without_access(section, config.status, config.allow);
 }
 
 void read_timing(YamlSection& section, oculus::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms),
-                   "from status packet to status packet");
+                   "period of the status packets");
   section.duration("dummy_period_ms", device.dummy_period, Range::from(10.0, minute_ms),
-                   "how often a head that does not ping tells its client that it is there");
+                   "period of the Dummy messages to the client while the head does not ping");
   section.duration("ping_overhead_ms", device.plan.ping_overhead, Range::above(0.0, 1000.0),
-                   "of each ping, beside the time until the last echo is back");
+                   "overhead of each ping, in addition to the time until the last echo is back");
 }
 
 void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
-  section.introduce("Where firmware differs, or nobody knows.");
+  section.introduce("Behaviour that differs between firmware versions, or is unknown.");
   section.integer("most_ranges", device.plan.most_ranges, 16, 8192,
-                  "rows of an image; longer ranges have coarser rows");
+                  "maximum number of rows in an image; longer ranges have coarser rows");
   section.boolean("rescales_high_frequency_gain", device.plan.rescales_high_frequency_gain,
-                  "reports 40 + 0.6 times the gain at the high frequency: one driver undoes that, and waits "
-                  "for it");
-  section.boolean("reports_sound_speed_used", device.plan.reports_sound_speed_used,
-                  "where a client sends 0 for the speed of sound, reports the one that is used instead");
+                  "true: at the high frequency, the head reports 40 + 0.6 times the gain. One driver "
+                  "reverses this rescaling, and waits for the result");
+  section.boolean(
+      "reports_sound_speed_used", device.plan.reports_sound_speed_used,
+      "true: if a client sends a sound speed of 0, the head reports the speed that it used instead");
   section.boolean("reports_version_1", device.plan.reports_version_1,
-                  "a ping that answers a fire of version 0 says version 1 in its header; false: version 0");
-  section.choice(
-      "heading", device.plan.heading_sign, {{"clockwise", 1}, {"counter_clockwise", -1}, {"zero", 0}},
-      "how the heading of a ping grows from north, the y axis of the world; `zero`: it is always 0");
+                  "version in the header of a ping that answers a fire of version 0: true: 1; false: 0");
+  section.choice("heading", device.plan.heading_sign,
+                 {{"clockwise", 1}, {"counter_clockwise", -1}, {"zero", 0}},
+                 "direction in which the heading of a ping grows from north, the y axis of the world; "
+                 "`zero`: the heading is always 0");
   section.choice("pitch", device.plan.pitch_sign, {{"nose_up", 1}, {"nose_down", -1}, {"zero", 0}},
-                 "which pitch is positive; `zero`: it is always 0");
+                 "positive direction of the pitch; `zero`: the pitch is always 0");
   section.choice("roll", device.plan.roll_sign, {{"starboard_down", 1}, {"port_down", -1}, {"zero", 0}},
-                 "which roll is positive; `zero`: it is always 0");
-  section.choice(
-      "pressure", device.plan.surface_pressure_bar,
-      {{"absolute", device.plan.surface_pressure_bar}, {"gauge", 0.0}},
-      "pressure at the surface: that of the air, 1.013 bar, or 0. It is of the depth below the water "
-      "surface of the world; a world without a surface has `water.depth_m`");
-  section.text("log_text", device.log_text, "sent to each client that connects; one driver waits for it");
+                 "positive direction of the roll; `zero`: the roll is always 0");
+  section.choice("pressure", device.plan.surface_pressure_bar,
+                 {{"absolute", device.plan.surface_pressure_bar}, {"gauge", 0.0}},
+                 "reported pressure at the surface: `absolute` is the air pressure, 1.013 bar; `gauge` is 0. "
+                 "The pressure includes the depth below the water surface of the world, or `water.depth_m` "
+                 "if the world has no surface");
+  section.text("log_text", device.log_text,
+               "text sent to each client that connects; one driver waits for it");
   section.default_is("log_text", "two lines that name sonard");
 }
 
 void read_aperture(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
   section.number("aperture_deg", mode.horizontal_deg, Range::from(1.0, 170.0),
-                 "from the first beam to the last");
+                 "angle from the first beam to the last");
   section.number("range_cell_mm", acoustics.range_cell_m, Range::above(0.0, 1000.0),
-                 "c / 2B of the chirp: how far apart two echoes are told apart", 1e3);
-  section.default_is("aperture_deg", "that of the model");
-  section.default_is("range_cell_mm", "that of the model");
+                 "range resolution, c / 2B of the chirp: the distance at which two echoes are separate", 1e3);
+  section.default_is("aperture_deg", "set by `model`");
+  section.default_is("range_cell_mm", "set by `model`");
 }
 
 void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
   read_aperture(section, mode, acoustics);
   section.angle("vertical_beamwidth_deg", acoustics.vertical_beamwidth_rad, Range::above(0.0, 170.0),
-                "-3 dB full width");
+                "-3 dB full width of the vertical beam");
   section.angle("receive_beamwidth_deg", acoustics.receive_beamwidth_rad, Range::from(0.1, 60.0),
                 "-3 dB width of one beam at broadside");
-  section.default_is("vertical_beamwidth_deg", "that of the model");
-  section.default_is("receive_beamwidth_deg", "that of the model");
+  section.default_is("vertical_beamwidth_deg", "set by `model`");
+  section.default_is("receive_beamwidth_deg", "set by `model`");
 }
 
 void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig& config) {
-  section.introduce("At the low frequency, and at both where `high_frequency` has no such key.");
+  section.introduce(
+      "These keys apply to the low frequency. They also apply to the high frequency unless `high_frequency` "
+      "has the key.");
   oculus::Model& model = config.device.plan.model;
   OculusModeAcoustics& low = config.modes[0];
   render::Aperture& aperture = head.acoustics.aperture;
@@ -118,16 +125,17 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
   low.vertical_beamwidth_rad = aperture.vertical_beamwidth_rad;
   low.receive_beamwidth_rad = aperture.receive_beamwidth_rad;
   read_aperture(section, model.modes[0], low);
-  section.default_is("vertical_beamwidth_deg", "that of the model");
-  section.default_is("receive_beamwidth_deg", "that of the model");
+  section.default_is("vertical_beamwidth_deg", "set by `model`");
+  section.default_is("receive_beamwidth_deg", "set by `model`");
   using Pulse = render::PhysicalModel::Pulse;
   section.choice(
       "pulse", head.acoustics.physical.pulse,
       {{"windowed_chirp", Pulse::windowed_chirp}, {"chirp", Pulse::chirp}, {"point", Pulse::point}},
-      "as a matched filter leaves it, under a window or not, or without length");
+      "output of a matched filter: `windowed_chirp` under a window, `chirp` without a window; `point`: no "
+      "length");
   section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
-                 "dB per percent of gain; 50 percent are 0 dB");
-  section.section("high_frequency", "what differs at the high frequency",
+                 "dB per percent of gain; 50 percent is 0 dB");
+  section.section("high_frequency", "values that differ at the high frequency",
                   [&](YamlSection& inner) { read_high_frequency(inner, model.modes[1], config.modes[1]); });
 }
 
@@ -154,8 +162,7 @@ void apply_water_to_modes(const HeadContext& context, const HeadConfig& head, Oc
 OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Blueprint Subsea Oculus ([protocols/oculus.md](protocols/oculus.md)). The x axis of its mount is "
-      "the "
-      "acoustic axis, so the down tilt of the head is part of the mount.");
+      "the acoustic axis, so the mount includes the down tilt of the head.");
   OculusConfig config;
   read_identity(section, config.device);
   config.modes = oculus_modes(config.device.plan.model);
@@ -166,12 +173,12 @@ OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, 
   config.device.waits_for_permission = context.pings_by_source;
   read_common(section, context, head);
   section.require("network", "a mapping with address and netmask");
-  section.section("network", "addresses", [&](YamlSection& inner) { read_network(inner, config); });
+  section.section("network", "addresses and ports", [&](YamlSection& inner) { read_network(inner, config); });
   section.section("timing", "rates", [&](YamlSection& inner) { read_timing(inner, config.device); });
-  section.section("firmware", "habits of its firmware",
+  section.section("firmware", "behaviour of the firmware",
                   [&](YamlSection& inner) { read_firmware(inner, config.device); });
   config.device.plan.pressure_bar = oculus::pressure_bar(context.water.depth_m, config.device.plan);
-  section.section("acoustics", "how its image is formed",
+  section.section("acoustics", "formation of the image",
                   [&](YamlSection& inner) { read_oculus_acoustics(inner, head, config); });
   return config;
 }
