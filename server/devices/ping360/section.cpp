@@ -22,28 +22,30 @@ void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& confi
   const auto read = [&](YamlSection& inner) {
     UdpTransportConfig socket;
     read_socket(inner, socket.bind, socket.allow, endpoint_form,
-                "12345 is the port of the unit with an Ethernet plug, 9092 that of a vehicle's bridge",
-                "address blocks of clients that are answered");
+                "UDP address that clients send to; 12345 is the port of the unit with an Ethernet plug, 9092 "
+                "the port of a vehicle's bridge",
+                "address blocks of clients that the head answers");
     report_if_taken(inner, socket.bind, config.udp);
     socket.link = link;
     config.udp.push_back(std::move(socket));
   };
-  section.sections("udp", "the sockets that clients send to; required without `serial`", read);
+  section.sections("udp", "sockets that clients send to; required without `serial`", read);
 }
 
 void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
   section.parsed("bind", discovery.bind, &parse_endpoint, discovery_form,
-                 "where clients ask; several heads may have the same");
+                 "UDP address that receives the clients' searches; several heads may share it");
   section.default_is("bind", endpoint_text(discovery.bind), '"' + endpoint_text(discovery.bind) + '"');
   section.require("address", "the address that clients are told, at which a socket of udp is reached");
   section.parsed("address", discovery.address, &parse_ipv4, address_form,
-                 "the address that clients are told, at which a socket of `udp` is reached");
-  section.parsed("mac", discovery.mac, &parse_mac, mac_form, "what clients are told of it");
+                 "address in the answers to clients; a socket of `udp` must be reachable there");
+  section.parsed("mac", discovery.mac, &parse_mac, mac_form, "MAC address in the answers to clients");
   section.default_is("mac", "54:10:ec:12:34:56");
   if (!section.has("bind")) {
     section.require("allow", "the address blocks to answer, as the socket is bound to all addresses");
   }
-  read_allow_list(section, discovery.bind.address, discovery.allow, "address blocks that are answered");
+  read_allow_list(section, discovery.bind.address, discovery.allow,
+                  "address blocks of clients that get an answer");
 }
 
 /// Clients that have found the head send to the address that they were told, and know but one port.
@@ -63,56 +65,59 @@ void warn_if_found_in_vain(YamlSection& section, const Ping360Config& config) {
 }
 
 void read_device(YamlSection& section, ping360::DeviceConfig& device) {
-  section.integer("id", device.id, 1, 254, "the device ID in its frames, until a client sets another");
+  section.integer("id", device.id, 1, 254,
+                  "device ID in the frames of the head, until a client sets another ID");
   section.integer("revision", device.information.device_revision, 1, 255,
-                  "hardware revision that it reports");
-  section.integer("firmware_major", device.information.firmware_major, 0, 255, "firmware that it reports");
+                  "hardware revision that the head reports");
+  section.integer("firmware_major", device.information.firmware_major, 0, 255,
+                  "major version of the firmware that the head reports");
   section.integer("firmware_minor", device.information.firmware_minor, 0, 255,
-                  "ping-viewer lets a head scan by itself if its firmware is newer than 3.3.0");
-  section.integer("firmware_patch", device.information.firmware_patch, 0, 255, "see there");
+                  "minor version of the firmware that the head reports; ping-viewer lets a head scan by "
+                  "itself if its firmware is newer than 3.3.0");
+  section.integer("firmware_patch", device.information.firmware_patch, 0, 255,
+                  "patch version of the firmware that the head reports");
   section.integer("bearing_offset", device.bearing_offset, 0, 399,
-                  "angle in gradians at which the head looks straight ahead; ping-viewer takes 200 for it, "
-                  "drivers of ROS 0");
+                  "angle in gradians at which the head looks straight ahead; ping-viewer assumes 200, ROS "
+                  "drivers assume 0");
   section.boolean(
       "joins_repeated_commands", device.joins_repeated_commands,
-      "a transducer command that repeats the client's last unanswered one shares its answer: known "
-      "clients repeat a command while the head turns. false: each command is done");
+      "true: a transducer command that repeats the client's last unanswered one shares its answer, because "
+      "known clients repeat a command while the head turns; false: the head executes each command");
   section.integer(
       "queue_length", device.queue_length, 0, 100,
-      "commands that wait for the one that is done; beyond that the oldest is dropped. 0: a command "
-      "that comes meanwhile is dropped");
+      "maximum number of commands that wait while the head executes another one; if the queue is full, the "
+      "oldest command is dropped. 0: the head drops every command that arrives meanwhile");
   section.boolean("accepts_angle_400", device.accepts_angle_400,
-                  "takes 400 gradians for 0, as a driver of ROS sends it");
+                  "true: the head reads 400 gradians as 0, because one ROS driver sends 400");
   section.boolean("obeys_set_common_device_id", device.obeys_set_common_device_id,
-                  "takes message 100 as message 2000; a real head refused it");
+                  "true: the head reads message 100 as message 2000; a real head refused it");
   section.boolean("signed_scan_angles", device.signed_scan_angles,
-                  "reads limits of a scan as signed, so that 65336 is -200 gradians");
+                  "true: the head reads limits of a scan as signed numbers, so 65336 is -200 gradians");
   section.boolean("clamps_scan_to_stop", device.clamps_scan_to_stop,
-                  "a sector ends at its limit, not at the last whole step before it");
+                  "true: a sector ends at its limit; false: it ends at the last whole step before the limit");
   section.boolean("ignores_other_destinations", device.ignores_other_destinations,
-                  "drops frames to another ID than its own, 0 and 255");
+                  "true: the head drops frames to IDs other than its own, 0 and 255");
   section.choice("fan_out", device.fan_out,
                  {{"requester", ping360::FanOut::requester}, {"all", ping360::FanOut::all}},
-                 "who hears an answer: the client that asked or began the scan, or every client, as behind a "
-                 "vehicle's bridge");
+                 "clients that receive an answer: `requester`: the client that sent the command or began the "
+                 "scan; `all`: every client, as behind a vehicle's bridge");
   section.integer("max_clients", device.max_clients, 2, 1000,
-                  "clients told apart; beyond that the one that was silent longest is forgotten");
+                  "maximum number of clients; beyond it, the head drops the client that was silent longest");
   section.integer("max_datagram", device.max_datagram, 0, 65'507,
-                  "bytes; longer frames go out in several datagrams, for clients with short buffers. 0: each "
-                  "frame in one");
+                  "maximum size of a datagram in bytes; longer frames are split into several datagrams, for "
+                  "clients with short buffers. 0: one datagram for each frame");
 }
 
 void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
   section.duration("ping_overhead_ms", device.ping_overhead, Range::from(0.0, 10'000.0),
-                   "of each ping, beside turning and listening");
+                   "overhead of each ping, in addition to turning and listening");
   section.duration("gradian_ms", device.time_per_gradian, Range::from(0.0, 1000.0),
-                   "turning by one gradian (0.9 degrees)");
+                   "time to turn by one gradian (0.9 degrees)");
   section.number("scale", device.time_scale, Range::from(0.0, 100.0),
                  "factor on the time from ping to ping; 0: as fast as pings are rendered");
-  section.duration(
-      "idle_timeout_ms", device.idle_timeout, Range::from(0.0, 60.0 * minute_ms),
-      "a client that is silent for so long is forgotten, and its scan ends; 0: never, as clients "
-      "may only listen for longer than a turn takes");
+  section.duration("idle_timeout_ms", device.idle_timeout, Range::from(0.0, 60.0 * minute_ms),
+                   "time without a frame after which the head drops a client and ends its scan; 0: never, "
+                   "because clients may send nothing for longer than one turn");
   section.duration("reset_ms", device.reset_silence, Range::from(0.0, minute_ms), "silence after a reset");
   section.duration("bootloader_ms", device.bootloader_silence, Range::from(0.0, minute_ms),
                    "silence after a reset to the bootloader");
@@ -120,12 +125,11 @@ void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
 
 void read_transducer_band(YamlSection& section, render::TransducerBand& band) {
   section.introduce(
-      "The transducer as one resonance. The maker publishes what is usable, 650 to 850 kHz; that one way "
-      "loses "
-      "3 dB at these ends is inferred.");
+      "The transducer is modelled as one resonance. The manufacturer publishes the usable band, 650 to 850 "
+      "kHz. The one-way loss of 3 dB at its ends is inferred.");
   section.number("low_khz", band.low_hz, Range::from(0.0, 10'000.0),
-                 "lower end of the band: here the transducer loses 3 dB each way; 0 with `high_khz` 0: every "
-                 "frequency passes",
+                 "lower end of the band, where the transducer loses 3 dB each way. If `low_khz` and "
+                 "`high_khz` are 0, every frequency passes",
                  1e-3);
   section.number("high_khz", band.high_hz, Range::from(0.0, 10'000.0), "upper end of the band", 1e-3);
   const bool none = band.low_hz == 0.0 && band.high_hz == 0.0;
@@ -139,17 +143,17 @@ void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Confi
   read_single_beam(section, head.acoustics.aperture);
   using Pulse = render::PhysicalModel::Pulse;
   section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
-                 "response in range: as long as the client's pulse, or without length");
-  section.section("transducer_band", "which of the frequencies that a client asks for come through",
+                 "response in range: `tone`: as long as the client's pulse; `point`: no length");
+  section.section("transducer_band", "frequencies that pass the transducer",
                   [&](YamlSection& inner) { read_transducer_band(inner, config.transducer_band); });
   using Scale = render::OutputScale;
   section.choice("output_scale", head.acoustics.output_scale,
                  {{"half_decibels", Scale::half_decibels}, {"linear", Scale::linear}},
-                 "what one step of a sample is; the maker does not publish it");
+                 "meaning of one step of a sample; the manufacturer does not publish it");
   section.number("normal_gain_db", config.device.gain_db[1], Range::from(-100.0, 100.0),
-                 "what the gain setting 1 adds to the level of setting 0");
+                 "gain of setting 1 over setting 0");
   section.number("high_gain_db", config.device.gain_db[2], Range::from(-100.0, 100.0),
-                 "what the gain setting 2 adds");
+                 "gain of setting 2 over setting 0");
 }
 
 }  // namespace
@@ -157,8 +161,7 @@ void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Confi
 Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Blue Robotics Ping360 on UDP or a serial line ([protocols/ping360.md](protocols/ping360.md)). It "
-      "turns "
-      "about the z axis of its mount and looks along x at the angle `device.bearing_offset`.");
+      "turns about the z axis of its mount. At the angle `device.bearing_offset` it looks along x.");
   Ping360Config config;
   apply_water(section, context, ping360_carrier_hz, head);
   config.water = context.absorption_db_per_m < 0.0
@@ -171,10 +174,10 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   }
   read_common(section, context, head);
   LinkConfig link;
-  section.section("link", "faults of the link between `udp` and the clients",
+  section.section("link", "faults of the datagrams between `udp` and the clients",
                   [&](YamlSection& inner) { read_link_faults(inner, link); });
   read_udp(section, link, config);
-  section.section("serial", "a serial line beside the sockets, and how clients reach it",
+  section.section("serial", "serial line in addition to the sockets, and how clients connect to it",
                   [&](YamlSection& inner) { config.serial = read_serial_link(inner, context.folder); });
   if (config.udp.empty() && !section.has("serial")) {
     section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
@@ -182,14 +185,17 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   read_lock_to_first(section, config.device.lock_to_first,
                      "the first address is silent for `timing.idle_timeout_ms`, which must not be 0");
   config.serial.lock_to_first = config.device.lock_to_first;
-  section.section("discovery", "answers those who look for heads on the network; without it none is found",
-                  [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
+  section.section(
+      "discovery",
+      "answers to clients that search the network for heads; without this section, clients find no head",
+      [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
   warn_if_found_in_vain(section, config);
-  section.section("device", "what it says of itself, and choices in which firmware and clients differ",
+  section.section("device",
+                  "identity that the head reports, and behaviour that differs between firmware and clients",
                   [&](YamlSection& inner) { read_device(inner, config.device); });
-  section.section("timing", "the pace of pings, silence, resets",
+  section.section("timing", "pace of pings, silence, resets",
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
-  section.section("acoustics", "how its pings are formed",
+  section.section("acoustics", "formation of the pings",
                   [&](YamlSection& inner) { read_ping360_acoustics(inner, head, config); });
   if (config.device.lock_to_first && config.device.idle_timeout.count() == 0) {
     section.report("lock_to_first", "would hold for ever (expected timing.idle_timeout_ms above 0 with it)");
