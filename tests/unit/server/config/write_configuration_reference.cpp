@@ -144,7 +144,7 @@ std::string cell(const std::string& text) {
 }
 
 std::string text_of(const Table& table, std::size_t kind_count) {
-  std::string text = table.paths.front().empty() ? "\n### the document"
+  std::string text = table.paths.front().empty() ? "\n### Top level"
                                                  : fmt::format("\n### `{}`", fmt::join(table.paths, "`, `"));
   text += table.kinds.size() < kind_count ? fmt::format(" ({})\n\n", fmt::join(table.kinds, ", ")) : "\n\n";
   text += table.introduction.empty() ? "" : table.introduction + "\n\n";
@@ -176,7 +176,7 @@ int write_or_check(const std::string& program, bool check) {
   std::string text = read(page);
   const std::size_t kept = text.find(beginning);
   if (kept == std::string::npos) {
-    fmt::print("{} does not say where the reference begins (expected {})", page.string(), beginning);
+    fmt::print("{} has no line at which the reference begins (expected {})", page.string(), beginning);
     return 1;
   }
   text.resize(kept + beginning.size());
@@ -190,7 +190,7 @@ int write_or_check(const std::string& program, bool check) {
     if (!check) {
       std::ofstream(file, std::ios::binary) << wanted;
     } else if (read(file) != wanted) {
-      fmt::print("{} is not what the loader knows: run {}\n", file.string(), program);
+      fmt::print("{} is out of date: run {}\n", file.string(), program);
       ++unlike;
     }
   }
