@@ -49,13 +49,14 @@ namespace {
 constexpr const char* exit_code_help =
     "Exit codes:\n"
     "  0   success: ended by SIGINT, SIGTERM or the end of the recording, or no problem found\n"
-    "  2   configuration, world, trajectory or log cannot be used, or check --listen received no pose\n"
-    "  3   an address or port cannot be used, or an interface has no address (yet)\n"
+    "  2   invalid or unreadable configuration, world, trajectory or log, or check --listen received no "
+    "pose\n"
+    "  3   an address or port is not available, or an interface has no address (yet)\n"
     "  4   the engine is not available or failed its self-test, or the renderer failed while serving\n"
-    "  5   a file or folder to write to cannot be used\n"
-    "  64  wrong command line\n"
-    "  70  a defect of this program\n"
-    "  71  file descriptors, threads or memory have run out";
+    "  5   sonard cannot write to a file or folder\n"
+    "  64  invalid command line\n"
+    "  70  a defect in sonard\n"
+    "  71  no more file descriptors, threads or memory";
 
 struct CommandLine {
   std::filesystem::path config;
@@ -291,12 +292,13 @@ std::string names_of_demos() {
   try {
     return fmt::format("NAME is one of: {}", fmt::join(demo_names(), ", "));
   } catch (const std::exception&) {
-    return "NAME is an entry of demo/list.yaml in the folder of configurations, which is not here.";
+    return "NAME is an entry of demo/list.yaml in the folder of configurations, which was not found.";
   }
 }
 
 void add_log_format(CLI::App& command, std::string& format) {
-  command.add_option("--log-format", format, "Form of the log on stderr: text, or a JSON object a line")
+  command
+      .add_option("--log-format", format, "Format of the log on stderr: text, or one JSON object per line")
       ->check(CLI::IsMember({"text", "json"}));
 }
 
@@ -306,7 +308,7 @@ render::EngineKind engine_named(const std::string& name) {
 }
 
 int main_program(int argc, char** argv) {
-  CLI::App app{"sonard - an imaging sonar on the network, rendered from a 3D world", "sonard"};
+  CLI::App app{"sonard - emulates imaging sonars on the network, rendered from a 3D world", "sonard"};
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", std::string("sonard " SONARD_BUILD_INFO));
   app.footer(exit_code_help);
@@ -322,11 +324,11 @@ int main_program(int argc, char** argv) {
   add_log_format(*run_command, arguments.log_format);
 
   CLI::App* demo_command = app.add_subcommand(
-      "demo", "Show sonard at work: the daemon, moving poses, a client, and a page in the browser");
-  demo_command->add_option("NAME", arguments.demo.name, "What is shown; default: the first of those below");
+      "demo", "Run the demo: the daemon, moving poses, a client, and a page in the browser");
+  demo_command->add_option("NAME", arguments.demo.name, "Demo to run; default: the first name below");
   demo_command->footer(names_of_demos);
-  demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the programs' lines");
-  demo_command->add_option("--seconds", arguments.demo_s, "End after this time; default: at Ctrl-C")
+  demo_command->add_option("--out", arguments.demo.out, "Folder for pictures and the output of the programs");
+  demo_command->add_option("--seconds", arguments.demo_s, "End after this many seconds; default: at Ctrl-C")
       ->check(CLI::Range(1, 1'000'000));
 
   CLI::App* check_command =
@@ -335,10 +337,9 @@ int main_program(int argc, char** argv) {
   check_command->add_flag("--no-network", arguments.no_network,
                           "Do not test whether the addresses can be bound here");
   check_command
-      ->add_option(
-          "--listen", arguments.listen_s,
-          "Then listen to the pose inputs for this many seconds and report what arrives; exit code 0 when "
-          "a pose of the vehicle did")
+      ->add_option("--listen", arguments.listen_s,
+                   "Then listen to the pose inputs for this many seconds and report the poses that arrive; "
+                   "exit code 0 if a pose of the vehicle arrived")
       ->check(CLI::Range(0.1, 86'400.0))
       ->excludes(check_command->add_flag(
           "--json", arguments.json, "Print one JSON object on stdout (docs/deploy.md); not with --listen"));
@@ -348,27 +349,29 @@ int main_program(int argc, char** argv) {
   OfflineArguments offline(*render_command);
 
   CLI::App* selftest_command = app.add_subcommand(
-      "selftest", "Show what can render here, compare a scene with its closed form, and time both engines");
+      "selftest",
+      "List the devices that can render here, compare a scene with its closed form, and time both engines");
   selftest_command->add_option("--engine", arguments.selftest_engine, "Engine to test; auto: both")
       ->check(CLI::IsMember({"auto", "gpu", "cpu"}))
       ->capture_default_str();
   selftest_command->add_flag("--json", arguments.json, "Print one JSON object on stdout (docs/deploy.md)");
   selftest_command->add_option("--gpu-device", arguments.selftest.gpu.device,
-                               "As the key gpu.device: the number of an EGL device, or a part of its name");
+                               "Number of an EGL device, or a part of its name, as in the key gpu.device");
 
   CLI::App* replay_command =
-      app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that made it");
-  replay_command->add_option("LOG", arguments.log, "What to play back (docs/logs.md)")->required();
+      app.add_subcommand("replay", "Serve a recorded .glf, .dat or .mcap as the device that produced it");
+  replay_command->add_option("LOG", arguments.log, "The log to serve (docs/logs.md)")->required();
   replay_command->add_option(
       "--config", arguments.config,
-      "YAML file with addresses and timing of the heads; without it they are on loopback");
+      "YAML file with addresses and timing of the heads; default: the heads are on loopback");
   CLI::Option* speed =
-      replay_command->add_option("--speed", arguments.timing.speed, "2: twice as fast as recorded")
+      replay_command
+          ->add_option("--speed", arguments.timing.speed, "Playback speed; 2 is twice as fast as recorded")
           ->check(CLI::Range(1e-3, 1e3))
           ->capture_default_str();
   replay_command
       ->add_flag("--as-fast-as-asked", arguments.timing.as_asked,
-                 "Send the next ping whenever a client wants one; ignore the times of the recording")
+                 "Send the next ping whenever a client requests one; ignore the times of the recording")
       ->excludes(speed);
   replay_command->add_flag("--loop", arguments.timing.loop,
                            "Start again after the last ping, until SIGINT or SIGTERM");
@@ -376,8 +379,8 @@ int main_program(int argc, char** argv) {
   replay_command
       ->add_option_function<std::string>(
           "--start", [&start_now](const std::string& when) { start_now = when == "now"; },
-          "ping: time starts with the first ping that a client wants, and waits for clients; now: it starts "
-          "at once, and pings that no client wants in time are skipped")
+          "ping: time starts at the first ping that a client requests, and waits for clients; now: time "
+          "starts at once, and pings that no client requests in time are skipped")
       ->check(CLI::IsMember({"ping", "now"}))
       ->default_str("ping");
   replay_command->add_option("--log-level", arguments.log_level, "Log level")
@@ -385,12 +388,12 @@ int main_program(int argc, char** argv) {
 
   add_log_format(*replay_command, arguments.log_format);
 
-  CLI::App* info_command = app.add_subcommand("info", "Show what is in a .glf, .dat, .mcap or .pcapng");
+  CLI::App* info_command = app.add_subcommand("info", "Show the contents of a .glf, .dat, .mcap or .pcapng");
   info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
   info_command->add_flag("--json", arguments.info.json, "Print JSON");
   CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,
                                                    "Folder for a picture of each ping or sweep");
-  info_command->add_option("--every", arguments.info.every, "Pictures of every N-th ping only")
+  info_command->add_option("--every", arguments.info.every, "Write a picture every N pings or sweeps only")
       ->needs(pictures)
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
   info_command
