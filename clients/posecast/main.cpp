@@ -48,33 +48,35 @@ void declare(CLI::App& app, Arguments& arguments) {
   const auto positive = CLI::Range(1e-6, 1e6);
   const auto duration = CLI::Range(0.0, 1e9);
   app.footer(
-      "Exit status: 0 all sent, or ended by Ctrl-C or --seconds; 1 network; 2 command line or trajectory.");
+      "Exit status: 0 all poses sent, or ended by Ctrl-C or --seconds; 1 network error; 2 invalid command "
+      "line or trajectory.");
   app.add_option("trajectory", arguments.file,
                  "CSV file with the header `t,x,y,z,qx,qy,qz,qw`, or a TUM file")
       ->required();
-  app.add_option("--to", arguments.to, "Where sonard listens, HOST:PORT")->capture_default_str();
+  app.add_option("--to", arguments.to, "Address of sonard's pose input, HOST:PORT")->capture_default_str();
   app.add_flag("--tcp", arguments.tcp, "Connect by TCP instead of sending UDP datagrams");
-  app.add_option("--axes", arguments.axes, "Axes of world and vehicle in the file")
+  app.add_option("--axes", arguments.axes, "Convention for the axes of world and vehicle in the file")
       ->check(CLI::IsMember({"enu_flu", "ned_frd"}))
       ->capture_default_str();
   app.add_option("--rate", arguments.rate_hz, "Poses per second, interpolated from the file")
       ->check(CLI::Range(1e-3, 1e4))
       ->capture_default_str();
-  app.add_option("--speed", arguments.speed, "Times real time")->check(positive)->capture_default_str();
+  app.add_option("--speed", arguments.speed, "Playback speed; 2 is twice as fast as recorded")
+      ->check(positive)
+      ->capture_default_str();
   app.add_flag("--loop", arguments.loop, "Start again at the end");
   app.add_option("--from-time", arguments.from_s, "Start this many seconds into the trajectory")
       ->check(duration);
   app.add_option("--seconds", arguments.seconds, "End after this many seconds")->check(positive);
   app.add_flag("--no-twist", arguments.no_twist, "Send poses without velocity");
-  app.add_option(
-         "--stamps", arguments.stamps,
-         "Times in the poses: of this machine's clock, or of the file. With file every run sends the same "
-         "poses, --rate and --seconds count seconds of the file, and by TCP it waits while the receiver "
-         "does not read, as sonard does in lock-step")
+  app.add_option("--stamps", arguments.stamps,
+                 "Times in the poses: clock is this machine's clock; file is the time in the file. With "
+                 "file, every run sends the same poses, and --rate and --seconds count seconds of the file. "
+                 "With file and --tcp, posecast waits while the receiver does not read, as in lock-step")
       ->check(CLI::IsMember({"clock", "file"}))
       ->capture_default_str();
   app.add_option("--hold", arguments.hold_s,
-                 "First send the first pose for this many seconds, while clients ask for their pings")
+                 "First send the first pose for this many seconds, while clients request their pings")
       ->check(duration);
   app.add_flag("--quiet", arguments.quiet, "Print errors only");
 }
