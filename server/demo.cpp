@@ -219,9 +219,9 @@ class Demo {
     const bool client_done = fallen != nullptr && fallen->name() == "sonarview" && fallen->exit_code() == 0;
     if (!interrupted_ && !client_done) {
       const Part& part = fallen == nullptr ? *parts_.front() : *fallen;
-      fmt::print(stderr, "demo: {} {}. It said last:\n{}", part.name(),
+      fmt::print(stderr, "demo: {} {}. Its last output:\n{}", part.name(),
                  fallen == nullptr ? fmt::format("was not ready after {} s", longest_start.count())
-                                   : "ended by itself",
+                                   : "ended unexpectedly",
                  part.last_words());
       return exit_internal;
     }
@@ -229,7 +229,8 @@ class Demo {
       fmt::print("demo: {}\n", filled_in(entry_["report"].as<std::string>(), summary_));
     }
     if (!options_.out.empty()) {
-      fmt::print("demo: pictures and the programs' lines are in {}\n", printable(options_.out.string()));
+      fmt::print("demo: pictures and the output of the programs are in {}\n",
+                 printable(options_.out.string()));
     }
     return exit_clean;
   }
@@ -279,13 +280,13 @@ int run_demo(const DemoOptions& options) {
   const std::vector<std::string> names = demo_names();
   const std::string& name = options.name.empty() ? names.front() : options.name;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
-    fmt::print(stderr, "demo: there is no demo '{}' (expected one of: {})\n", printable(name),
+    fmt::print(stderr, "demo: unknown demo '{}' (expected one of: {})\n", printable(name),
                printable(fmt::format("{}", fmt::join(names, ", "))));
     return exit_config;
   }
   std::error_code error;
   if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
-    fmt::print(stderr, "demo: --out: cannot make the folder {}: {}\n", printable(options.out.string()),
+    fmt::print(stderr, "demo: --out: cannot create the folder {}: {}\n", printable(options.out.string()),
                error.message());
     return exit_output;
   }
