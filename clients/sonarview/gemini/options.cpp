@@ -26,18 +26,18 @@ Ipv4 address_of(const std::string& option, const std::string& text) {
 void GeminiArguments::declare_link(CLI::App& app) {
   app.add_option(
          "--surface-address", topside_address_,
-         "Local address that commands leave from, port 52901; default: the one that routes to the head")
+         "Local address that sends commands, port 52901; default: the address that routes to the head")
       ->group("Link");
-  app.add_option("--bind", bind_address_, "Local address on which reports arrive, port 52900")
+  app.add_option("--bind", bind_address_,
+                 "Local address that receives replies and status packets, port 52900")
       ->capture_default_str()
       ->group("Link");
   app.add_option("--head", head_address_,
-                 "Address of the head, port 52901; default: the alternate address in its status")
+                 "Address of the head, port 52901; default: the alternate address in its status packet")
       ->group("Link");
-  app.add_option(
-         "--sonar-id", options_.sonar_ids,
-         "The head to talk to, or several (513,514), each with a folder of its own in --out; 0: the first "
-         "that sends a status")
+  app.add_option("--sonar-id", options_.sonar_ids,
+                 "Sonar ID of the head, or several (513,514), each with its own folder in --out; 0: the "
+                 "first head that sends a status packet")
       ->delimiter(',')
       ->capture_default_str()
       ->group("Link");
@@ -45,16 +45,16 @@ void GeminiArguments::declare_link(CLI::App& app) {
 
 void GeminiArguments::declare_sonar(CLI::App& app) {
   auto& settings = options_.settings;
-  app.add_option("--range", settings.range_m, "Metres")
+  app.add_option("--range", settings.range_m, "Range in metres")
       ->check(CLI::Range(0.3, 150.0))
       ->capture_default_str()
       ->group("Sonar");
-  app.add_option("--gain", settings.gain_percent, "Percent")
+  app.add_option("--gain", settings.gain_percent, "Gain in percent")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str()
       ->group("Sonar");
   app.add_option("--sound-speed", settings.sound_speed_mps,
-                 "Metres per second, for converting times to ranges")
+                 "Sound speed in metres per second, to convert times to ranges")
       ->check(CLI::Range(1400.0, 1588.0))
       ->capture_default_str()
       ->group("Sonar");
@@ -68,24 +68,24 @@ void GeminiArguments::declare_sonar(CLI::App& app) {
       ->check(CLI::Range(0, 255))
       ->capture_default_str()
       ->group("Sonar");
-  app.add_option("--bits", bits_, "Bits of a sample")
+  app.add_option("--bits", bits_, "Bits per sample")
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str()
       ->group("Sonar");
   app.add_option("--continuous", interval_ms_,
-                 "Let the head ping by itself at this interval in milliseconds; default: request each ping")
+                 "Let the head ping by itself at this interval, in milliseconds; default: request each ping")
       ->check(CLI::Range(1.0, 1e6))
       ->group("Sonar");
 }
 
 void GeminiArguments::declare_drops(CLI::App& app) {
-  app.add_option("--drop-rx", options_.drop_rx, "Share of arriving datagrams to lose on purpose")
+  app.add_option("--drop-rx", options_.drop_rx, "Fraction of arriving datagrams to drop on purpose")
       ->check(CLI::Range(0.0, 1.0))
       ->group("Test of the link");
-  app.add_option("--drop-tx", options_.drop_tx, "Share of leaving datagrams to lose on purpose")
+  app.add_option("--drop-tx", options_.drop_tx, "Fraction of sent datagrams to drop on purpose")
       ->check(CLI::Range(0.0, 1.0))
       ->group("Test of the link");
-  app.add_option("--seed", options_.seed, "Which datagrams those are")
+  app.add_option("--seed", options_.seed, "Seed that selects the dropped datagrams")
       ->capture_default_str()
       ->group("Test of the link");
 }
@@ -93,7 +93,7 @@ void GeminiArguments::declare_drops(CLI::App& app) {
 GeminiArguments::GeminiArguments(CLI::App& app) {
   declare_link(app);
   declare_sonar(app);
-  run_.declare(app, {.wait = "Seconds to wait for the first status"});
+  run_.declare(app, {.wait = "Seconds to wait for the first status packet"});
   declare_drops(app);
 }
 

@@ -10,18 +10,18 @@ namespace sonard::client {
 namespace {
 
 constexpr const char* summary =
-    "Talks to a Gemini 720i as a vehicle would: pings, repairs losses, reports rate and loss, writes "
+    "Client for a Gemini 720i that acts as a vehicle: pings, repairs losses, reports rate and loss, writes "
     "pictures.";
 
 constexpr const char* footer = R"(Examples:
-  sonarview --range 20 --compression 1 --out out          to the head of configs/demo.yaml, until Ctrl-C
-  sonarview --continuous 100 --pings 200 --log-pings      pings every 100 ms, one line each
-  sonarview --drop-rx 0.05 --drop-tx 0.05 --pings 200     on a link that loses 5 % both ways
-  sonarview --surface-address 10.61.19.1                  to a head on another network
-  sonarview compare --help                                images against each other
+  sonarview --range 20 --compression 1 --out out          the head of configs/demo.yaml, until Ctrl-C
+  sonarview --continuous 100 --pings 200 --log-pings      a ping every 100 ms, one line per ping
+  sonarview --drop-rx 0.05 --drop-tx 0.05 --pings 200     a link that loses 5 % in both directions
+  sonarview --surface-address 10.61.19.1                  a head on another network
+  sonarview compare --help                                compare two images
 
-Exit status: 0 all pings complete; 1 a socket or file could not be opened; 2 command line; 3 no head;
-4 a ping ended incomplete, or none came.)";
+Exit status: 0 all pings complete; 1 a socket or file could not be opened; 2 invalid command line;
+3 no head; 4 a ping was incomplete, or no ping arrived.)";
 
 Prepare declare(CLI::App& app) {
   const auto arguments = std::make_shared<GeminiArguments>(app);
