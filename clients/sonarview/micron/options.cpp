@@ -45,11 +45,11 @@ MicronArguments::MicronArguments(CLI::App& app) {
 void MicronArguments::declare_link(CLI::App& app) {
   constexpr const char* group = LinkArguments::group;
   link_.declare(app);
-  app.add_option("--node", node_, "Node of the head")
+  app.add_option("--node", node_, "Node address of the head")
       ->check(CLI::Range(1, 254))
       ->capture_default_str()
       ->group(group);
-  app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first: it forgets all settings")
+  app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first, which resets all its settings")
       ->group(group);
 }
 
@@ -58,27 +58,28 @@ void MicronArguments::declare_sonar(CLI::App& app) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
   };
-  add("--range", scan.range_m, "Metres; the head covers this or a little less")
+  add("--range", scan.range_m, "Range in metres; the head covers this or a little less")
       ->check(CLI::Range(0.1, 200.0));
-  add("--bins", scan.bins, "Bins of a line")->check(CLI::Range(1, micron::max_bins));
+  add("--bins", scan.bins, "Bins per line")->check(CLI::Range(1, micron::max_bins));
   add("--step", step_deg_, "Degrees from line to line, a multiple of 0.05625 (1/16 gradian)");
   app.add_option("--sector", sector_deg_,
-                 "FROM TO: scan back and forth between these bearings, degrees, 0 ahead, positive to "
+                 "FROM TO: scan back and forth between these bearings, in degrees, 0 ahead, positive to "
                  "starboard; the sector lies clockwise from FROM to TO. Default: all round")
       ->expected(2)
       ->check(CLI::Range(-360.0, 360.0))
       ->group("Sonar");
-  app.add_flag("--scan-left", scan_left_, "Scan counter-clockwise; in a sector: begin that way")
+  app.add_flag("--scan-left", scan_left_, "Scan counter-clockwise; in a sector: begin counter-clockwise")
       ->group("Sonar");
   add("--gain", scan.gain_percent, "Initial gain, percent")->check(CLI::Range(0.0, 100.0));
   CLI::Option* four_bit =
-      app.add_flag("--four-bit", four_bit_, "4-bit bins over the window below; default: 8-bit bins, 0..80 dB")
+      app.add_flag("--four-bit", four_bit_,
+                   "4-bit bins over the window --ad-low, --ad-span; default: 8-bit bins, 0..80 dB")
           ->group("Sonar");
   add("--ad-low", scan.ad_low_db, "Lower end of the window, dB")
       ->check(CLI::Range(0.0, 80.0))
       ->needs(four_bit);
   add("--ad-span", scan.ad_span_db, "Width of the window, dB")->check(CLI::Range(0.0, 80.0))->needs(four_bit);
-  add("--sound-speed", scan.sound_speed_mps, "Metres per second, for converting times to ranges")
+  add("--sound-speed", scan.sound_speed_mps, "Sound speed in metres per second, to convert times to ranges")
       ->check(CLI::Range(1300.0, 1700.0));
 }
 
@@ -89,7 +90,8 @@ void MicronArguments::declare_run(CLI::App& app) {
       ->check(CLI::Range(0, 1'000'000'000))
       ->capture_default_str()
       ->group("Run");
-  app.add_option("--raw", options_.raw, "File for the lines as they came, a JSON object each")->group("Run");
+  app.add_option("--raw", options_.raw, "File for the lines as received, one JSON object per line")
+      ->group("Run");
 }
 
 micron::ScanSettings MicronArguments::scan() const {

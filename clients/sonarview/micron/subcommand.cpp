@@ -9,15 +9,16 @@
 namespace sonard::client {
 namespace {
 
-constexpr const char* summary = "Talks to a Micron: scans, reports rate and loss, writes pictures and lines.";
+constexpr const char* summary =
+    "Client for a Micron: scans, reports rate and loss, writes pictures and lines.";
 
 constexpr const char* footer = R"(Examples:
   sonarview micron --tcp 127.0.0.1:4001 --range 20 --out out       all round, until Ctrl-C
-  sonarview micron --tty /dev/ttyUSB0 --turns 1 --raw sweep.jsonl   one sweep, its lines in a file
-  sonarview micron --tcp 10.0.0.7:4001 --sector -45 45 --step 0.9  to and fro over 90 degrees ahead
+  sonarview micron --tty /dev/ttyUSB0 --turns 1 --raw sweep.jsonl   one sweep, with its lines in a file
+  sonarview micron --tcp 10.0.0.7:4001 --sector -45 45 --step 0.9  back and forth over 90 degrees ahead
 
-Exit status: 0 all lines came; 1 a file could not be written; 2 command line; 3 no head;
-4 lines are missing, or none came.)";
+Exit status: 0 all lines arrived; 1 a file could not be written; 2 invalid command line; 3 no head;
+4 lines are missing, or no line arrived.)";
 
 Prepare declare(CLI::App& app) {
   const auto arguments = std::make_shared<MicronArguments>(app);
