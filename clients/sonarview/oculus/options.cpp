@@ -29,10 +29,11 @@ void OculusArguments::declare_link(CLI::App& app) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->capture_default_str()->group("Link");
   };
-  add("--head", options_.head, "Address of the head; default: the one in the first status");
+  add("--head", options_.head, "Address of the head; default: the address in the first status packet");
   add("--port", options_.port, "TCP port of the head")->check(CLI::Range(1, 65535));
-  add("--bind", bind_address_, "Local address on which statuses arrive");
-  add("--status-port", options_.status_port, "and their port")->check(CLI::Range(1, 65535));
+  add("--bind", bind_address_, "Local address that receives status packets");
+  add("--status-port", options_.status_port, "Local port that receives status packets")
+      ->check(CLI::Range(1, 65535));
 }
 
 void OculusArguments::declare_sonar(CLI::App& app) {
@@ -42,17 +43,21 @@ void OculusArguments::declare_sonar(CLI::App& app) {
   };
   add("--frequency", frequency_, "low: the wide fan; high: the narrow one")
       ->check(CLI::IsMember({"low", "high"}));
-  add("--range", range_m_, "Metres; the head images as much of it as it can")->check(CLI::Range(0.1, 200.0));
-  add("--beams", beams_, "Beams of the fan")->check(CLI::IsMember({256, 512}));
-  add("--bits", bits_, "Bits of a sample")->check(CLI::IsMember({8, 16, 32}));
-  add("--gain", fire.gain_percent, "Percent")->check(CLI::Range(0.0, 100.0));
+  add("--range", range_m_, "Range in metres; the head images as much of it as it can")
+      ->check(CLI::Range(0.1, 200.0));
+  add("--beams", beams_, "Beams in the fan")->check(CLI::IsMember({256, 512}));
+  add("--bits", bits_, "Bits per sample")->check(CLI::IsMember({8, 16, 32}));
+  add("--gain", fire.gain_percent, "Gain in percent")->check(CLI::Range(0.0, 100.0));
   add("--gamma", fire.gamma, "Samples are the amplitude to the power of this / 255")
       ->check(CLI::Range(1, 255));
-  add("--rate", rate_hz_, "Pings per second at most")->check(CLI::IsMember({2, 5, 10, 15, 40}));
-  add("--sound-speed", fire.sound_speed_mps, "Metres per second; 0: by salinity, and what the head measures")
+  add("--rate", rate_hz_, "Maximum pings per second")->check(CLI::IsMember({2, 5, 10, 15, 40}));
+  add("--sound-speed", fire.sound_speed_mps,
+      "Sound speed in metres per second; 0: computed from the salinity and the measurements of the head")
       ->check(CLI::Range(0.0, 1600.0));
-  add("--salinity", fire.salinity_ppt, "Parts per thousand; 0: fresh water")->check(CLI::Range(0.0, 50.0));
-  app.add_flag("--row-gains", row_gains_, "Four bytes of gain before each row of the image")->group("Sonar");
+  add("--salinity", fire.salinity_ppt, "Salinity in parts per thousand; 0: fresh water")
+      ->check(CLI::Range(0.0, 50.0));
+  app.add_flag("--row-gains", row_gains_, "Request four bytes of gain before each row of the image")
+      ->group("Sonar");
 }
 
 OculusOptions OculusArguments::options() const {
