@@ -24,27 +24,27 @@ void Ping360Arguments::declare_sonar(CLI::App& app) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return app.add_option(name, value, what)->capture_default_str()->group("Sonar");
   };
-  add("--range", range_m_, "Metres; the head covers this or a little less")->check(CLI::Range(0.5, 100.0));
-  add("--samples", samples_, "Samples of a ping, 200 to 1200; 0: as many as the range allows")
+  add("--range", range_m_, "Range in metres; the head covers this or a little less")
+      ->check(CLI::Range(0.5, 100.0));
+  add("--samples", samples_, "Samples per ping, 200 to 1200; 0: as many as the range allows")
       ->check(CLI::Range(200, 1200) | CLI::IsMember({0}));
-  add("--step", step_, "Gradians from ping to ping, of 0.9 degrees each")->check(CLI::Range(1, 10));
-  add("--gain", gain_, "0 low, 1 normal, 2 high")->check(CLI::Range(0, 2));
-  add("--frequency", frequency_khz_, "kHz")->check(CLI::Range(500, 1000));
-  add("--sound-speed", options_.sound_speed_mps, "Metres per second, in which ranges are counted")
+  add("--step", step_, "Gradians (0.9 degrees) from ping to ping")->check(CLI::Range(1, 10));
+  add("--gain", gain_, "Gain: 0 low, 1 normal, 2 high")->check(CLI::Range(0, 2));
+  add("--frequency", frequency_khz_, "Frequency in kHz")->check(CLI::Range(500, 1000));
+  add("--sound-speed", options_.sound_speed_mps,
+      "Sound speed in metres per second, to convert times to ranges")
       ->check(CLI::Range(1300.0, 1700.0));
-  add("--ahead", options_.ahead, "Angle of the head that looks straight ahead, gradians")
+  add("--ahead", options_.ahead, "Angle in gradians at which the head looks straight ahead")
       ->check(CLI::Range(0, 399));
-  app.add_flag("--auto", options_.automatic, "The head scans by itself, instead of ping by ping")
+  app.add_flag("--auto", options_.automatic, "Let the head scan by itself, instead of requesting each ping")
       ->group("Sonar");
-  app.add_option(
-         "--sector", sector_deg_,
-         "FROM TO, degrees from ahead, positive to starboard, clockwise from FROM to TO: scans there, "
-         "by itself. Without it: all round")
+  app.add_option("--sector", sector_deg_,
+                 "FROM TO: let the head scan this sector by itself, in degrees, 0 ahead, positive to "
+                 "starboard, clockwise from FROM to TO. Default: all round")
       ->expected(2)
       ->check(CLI::Range(-360.0, 360.0))
       ->group("Sonar");
-  add("--delay", delay_ms_, "Milliseconds in addition between two pings of --auto")
-      ->check(CLI::Range(0, 100));
+  add("--delay", delay_ms_, "Additional milliseconds between two pings of --auto")->check(CLI::Range(0, 100));
 }
 
 void Ping360Arguments::set_scan(Ping360Options& options) const {

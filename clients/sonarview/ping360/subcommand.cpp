@@ -9,15 +9,15 @@
 namespace sonard::client {
 namespace {
 
-constexpr const char* summary = "Talks to a Ping360 instead: scans, reports the rate, writes pictures.";
+constexpr const char* summary = "Client for a Ping360: scans, reports the rate, writes pictures.";
 
 constexpr const char* footer = R"(Examples:
   sonarview ping360 --udp 127.0.0.1:12345 --range 10 --out out     all round, ping by ping, until Ctrl-C
-  sonarview ping360 --udp 127.0.0.1:12345 --auto --turns 1         one turn that the head makes by itself
-  sonarview ping360 --tty /dev/ttyUSB0 --sector -45 45 --step 2    to and fro over 90 degrees ahead
+  sonarview ping360 --udp 127.0.0.1:12345 --auto --turns 1         one turn, scanned by the head itself
+  sonarview ping360 --tty /dev/ttyUSB0 --sector -45 45 --step 2    back and forth over 90 degrees ahead
 
-Exit status: 0 pings came; 1 a file could not be written; 2 command line; 3 no head; 4 the head refuses, or no ping
-came.)";
+Exit status: 0 pings arrived; 1 a file could not be written; 2 invalid command line; 3 no head;
+4 the head refuses, or no ping arrived.)";
 
 Prepare declare(CLI::App& app) {
   const auto arguments = std::make_shared<Ping360Arguments>(app);
