@@ -16,7 +16,7 @@ constexpr const char* footer = R"(Examples:
   sonarview compare dump/bow.csv#12 dump/bow.csv#13 --json difference.json
   sonarview compare sweep.jsonl#0 sweep.jsonl#1
 
-Exit status: 0 compared; 1 a file could not be read or written, or the sizes differ; 2 command line.)";
+Exit status: 0 compared; 1 a file could not be read or written, or the sizes differ; 2 invalid command line.)";
 
 Prepare declare(CLI::App& app) {
   const auto arguments = std::make_shared<CompareArguments>(app);
