@@ -20,12 +20,12 @@ LineAddress host_and_port(LineAddress::Way way, const std::string& option, const
 
 void LinkArguments::declare(CLI::App& app) {
   CLI::Option* tcp = app.add_option("--tcp", tcp_, "HOST:PORT of a serial device server, or of sonard");
-  CLI::Option* udp = app.add_option("--udp", udp_, "HOST:PORT, datagrams instead of a connection");
+  CLI::Option* udp = app.add_option("--udp", udp_, "HOST:PORT, for datagrams instead of a connection");
   CLI::Option* tty = app.add_option("--tty", tty_, "Serial device or pseudo terminal");
   tcp->excludes(udp)->excludes(tty)->group(group);
   udp->excludes(tty)->group(group);
   tty->group(group);
-  app.add_option("--baud", baud_, "Bits per second of a serial device, 8N1")
+  app.add_option("--baud", baud_, "Bits per second of the serial device, 8N1")
       ->needs(tty)
       ->capture_default_str()
       ->group(group);

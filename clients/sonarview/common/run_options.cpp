@@ -27,19 +27,20 @@ void RunArguments::declare(CLI::App& app, const RunWords& words) {
       ->group(words.link_group);
   add("--" + ping + "s", options_.pings, fmt::format("End after this many {}s; 0: no limit", ping))
       ->check(CLI::Range(0, 1'000'000'000));
-  add("--seconds", seconds_, "End this many seconds after the head's first word; 0: no limit")
+  add("--seconds", seconds_, "End this many seconds after the head's first message; 0: no limit")
       ->check(CLI::Range(0.0, 1e9));
   CLI::Option* const out =
       app.add_option("--out", options_.out, "Folder for pictures: the scene in colour, the samples in grey")
           ->group("Run");
-  add("--every", options_.every, fmt::format("Pictures of each n-th {}; 0: only of the last", words.picture))
+  add("--every", options_.every, fmt::format("Write a picture every N {}s; 0: only the last", words.picture))
       ->check(CLI::Range(0, 1'000'000'000))
       ->needs(out);
-  add("--size", options_.radius_px, "Pixels from the apex to the full range")->check(CLI::Range(64, 8192));
+  add("--size", options_.radius_px, "Pixels in pictures from the apex to the full range")
+      ->check(CLI::Range(64, 8192));
   app.add_flag("--log-" + ping + "s", options_.log_pings,
-               fmt::format("One line of key=value for each {} on standard output", ping))
+               fmt::format("Print a line of key=value for each {} on standard output", ping))
       ->group("Run");
-  app.add_flag("--quiet", options_.quiet, "No progress on standard error")->group("Run");
+  app.add_flag("--quiet", options_.quiet, "Print no progress on standard error")->group("Run");
 }
 
 RunOptions RunArguments::options() const {

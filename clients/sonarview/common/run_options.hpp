@@ -29,7 +29,7 @@ struct RunOptions {
 struct RunWords {
   const char* ping = "ping";     ///< "line": the options are --lines, --line-wait and --log-lines
   const char* picture = "ping";  ///< what a picture shows: a "ping" or a "turn"
-  const char* wait = "Seconds to wait for the head, at first and when its line is lost";
+  const char* wait = "Seconds to wait for the head, at the start and after its line was lost";
   const char* link_group = "Link";  ///< heading of the options that say how the head is reached
 };
 
