@@ -23,7 +23,7 @@ constexpr Range level_db = Range::from(-300.0, 300.0);
 double read_noise_budget(YamlSection& section, double carrier_hz) {
   section.introduce(
       "The sonar equation gives the noise level: `spectral_level_db` - `directivity_db` + 10 log10 of the "
-      "bandwidth - `source_level_db`. The defaults give -138.2 dB at 720 kHz.");
+      "bandwidth in Hz - `source_level_db`. The defaults give -138.2 dB at 720 kHz.");
   render::NoiseBudget budget;
   budget.spectral_level_db = render::thermal_noise_db(carrier_hz);
   section.number("source_level_db", budget.source_level_db, level_db, "source level, dB re 1 uPa at 1 m");
@@ -121,8 +121,8 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                   {"frozen", Speckle::frozen},
                   {"per_ping", Speckle::per_ping},
                   {"off", Speckle::off}},
-                 "`ou`: constant while the sonar is at rest, fades as the sonar moves; `frozen`: always the "
-                 "same; `per_ping`: drawn anew for each ping");
+                 "`ou`: constant while the sonar is at rest, decorrelates as the sonar moves; `frozen`: "
+                 "always the same; `per_ping`: drawn anew for each ping");
   section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0),
                  "length of the array; speckle changes over a motion of half this length");
   using Backscatter = render::PhysicalModel::Backscatter;
