@@ -22,8 +22,9 @@ void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket
                   std::string_view meaning) {
   section.sections(key, meaning, [&](YamlSection& inner) {
     Socket socket;
-    read_socket(inner, socket.bind, socket.allow, serial_endpoint_form, "address for clients",
-                "address blocks of clients that may use it; up to 16 connections at a time");
+    read_socket(inner, socket.bind, socket.allow, serial_endpoint_form,
+                "address that clients connect or send to",
+                "address blocks of clients that may connect; at most 16 connections at a time");
     report_if_taken(inner, socket.bind, sockets);
     sockets.push_back(std::move(socket));
   });
@@ -60,9 +61,9 @@ void read_faults(YamlSection& section, LinkFaults& faults) {
   section.number("duplicate", faults.duplicate, probability, "probability that a datagram arrives twice");
   section.number("reorder", faults.reorder, probability,
                  "probability that the next datagram overtakes a datagram");
-  section.duration("delay_ms", faults.delay, up_to_a_minute, "delay of each datagram");
+  section.duration("delay_ms", faults.delay, up_to_a_minute, "delay added to each datagram");
   section.duration("jitter_ms", faults.jitter, up_to_a_minute,
-                   "maximum of the extra delay, drawn for each datagram");
+                   "maximum of the random extra delay, drawn for each datagram");
 }
 
 }  // namespace
