@@ -10,7 +10,7 @@ namespace {
 
 struct CodePoint {
   char32_t value = 0;
-  std::size_t bytes = 0;  ///< 0: the text does not begin with a character of UTF-8 (RFC 3629)
+  std::size_t bytes = 0;  ///< 0: the text does not begin with a UTF-8 character (RFC 3629)
 };
 
 CodePoint first_of(std::string_view text) {
@@ -43,7 +43,7 @@ bool is_control(char32_t c) {
   return c < 0x20 || (c >= 0x7F && c < 0xA0);
 }
 
-/// Separators of lines and paragraphs, and marks, embeddings, overrides and isolates of direction.
+/// Line and paragraph separators, and direction marks, embeddings, overrides and isolates.
 bool changes_layout(char32_t c) {
   return c == 0x061C || c == 0x200E || c == 0x200F || (c >= 0x2028 && c <= 0x202E) ||
          (c >= 0x2066 && c <= 0x2069);

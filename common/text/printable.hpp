@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of peers and files, made safe for a log and for a terminal.
+// Makes text from peers and files safe for logs and terminals.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace sonard {
 
-/// The same text in one line, in which nothing commands a terminal or changes the order of what is read:
-/// control characters ("\n", "\x1b"), bytes that are no UTF-8 ("\xff"), and separators of lines and marks of
-/// direction of Unicode ("\u202e") are written as escapes. Other characters, a backslash too, stay.
+/// Returns `text` as one line that cannot control a terminal or change the reading order. It escapes control
+/// characters ("\n", "\x1b"), bytes that are not UTF-8 ("\xff"), and line separators and direction marks of
+/// Unicode ("\u202e"). All other characters, including backslashes, are unchanged.
 std::string printable(std::string_view text);
 
 }  // namespace sonard

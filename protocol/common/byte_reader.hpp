@@ -12,9 +12,9 @@
 
 namespace sonard {
 
-/// Walks over `bytes` from front to back. The first read past the end latches an error that names the field
-/// and its offset; from then on every read returns zero or an empty span, so that decoders stay straight-line
-/// code and look at error() once, at their end. Views `bytes`; does not own them.
+/// Reads `bytes` from front to back. The first read past the end latches an error with the field's name and
+/// offset. Later reads return zero or an empty span, so decoders check error() only once, at their end.
+/// Views `bytes`; does not own them.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -47,9 +47,9 @@ class ByteReader {
 
   void skip(std::size_t count, std::string_view field) { static_cast<void>(bytes(count, field)); }
 
-  /// Latches an error at the present offset unless there is one already.
+  /// Latches an error at the current offset, unless an error is latched already.
   void fail(WireErrorReason reason, std::string_view field) { fail_at(offset_, reason, field); }
-  /// Fails for a field that lies elsewhere, for example a count that was read before.
+  /// Latches an error at another offset, for example at a count that was read earlier.
   void fail_at(std::size_t offset, WireErrorReason reason, std::string_view field) {
     if (!error_) {
       error_ = WireError{reason, offset, field};

@@ -19,7 +19,7 @@ class ByteWriter {
   void u32le(std::uint32_t value) { little_endian(value, 4); }
   void u64le(std::uint64_t value) { little_endian(value, 8); }
 
-  /// The low `width` bytes of `value`, least significant first; width 1..8.
+  /// Appends the low `width` bytes of `value`, least significant first; width 1..8.
   void little_endian(std::uint64_t value, std::size_t width) {
     for (std::size_t i = 0; i < width; ++i) {
       out_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));

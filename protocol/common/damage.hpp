@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of a log that cannot be read, and what a reader does when it meets one.
+// Unreadable parts of a log, and how a reader handles them.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace sonard {
 
-/// Bytes of a log that are no record, although readable records may follow.
+/// Bytes of a log that are not a record. Readable records may follow.
 struct Damage {
   std::uint64_t offset = 0;  ///< in the file
   std::uint64_t size = 0;    ///< bytes that the reader skipped
@@ -16,8 +16,8 @@ struct Damage {
 };
 
 enum class OnDamage : std::uint8_t {
-  stop,  ///< end at the first damaged record: nothing that follows counts as whole
-  skip,  ///< search for the next readable record and go on
+  stop,  ///< end at the first damaged record and ignore everything after it
+  skip,  ///< search for the next readable record and continue
 };
 
 }  // namespace sonard

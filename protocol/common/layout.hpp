@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wire layouts as tables: where each field of a message lies, once, for reading and for writing.
+// Wire layouts as tables: one list of field offsets per message, used for reading and for writing.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace sonard {
 
-/// One field: the type of the member is its type on the wire, little-endian; float and double as IEEE-754.
+/// One field. The member's type is its type on the wire: little-endian integers, IEEE-754 float and double.
 template <class Owner, class Member>
 struct Field {
   std::size_t offset;  ///< from the start of the message
@@ -28,13 +28,13 @@ struct Field {
 template <class Owner, class Member>
 Field(std::size_t, std::string_view, Member Owner::*) -> Field<Owner, Member>;
 
-/// Bytes without a meaning: written as zero, skipped when read.
+/// Bytes without a meaning: written as zero, skipped on reading.
 template <std::size_t Size>
 struct Spare {
   std::size_t offset;
 };
 
-/// Bytes that a member of this type takes on the wire. An optional member may only come last.
+/// Size in bytes of a member of this type on the wire. An optional member must be the last field.
 template <class Member>
 struct WireSize : std::integral_constant<std::size_t, sizeof(Member)> {
   static_assert(std::integral<Member> || std::floating_point<Member> || std::is_enum_v<Member>);
@@ -54,16 +54,18 @@ constexpr std::size_t wire_size(const Spare<Size>&) {
   return Size;
 }
 
-/// A table is a type with `size`, where the last field ends with everything present; `minimum`, up to where
-/// a receiver insists (fields beyond it keep their defaults when the message ends before them); and `fields`,
-/// a tuple of Field and Spare in order of offset. Most messages insist on all of their bytes.
+/// A table is a type with three members:
+///   size     bytes of the complete message
+///   minimum  bytes that a receiver requires; fields beyond it keep their defaults if the message is shorter
+///   fields   a tuple of Field and Spare in order of offset
+/// WholeLayout is for messages that require all of their bytes.
 template <std::size_t Size>
 struct WholeLayout {
   static constexpr std::size_t size = Size;
   static constexpr std::size_t minimum = Size;
 };
 
-/// True when the fields of `Table` follow each other without gap or overlap from `start` to its size.
+/// True if the fields of `Table` cover `start` to its size without gap or overlap.
 template <class Table>
 consteval bool layout_is_contiguous(std::size_t start) {
   std::size_t offset = start;
@@ -76,11 +78,11 @@ consteval bool layout_is_contiguous(std::size_t start) {
   return contiguous && offset == Table::size && Table::minimum <= Table::size;
 }
 
-/// Whole number that holds the bits of a floating-point one.
+/// Unsigned integer type with the bits of a floating-point type.
 template <std::floating_point Value>
 using BitsOf = std::conditional_t<sizeof(Value) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
 
-// ---- Members on the wire, by type. A type of its own brings its own pair, found beside it.
+// ---- Members on the wire, by type. Other types define read_value and write_value beside the type.
 
 template <class Value>
 requires std::integral<Value> || std::is_enum_v<Value>
@@ -143,7 +145,7 @@ void write_value(ByteWriter& writer, const std::optional<Inner>& value) {
 
 // ---- Fields by their table
 
-/// A field is left alone only when it lies beyond the minimum and the message ends before it is whole.
+/// Reads a field. A field beyond the minimum keeps its value if the message ends before the field does.
 template <class Table, class Message, class Member>
 void read_field(ByteReader& reader, Message& message, const Field<Message, Member>& field) {
   if (field.offset < Table::minimum || reader.remaining() >= wire_size(field)) {
@@ -151,7 +153,7 @@ void read_field(ByteReader& reader, Message& message, const Field<Message, Membe
   }
 }
 
-/// Spare bytes at the end count for the length only as far as the minimum.
+/// Skips spare bytes. Spare bytes beyond the minimum may be missing.
 template <class Table, class Message, std::size_t Size>
 void read_field(ByteReader& reader, Message&, const Spare<Size>& spare) {
   const std::size_t end = std::min(spare.offset + Size, std::max(spare.offset, Table::minimum));
@@ -169,7 +171,7 @@ void write_field(ByteWriter& writer, const Message&, const Spare<Size>&) {
   writer.zeros(Size);
 }
 
-/// Reads `message` by `Table`; `reader` stands at its first field.
+/// Reads `message` by `Table`; `reader` must be at the first field.
 template <class Table, class Message>
 void read_fields(ByteReader& reader, Message& message) {
   std::apply([&](const auto&... field) { (read_field<Table>(reader, message, field), ...); }, Table::fields);

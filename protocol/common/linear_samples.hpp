@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of 8 bits as amplitudes, for pictures.
+// Converts 8-bit samples to amplitudes, for pictures.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace sonard {
 
-/// Puts samples in proportion to the amplitude, that were in proportion to its power
-/// (RecordedSettings::amplitude_exponent, > 0); full scale stays what it is.
+/// Makes samples proportional to the amplitude that were proportional to its power `amplitude_exponent` > 0
+/// (RecordedSettings::amplitude_exponent). Full scale does not change.
 void make_linear(std::span<std::uint8_t> samples, double amplitude_exponent);
 
 }  // namespace sonard

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping, on its way from the device, which decides when and with what settings to ping, to the renderer.
+// One ping as the device requests it from the renderer. The device decides the time and the settings.
 #pragma once
 
 #include <chrono>
@@ -10,10 +10,10 @@
 
 namespace sonard {
 
-/// Time on any monotonic clock of the caller's choice; only differences matter.
+/// Time on any monotonic clock that the caller chooses; only differences matter.
 using TimePoint = std::chrono::nanoseconds;
 
-/// One setting as a line of the log shows it: "range" and "20.00m".
+/// One setting as a log line shows it: "range" and "20.00m".
 struct Setting {
   std::string name;
   std::string value;
@@ -21,72 +21,70 @@ struct Setting {
   bool operator==(const Setting&) const = default;
 };
 
-/// Something that a client asked for and a recording does not have.
+/// A difference between a client's request and the recording.
 struct Difference {
   std::string kind;  ///< "range", "gain", ...
   std::string text;  ///< one phrase: "range 20.00 m asked for, 4.00 m sent"
 };
 
-/// One ping to be rendered, in SI units. Every device fills in what it has; the rest keeps its default.
+/// One ping to render, in SI units. Members that a device does not set keep their defaults.
 struct PingJob {
-  /// Counts the jobs of a head: 0, 1, 2, ... Jobs that came to nothing leave gaps.
+  /// Counts the jobs of a head: 0, 1, 2, ... Cancelled or failed jobs leave gaps.
   std::uint64_t number = 0;
-  TimePoint transmit_time{};      ///< when the pulse leaves; a device says how far from now it may be
-  std::uint64_t transmit_us = 0;  ///< transmit time by the clock of the head
-  std::chrono::nanoseconds listening_time{};  ///< until the echo of the last range bin is back
-  /// From this ping to the next where images are there in time: the fastest that the client asks for and the
-  /// head can do.
+  TimePoint transmit_time{};      ///< when the pulse leaves; each device documents how far ahead it may be
+  std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, microseconds
+  std::chrono::nanoseconds listening_time{};  ///< until the echo of the last range bin arrives
+  /// From this ping to the next if images arrive in time: the shortest period that the client requests and
+  /// the head supports.
   std::chrono::nanoseconds period{};
 
-  /// Axis of the beam of a scanning head about the head's vertical: 0 ahead, positive to starboard, in
-  /// [-pi, pi]. A multibeam head does not turn: 0.
+  /// Bearing of a scanning head's beam about the head's vertical: 0 ahead, positive to starboard, in [-pi,
+  /// pi]. 0 for a multibeam head.
   double bearing_rad = 0.0;
   int native_bins = 0;        ///< range bins before compression
-  double native_bin_m = 0.0;  ///< range of each: bin k holds [k, k + 1) of it
-  int compression_log2 = 0;   ///< 2^n of them are averaged into one bin of the image; 0..4
-  bool sixteen_bit = false;   ///< width of the samples that are asked for; false: 8 bits
-  int mode = 0;               ///< of a head that pings in several ways, as its kind numbers them
-  int beams = 0;              ///< of a head that forms more or fewer as it is asked; 0: the kind knows
-  /// A sample is in proportion to the amplitude to this power, which a client may choose; > 0.
+  double native_bin_m = 0.0;  ///< range extent of a native bin: bin k covers [k, k + 1) times this
+  int compression_log2 = 0;   ///< 2^n native bins are averaged into one bin of the image; 0..4
+  bool sixteen_bit = false;   ///< requested width of the samples; false: 8 bits
+  int mode = 0;               ///< ping mode, for heads with several; each device kind has its own numbering
+  int beams = 0;  ///< for heads whose number of beams a client can choose; 0: set by the device kind
+  /// A sample is proportional to the amplitude to this power; > 0. A client may choose it.
   double amplitude_exponent = 1.0;
 
   double sound_speed_mps = 0.0;  ///< true speed in the water
-  /// The speed that the head is set to and forms its beams by; 0: it forms none.
+  /// The speed that the head assumes in its beamforming; 0: the head forms no beams.
   double assumed_sound_speed_mps = 0.0;
-  double pulse_s = 0.0;        ///< duration of a tone; 0: the pulse is none, or the kind of device knows
-  double frequency_hz = 0.0;   ///< of a tone whose frequency a client chooses; 0: the kind of device knows
-  bool transmit = true;        ///< false: the head only listens, there are no echoes but there is noise
-  double gain_db = 0.0;        ///< by the scale of the device
-  double gain_percent = 50.0;  ///< what the client set: for logs
+  double pulse_s = 0.0;        ///< duration of a tone; 0: not a tone, or set by the device kind
+  double frequency_hz = 0.0;   ///< frequency of a tone, if a client can choose it; 0: set by the device kind
+  bool transmit = true;        ///< false: the head only listens; the image holds noise but no echoes
+  double gain_db = 0.0;        ///< on the scale of the device
+  double gain_percent = 50.0;  ///< as set by the client, 0..100; for logs
 
-  /// RecordedPing::record of the ping that answers this job, whatever it asks for; nullopt: it is to be
-  /// rendered.
+  /// RecordedPing::record of the ping that answers this job whatever its settings; nullopt: render the job.
   std::optional<std::uint64_t> record;
-  std::vector<Difference> differences;  ///< from that recorded ping
-  std::vector<Setting> settings;        ///< what the client has set, for the log
+  std::vector<Difference> differences;  ///< between this job and that recorded ping
+  std::vector<Setting> settings;        ///< as set by the client, for the log
 
-  /// Bins of the image; a remainder of native bins that fills no whole bin is not sent.
+  /// Bins of the image. Remaining native bins that do not fill a bin are not sent.
   int bins() const { return native_bins >> compression_log2; }
   double bin_m() const { return native_bin_m * (1 << compression_log2); }
   double range_m() const { return native_bins * native_bin_m; }
 };
 
-/// What the sensors of a head read at one time: how it is turned and how deep it is. A head without such
-/// sensors ignores it.
+/// Readings of a head's attitude and depth sensors at one time. A head without these sensors ignores them.
 struct SensorReadings {
-  double heading_rad = 0.0;  ///< of its x axis, clockwise from north, the y axis of the world; [0, 2 pi)
+  double heading_rad = 0.0;  ///< of the head's x axis, clockwise from north (world y axis); [0, 2 pi)
   double pitch_rad = 0.0;    ///< positive: nose up; [-pi/2, pi/2]
   double roll_rad = 0.0;     ///< positive: starboard side down; [-pi, pi]
   std::optional<double>
-      depth_m;  ///< below the water surface, negative above it; nullopt: there is no surface
+      depth_m;  ///< below the water surface, negative above it; nullopt: the world has no water surface
 
   bool operator==(const SensorReadings&) const = default;
 };
 
 /// The rendered samples of a job: PingJob::bins() times the number of beams, bin after bin from near to far,
-/// each from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
+/// each bin from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
 struct PingImage {
-  std::uint64_t number = 0;  ///< of the job
+  std::uint64_t number = 0;  ///< PingJob::number
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
   std::optional<SensorReadings> readings = {};  ///< at the transmit time; nullopt: not known
@@ -94,9 +92,9 @@ struct PingImage {
 
 /// The ping that a head begins next if it is granted.
 struct NextPing {
-  std::chrono::nanoseconds from{};       ///< not before this, on the clock that the head is given
-  std::chrono::nanoseconds period{};     ///< from the last ping to this one, in whatever time rules
-  std::chrono::nanoseconds listening{};  ///< until its last echo is back, in the same
+  std::chrono::nanoseconds from{};       ///< earliest start, on the clock of Device::step()
+  std::chrono::nanoseconds period{};     ///< from the last ping to this one, in real or simulated time
+  std::chrono::nanoseconds listening{};  ///< from transmission to the last echo, in real or simulated time
 };
 
 }  // namespace sonard

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping as logs keep it, whichever device made it.
+// One ping as logs store it, for all devices.
 #pragma once
 
 #include <cstdint>
@@ -10,47 +10,47 @@
 
 namespace sonard {
 
-/// What a ping was made with, as far as a log says.
+/// Settings of a recorded ping, as far as the log contains them.
 struct RecordedSettings {
   int bins = 0;
   int beams = 0;                        ///< 1: a line of a scanning head
-  double bin_m = 0.0;                   ///< bin k holds [k, k + 1) of it
-  double sound_speed_mps = 0.0;         ///< that ranges are computed with
-  bool sound_speed_from_config = true;  ///< a client had set it; false: the head measured it
-  double gain_percent = -1.0;           ///< 0..100; below 0: the log does not say
-  double frequency_hz = 0.0;            ///< of the sound; 0: the log does not say
-  /// Samples are in proportion to the amplitude to this power, > 0; of those that are decibels it is 1.
+  double bin_m = 0.0;                   ///< range extent of a bin: bin k covers [k, k + 1) times this
+  double sound_speed_mps = 0.0;         ///< used to compute ranges
+  bool sound_speed_from_config = true;  ///< true: set by a client; false: measured by the head
+  double gain_percent = -1.0;           ///< 0..100; below 0: not in the log
+  double frequency_hz = 0.0;            ///< of the sound; 0: not in the log
+  /// Samples are proportional to the amplitude to this power, > 0; 1 for samples in decibels.
   double amplitude_exponent = 1.0;
 
   double range_m() const { return bins * bin_m; }
   bool operator==(const RecordedSettings&) const = default;
 };
 
-/// A ping that has gone out, for logs.
+/// A ping that a head has sent, for logs.
 struct PingRecord {
-  std::uint64_t number = 0;  ///< of its job
+  std::uint64_t number = 0;  ///< PingJob::number
   TimePoint transmit_time{};
   RecordedSettings settings;
   /// Bearing of each beam about the vertical of the head: 0 ahead, positive to starboard.
   std::vector<double> bearings_rad;
-  double sector_rad = 0.0;  ///< filled by the beams of a multibeam head; 0 for a scanning head
-  /// A bin is made of two to the power of this of the head's own range lines.
+  double sector_rad = 0.0;  ///< total sector of a multibeam head's beams; 0 for a scanning head
+  /// 2^n of the head's own range lines make one bin.
   int range_compression_log2 = 0;
-  int bits_per_bin = 8;  ///< on the wire: 8, or 4 where samples are 0..15
-  /// Bin after bin from near to far, each from port to starboard, as a client has them after decoding.
+  int bits_per_bin = 8;  ///< on the wire: 8, or 4 if samples are 0..15
+  /// Bin after bin from near to far, each bin from port to starboard, as a client has them after decoding.
   std::vector<std::uint8_t> samples;
-  std::vector<std::uint8_t> wire;  ///< the message on the wire without its samples; empty: there is none
+  std::vector<std::uint8_t> wire;  ///< the message on the wire without its samples; empty: not kept
 };
 
-/// A recorded ping to be sent again unchanged. A head that plays back ignores the settings that a client asks
-/// for and sends this ping instead.
+/// A recorded ping to send again unchanged. A head that plays back sends it whatever settings a client
+/// requests.
 struct RecordedPing {
   std::uint64_t record = 0;  ///< PingJob::record
   RecordedSettings settings;
-  double bearing_rad = 0.0;        ///< of the beam of a scanning head, see PingRecord::bearings_rad
+  double bearing_rad = 0.0;        ///< of a scanning head's beam, see PingRecord::bearings_rad
   int bits_per_bin = 8;            ///< see PingRecord
   std::vector<std::uint8_t> wire;  ///< see PingRecord
-  std::optional<TimePoint> due;    ///< earliest transmit time; nullopt: when a client wants it
+  std::optional<TimePoint> due;    ///< earliest transmit time; nullopt: at a client's next request
 };
 
 }  // namespace sonard

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A value or the reason why there is none, for things that fail in normal life.
+// A value or an error, for functions that can fail in normal operation.
 #pragma once
 
 #include <cassert>
@@ -10,10 +10,10 @@
 
 namespace sonard {
 
-/// Holds exactly one of a T and an E, both given by implicit conversion:
+/// Holds either a T or an E. Both convert implicitly:
 ///   Result<int, WireError> parse(...) { if (bad) return WireError{...}; return 42; }
-/// Asking for the one that is not there is a broken invariant of the caller: it asserts in debug builds and
-/// is undefined in release builds, so ask has_value() first.
+/// Check has_value() first: access to the missing one asserts in debug builds and is undefined in release
+/// builds.
 template <class T, class E>
 class [[nodiscard]] Result {
   static_assert(!std::is_same_v<T, E> && !std::is_reference_v<T> && !std::is_reference_v<E>);

@@ -11,17 +11,16 @@
 
 namespace sonard {
 
-/// A view of constant bytes that keeps them alive: valid as long as any copy of the value lives, whatever
-/// becomes of the device that made it. Copying costs one reference count, so the lines of a ping, which lie
-/// in one buffer, go out without an allocation each. Converts to std::span<const std::uint8_t>. Copies may
-/// cross threads.
+/// A view of constant bytes that keeps them alive as long as any copy exists, even without the device that
+/// made them. A copy costs one reference count, so the lines of a ping share one buffer without an allocation
+/// per line. Converts to std::span<const std::uint8_t>. Copies may cross threads.
 class SharedBytes {
  public:
   SharedBytes() = default;
-  /// Takes a whole buffer.
+  /// Takes ownership of a whole buffer.
   explicit SharedBytes(std::vector<std::uint8_t> bytes)
       : storage_(std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes))), view_(*storage_) {}
-  /// A part of a shared buffer. Requires offset + size <= storage->size().
+  /// Views a part of a shared buffer. Requires offset + size <= storage->size().
   SharedBytes(std::shared_ptr<const std::vector<std::uint8_t>> storage, std::size_t offset, std::size_t size)
       : storage_(std::move(storage)), view_(std::span(*storage_).subspan(offset, size)) {}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why bytes from a peer were refused: cheap to make, enough for a log line or a metric label.
+// Why bytes from a peer were rejected. Cheap to make; enough for a log line or a metric label.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@ namespace sonard {
 
 enum class WireErrorReason : std::uint8_t {
   truncated,   ///< the message ends before the field does
-  bad_length,  ///< a length stated in the message, or the length of the datagram itself, fits no message
-  bad_value,   ///< a field holds a value that leaves the rest of the message without a meaning
+  bad_length,  ///< a length in the message, or the length of the datagram itself, fits no message
+  bad_value,   ///< a field has a value that makes the rest of the message undecodable
 };
 
-/// Peers send anything; this is a value, never an exception.
+/// A value, never an exception, because peers can send anything.
 struct WireError {
   WireErrorReason reason = WireErrorReason::truncated;
   std::size_t offset = 0;  ///< of the field, in bytes from the start of the datagram or frame
-  std::string_view field;  ///< name of the field as the layout tables spell it; always a string literal
+  std::string_view field;  ///< name of the field as in the layout tables; always a string literal
 
   bool operator==(const WireError&) const = default;
 };
