@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the beams of a Gemini 720i look (docs/protocols/gemini.md 6.5).
+// Bearings of the beams of a Gemini 720i (docs/protocols/gemini.md 6.5).
 #pragma once
 
 #include <vector>
@@ -8,18 +8,17 @@
 
 namespace sonard::gemini {
 
-/// sin of half the nominal 120 degree sector: the beams are spaced evenly in the sine of the bearing.
+/// Sine of half the nominal 120 degree sector. The beams are spaced evenly in the sine of the bearing.
 inline constexpr double sector_edge_sin = 0.86602540378443864676;
 
-/// Bearing of the centre of `beam` (0 = port-most), radians, positive to starboard: -1.0405 for the first of
+/// Bearing of the centre of `beam` (0 = port-most) in radians, positive to starboard; -1.0405 for beam 0 of
 /// 256. Requires 0 <= beam < beams.
 double bearing_rad(int beam, int beams = beam_count);
 
 /// bearing_rad of every beam, port to starboard.
 std::vector<double> bearings_rad(int beams = beam_count);
 
-/// Sine of the bearing of the `beams` + 1 borders of the beams, port to starboard, from -sin 60 to +sin 60
-/// degrees.
+/// Sines of the bearings of the `beams` + 1 beam edges, port to starboard, from -sin 60 to +sin 60 degrees.
 std::vector<double> beam_edges_sin(int beams = beam_count);
 
 }  // namespace sonard::gemini

@@ -60,7 +60,7 @@ void write_header(ByteWriter& writer, std::uint8_t type, const Header& header) {
   writer.u8(header.source);
 }
 
-// ---- Bodies: by the table; an overload for one message says what no table can
+// ---- Bodies: by the layout table; overloads for messages that no table can describe
 
 template <HasLayout Message>
 void read_body(ByteReader& reader, Message& message) {
@@ -140,7 +140,7 @@ void write_body(ByteWriter& writer, const SerialTransmit& message) {
   writer.bytes(data);
 }
 
-/// The length counts itself, and words of two bytes.
+/// The length field counts bytes: its own two and the words.
 void read_body(ByteReader& reader, MdioCommands& message) {
   const std::size_t length = reader.u16le("length");
   if (length < 2 || length % 2 != 0) {
@@ -193,7 +193,7 @@ void write_body(ByteWriter& writer, const SerialData& message) {
 
 // ---- Dispatch over the variants
 
-/// Turns `variant` into a Message and reads it, if that is what `typed` announces.
+/// Turns `variant` into a Message and reads it, if `typed` has its type.
 template <class Message, class Variant>
 void read_if_announced(ByteReader& reader, const TypedHeader& typed, Variant& variant) {
   if constexpr (!std::is_same_v<Message, Unknown>) {

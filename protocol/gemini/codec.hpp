@@ -13,30 +13,30 @@
 
 namespace sonard::gemini {
 
-/// The common header alone; fails only when `datagram` is shorter than 8 bytes. Lets a head look at the sonar
-/// ID before it spends time on the rest.
+/// Decodes the common header only, so that a head can check the sonar ID first. Fails only if `datagram` is
+/// shorter than 8 bytes.
 Result<Header, WireError> decode_header(std::span<const std::uint8_t> datagram);
 
-/// A datagram from a topside. Bytes beyond the message are ignored; a type that no topside sends gives
-/// Unknown; a datagram too short for its type or with a count that does not fit gives an error.
+/// Decodes a datagram from a topside. Ignores bytes beyond the message. Returns Unknown for a type that no
+/// topside sends. Returns an error if the datagram is too short for its type or has an inconsistent count.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> datagram);
 
-/// A datagram from a head, by the same rules. PingLine::data views `datagram`.
+/// Decodes a datagram from a head, by the rules of decode_command(). PingLine::data views `datagram`.
 Result<Report, WireError> decode_report(std::span<const std::uint8_t> datagram);
 
-/// Exactly one datagram. Any message struct converts to its variant: encode(PingTail{...}).
+/// Encodes one datagram. Any message struct converts to its variant: encode(PingTail{...}).
 std::vector<std::uint8_t> encode(const Command& command);
 std::vector<std::uint8_t> encode(const Report& report);
 
-/// Appends the bytes to `out`: no allocation when its capacity is enough. Ping lines take this path.
+/// Appends the bytes to `out` without an allocation if its capacity suffices. Used for ping lines.
 void encode(const Command& command, std::vector<std::uint8_t>& out);
 void encode(const Report& report, std::vector<std::uint8_t>& out);
 
-/// The header of whichever message is held.
+/// The header of the message in the variant.
 const Header& header_of(const Command& command);
 const Header& header_of(const Report& report);
 
-/// The type byte of whichever message is held, also for Unknown.
+/// The type byte of the message in the variant, also for Unknown.
 std::uint8_t type_of(const Command& command);
 std::uint8_t type_of(const Report& report);
 

@@ -49,7 +49,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   return config;
 }
 
-/// Ones, then zeros.
+/// True if `mask` is ones followed by zeros.
 bool is_netmask(std::uint32_t mask) {
   return mask != 0 && std::has_single_bit(~mask + 1ULL);
 }
@@ -75,7 +75,7 @@ std::vector<std::uint8_t> block_bytes(const Block& block) {
   return bytes;
 }
 
-/// Reads and changes nothing, so that it may come from anybody (docs/security.md).
+/// True if a command only reads, so that any client may send it (docs/security.md).
 bool only_reads(const Command& command) {
   return std::holds_alternative<StatusRequest>(command) || std::holds_alternative<FlashRead>(command) ||
          std::holds_alternative<InfoBlockRead>(command) ||
@@ -83,7 +83,7 @@ bool only_reads(const Command& command) {
          std::holds_alternative<DiagnosticRequest>(command) || std::holds_alternative<RetryRequest>(command);
 }
 
-/// A healthy head in cool water; only the values that clients show (3.3).
+/// Status of a healthy head in cool water, with only the values that clients show (3.3).
 Status healthy_status() {
   Status status;
   status.die_temperature = die_temperature_code(45.0);
@@ -120,16 +120,16 @@ class Device::Impl {
     write_block(AddressBlock{config.alternate_address, config.netmask}, address_bank);
   }
 
-  // One for each event.
+  // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& datagram);
   void take(TimePoint, const ClientCame&) {}
-  void take(TimePoint, const ClientGone&) {}  // not the topside, which is the sender of the last command
+  void take(TimePoint, const ClientGone&) {}  // unused: the topside is the sender of the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
   void take(TimePoint now, const TriggerEdge&);
   void take(TimePoint, const WaterChanged& water);
-  void take(TimePoint, const SensorsRead&) {}  // it has none
+  void take(TimePoint, const SensorsRead&) {}  // the head has no such sensors
   void take(TimePoint, const PingFed& feed) { pinger_.feed(feed.ping); }
   void take(TimePoint, const PingGranted&) { pinger_.grant(); }
 
@@ -147,7 +147,7 @@ class Device::Impl {
   }
 
  private:
-  /// Everything that arrives while the head reboots falls on deaf ears.
+  /// While the head reboots it ignores everything that arrives.
   bool rebooting(TimePoint now) const { return now < boot_time_; }
   std::optional<TimePoint> next_deadline() const;
   bool locked_against(Ipv4 sender) const;
@@ -158,7 +158,7 @@ class Device::Impl {
   void send_status(TimePoint now);
   Status make_status(TimePoint now) const;
 
-  // One for each command; those that need no answer and change nothing share the last.
+  // One overload for each command.
   void handle(TimePoint now, const StatusRequest& command);
   void handle(TimePoint now, const PingConfig& command);
   void handle(TimePoint now, const FlashWrite& command);
@@ -179,7 +179,7 @@ class Device::Impl {
   void handle(TimePoint, const ProductionTest&) {}
   void handle(TimePoint, const PowerOnSelfTest&) {}
   void handle(TimePoint, const AbortProductionTest&) {}
-  void handle(TimePoint, const Unknown&) {}  // take() has dropped it
+  void handle(TimePoint, const Unknown&) {}  // never called: take() drops unknown commands
 
   template <class Block>
   void write_block(const Block& block, std::size_t bank) {
@@ -213,16 +213,16 @@ class Device::Impl {
   bool out_of_water_ = false;
 
   Ipv4 topside_ = 0;
-  Ipv4 noticed_topside_ = 0;  ///< that the last notice was about
-  Ipv4 paused_for_ = 0;       ///< whose programme is paused, while Pinger::paused()
-  Ipv4 reply_from_ = 0;       ///< pings come from here
-  Peer asker_;                ///< who has sent the command that is being done
+  Ipv4 noticed_topside_ = 0;  ///< topside_ at the last notice
+  Ipv4 paused_for_ = 0;       ///< topside whose programme is paused, while Pinger::paused()
+  Ipv4 reply_from_ = 0;       ///< source address of pings
+  Peer asker_;                ///< sender of the command in progress
   TimePoint last_command_{};
 
   FlashStore flash_;
   Pinger pinger_;
   std::vector<SharedBytes> ping_datagrams_;  ///< scratch of advance()
-  Actions actions_;                          ///< of the step that is under way
+  Actions actions_;                          ///< of the step in progress
 };
 
 // ---- Commands
@@ -249,7 +249,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
     return;
   }
   if (std::holds_alternative<Unknown>(*command)) {
-    ++counters_.unknown_type;  // taken in silence: it says nothing, not even that a topside is there
+    ++counters_.unknown_type;  // dropped; it does not count as a sign of a topside either
     return;
   }
   if (locked_against(datagram.from.remote.address)) {
@@ -280,7 +280,7 @@ bool Device::Impl::locked_against(Ipv4 sender) const {
   return config_.lock_to_first && topside_ != 0 && topside_ != sender;
 }
 
-/// To whom pings go, or would once it speaks again; 0: nobody.
+/// The topside that receives pings, or whose programme is paused; 0: there is no such topside.
 Ipv4 Device::Impl::holder() const {
   return topside_ == 0 && pinger_.paused() ? paused_for_ : topside_;
 }
@@ -288,7 +288,7 @@ Ipv4 Device::Impl::holder() const {
 void Device::Impl::connect(TimePoint now) {
   const Ipv4 sender = asker_.remote.address;
   if (topside_ != 0 && topside_ != sender) {
-    ++counters_.topside_changes;  // the newest wins; what is on the wire goes on to it
+    ++counters_.topside_changes;  // the newest wins and receives the rest of the ping on the wire
   }
   topside_ = sender;
   reply_from_ = asker_.local;
@@ -302,16 +302,16 @@ void Device::Impl::connect(TimePoint now) {
 void Device::Impl::handle(TimePoint now, const StatusRequest&) {
   Acknowledge acknowledge;
   acknowledge.receipt_us = clock_us(now);
-  acknowledge.reply_us = acknowledge.receipt_us;  // at once
+  acknowledge.reply_us = acknowledge.receipt_us;  // sent in the same step
   reply(acknowledge);
 }
 
 void Device::Impl::handle(TimePoint now, const PingConfig& command) {
-  pinger_.resume(now);  // a paused programme of another is replaced
+  pinger_.resume(now);  // this configuration replaces a paused programme of another topside
   pinger_.configure(now, command);
 }
 
-/// The last ping was the topside's alone.
+/// Only the topside may request repeats, because only it received the last ping.
 void Device::Impl::handle(TimePoint now, const RetryRequest& command) {
   if (asker_.remote.address == topside_) {
     pinger_.on_retry(now, command);
@@ -343,7 +343,7 @@ void Device::Impl::handle(TimePoint, const FlashRead& command) {
 }
 
 void Device::Impl::handle(TimePoint, const InfoBlockWrite& command) {
-  // Identity and velocimeter blocks are for production: stored and shown on reading, without further effect.
+  // Identity and velocimeter blocks are for production: they are stored and can be read, but have no effect.
   const std::size_t bank = command.block.index();
   std::visit([&](const auto& block) { write_block(block, bank); }, command.block);
   FlashResult result;
@@ -358,7 +358,7 @@ void Device::Impl::handle(TimePoint, const InfoBlockRead& command) {
 }
 
 void Device::Impl::handle(TimePoint now, const Reboot& command) {
-  // Any other value speaks to the boot loader, which this head has left long ago.
+  // All other values address the boot loader, which this head does not run.
   constexpr std::uint8_t into_main_image = 1;
   if (command.control != into_main_image) {
     return;
@@ -372,8 +372,8 @@ void Device::Impl::handle(TimePoint now, const Reboot& command) {
   apply_programmed_addresses();
 }
 
-// A page that holds no usable address (erased, cleared, a mask with holes) leaves the head where it is:
-// no client could reach it elsewhere.
+// If the page holds no usable address (erased, cleared, a mask with holes), the head keeps its addresses so
+// that clients can reach it.
 void Device::Impl::apply_programmed_addresses() {
   const FlashStore::Page page = flash_.read(info_block_addresses.at(address_bank));
   ByteReader reader(page);
@@ -409,7 +409,7 @@ void Device::Impl::send_status(TimePoint now) {
     return;
   }
   actions_.send.push_back({Outgoing::To::everybody, {}, SharedBytes(encode(Report{make_status(now)}))});
-  // Keeps the phase; what a late caller has missed is lost.
+  // Keeps the phase; statuses that a late caller missed are skipped.
   next_status_ += config_.status_period * ((now - next_status_) / config_.status_period + 1);
 }
 
@@ -476,7 +476,7 @@ std::optional<TimePoint> Device::Impl::next_deadline() const {
   return std::min(next, pinger_.next_deadline().value_or(next));
 }
 
-// ---- The door
+// ---- Device
 // ---------------------------------------------------------------------------------------------------
 
 Device::Device(const DeviceConfig& config, TimePoint boot_time)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Gemini 720i as a pure state machine: datagrams and time go in; datagrams and jobs come out.
-// It knows no sockets, clocks, threads or images beyond sample bytes. Source: docs/protocols/gemini.md.
+// The Gemini 720i as a pure state machine: input is datagrams and time, output is datagrams and jobs.
+// It uses no sockets, clocks or threads, and of images only sample bytes. Source: docs/protocols/gemini.md.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace sonard::gemini {
 
-/// The addresses a head answers on, and the mask it reports.
+/// The addresses that a head answers on, and the mask that it reports.
 struct DeviceAddresses {
   Ipv4 fixed = 0;
   Ipv4 alternate = 0;
@@ -22,13 +22,13 @@ struct DeviceAddresses {
   bool operator==(const DeviceAddresses&) const = default;
 };
 
-/// One head. It has one channel: the socket on port 52901. What goes to everybody is a status packet. Steps
-/// that come late are caught up within the pacing rules: no more than DeviceConfig::burst_lines ping
-/// datagrams leave at once. Out of the water the head does not ping unless the configuration says so, and
-/// reports it in its status. A job may come before its transmit time by DeviceConfig::render_lead.
+/// One head with one channel, the socket on port 52901. It broadcasts only status packets. It catches up
+/// after late steps within the pacing rules: at most DeviceConfig::burst_lines ping datagrams leave at once.
+/// Out of the water the head reports this in its status; it pings only if the ping configuration requests it.
+/// A job may come up to DeviceConfig::render_lead before its transmit time.
 class Device final : public sonard::Device {
  public:
-  /// Boots at `boot_time`: the clock of the head is 0 then, and the first status is due.
+  /// Boots at `boot_time`, when the clock of the head is 0 and the first status is due.
   /// @throws std::invalid_argument naming the field of `config` that is out of range
   Device(const DeviceConfig& config, TimePoint boot_time);
   ~Device() override;
@@ -38,15 +38,15 @@ class Device final : public sonard::Device {
   std::vector<Counter> counts() const override;
 
   const DeviceCounters& counters() const;
-  /// The connected topside; 0 when none is.
+  /// The connected topside; 0 if no topside is connected.
   Ipv4 topside() const;
-  /// What the head answers on. Changes when a reboot applies an address that a client has programmed
-  /// (3.7, 3.9); the server then moves its sockets while the head is still silent.
+  /// The addresses that the head answers on. They change when a reboot applies an address that a client has
+  /// programmed (3.7, 3.9). The server then moves its sockets while the head is still silent.
   DeviceAddresses addresses() const;
-  /// The machine that serves the head has another address: status packets report it from now on, and a reboot
-  /// keeps it, as if it had been programmed.
+  /// Sets a new address of the machine that serves the head. Status packets report it from now on. A reboot
+  /// keeps it, like a programmed address.
   void move_to(Ipv4 alternate, Ipv4 netmask);
-  /// Microseconds of the head's clock at `now`; 0 while it reboots.
+  /// The head's clock at `now` in microseconds; 0 while it reboots.
   std::uint64_t clock_us(TimePoint now) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything a user may set about a simulated Gemini 720i, as plain values.
+// All settings of a simulated Gemini 720i, as plain values.
 #pragma once
 
 #include <array>
@@ -12,45 +12,43 @@
 
 namespace sonard::gemini {
 
-/// Section numbers are those of docs/protocols/gemini.md. The Device constructor refuses what is out of
-/// range.
+/// Section numbers refer to docs/protocols/gemini.md. The Device constructor rejects values out of range.
 struct DeviceConfig {
   std::uint16_t sonar_id = 513;  ///< >= 2 (1.4)
   Ipv4 fixed_address = 0x0A3D13C8;
-  Ipv4 alternate_address =
-      0;                      ///< what the head reports beside it: reachable by the client and non-zero (1.2)
-  Ipv4 netmask = 0xFFFFFF00;  ///< the real mask of the interface served, or later clients stay silent
+  Ipv4 alternate_address = 0;  ///< second reported address: non-zero, the client must reach it (1.2)
+  Ipv4 netmask = 0xFFFFFF00;   ///< must be the real mask of the interface, or later clients stay silent
   std::array<std::uint8_t, 6> mac{0x00, 0x12, 0x34, 0x00, 0x02, 0x01};
-  bool accept_id_zero = false;         ///< also take commands with header ID 0
+  bool accept_id_zero = false;         ///< also accept commands with header ID 0
   std::uint16_t topside_port = 52900;  ///< every reply goes to this port of the topside (1.1)
 
-  /// True speed of sound at the head; 0: the water has the speed of the ping configuration, so that the
-  /// client's ranges are true (6.7). Otherwise > 0.
+  /// True speed of sound at the head, >= 0. 0: the speed of the ping configuration, so that the client's
+  /// ranges are correct (6.7).
   double water_sound_speed_mps = 0.0;
-  bool snap_sound_speed = false;  ///< report speeds on the device's grid of 3.2 m/s from 1400 m/s (5)
+  bool snap_sound_speed = false;  ///< report speeds on the device's grid: 3.2 m/s steps from 1400 m/s (5)
   GainLaw gain;
 
   std::chrono::nanoseconds status_period{std::chrono::seconds{1}};    ///< > 0 (1.3)
   std::chrono::nanoseconds min_ping_period{33'300'000};               ///< start to start, > 0 (8.4)
   std::chrono::nanoseconds topside_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
-  std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< of silence, >= 0 (3.9)
-  /// While a topside is connected the commands of all other addresses are dropped (docs/security.md).
+  std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< silence on reboot, >= 0 (3.9)
+  /// While a topside is connected, drop the commands of all other addresses (docs/security.md).
   bool lock_to_first = false;
 
-  std::chrono::nanoseconds line_period{27'000};     ///< least mean distance of ping datagrams, > 0 (8.5)
-  int burst_lines = 32;                             ///< most ping datagrams sent back to back, 1..1024
+  std::chrono::nanoseconds line_period{27'000};     ///< minimum mean time between ping datagrams, > 0 (8.5)
+  int burst_lines = 32;                             ///< maximum ping datagrams sent back to back, 1..1024
   std::chrono::nanoseconds retry_hold{10'000'000};  ///< a new head waits this long after the last retry (7.3)
   std::chrono::nanoseconds retry_hold_max{50'000'000};  ///< but never longer than this
 
-  /// How long before its transmit time a ping may be handed out for rendering; >= 0. With 0 it is handed out
-  /// at its transmit time, when the pose is known. More lets the ping be rendered while the previous one is
-  /// still being sent, which shortens the shortest ping period by as much, and the pose is then a prediction.
+  /// How long before its transmit time a ping may be given out for rendering; >= 0. With 0 the pose is known.
+  /// With more, the ping renders while the previous one is still being sent. This shortens the minimum ping
+  /// period by as much, but the pose is a prediction.
   std::chrono::nanoseconds render_lead{0};
 
-  /// The head sends the pings that it is fed (PingFed), and no others.
+  /// The head sends only the pings that it is fed (PingFed).
   bool plays_back = false;
-  /// A ping begins only when it is granted (PingGranted), not at the head's own time: whoever grants it
-  /// keeps to NextPing. For pings that follow a simulated time.
+  /// A ping begins only when it is granted (PingGranted), not at the head's own time. The granter observes
+  /// NextPing. For pings that follow a simulated time.
   bool waits_for_permission = false;
 };
 

@@ -13,9 +13,9 @@ namespace sonard::gemini {
 namespace {
 
 constexpr std::size_t line_header_size = 16;
-constexpr std::uint16_t resent_head_bit = 0x0100;  // of PingHead::ping_id
+constexpr std::uint16_t resent_head_bit = 0x0100;  // bit of PingHead::ping_id
 
-/// The samples of one line after another in the form that travels.
+/// Samples of single lines, encoded as in PingLine::data.
 class LineSamples {
  public:
   LineSamples(const PingHead& head, const PingImage& image) : head_(head), image_(image) {}

@@ -12,19 +12,19 @@
 
 namespace sonard::gemini {
 
-/// 8 MiB [inferred: the last info block lies just below], erased to 0xFF. Only pages that were written take
-/// memory. Lives as long as the head object, across reboots of the head; nothing is kept on disk.
+/// Flash of 8 MiB [inferred: the last info block lies just below], erased to 0xFF. Only written pages take
+/// memory. The content survives reboots of the head, but is never stored on disk.
 class FlashStore {
  public:
   static constexpr std::uint32_t size = 0x800000;
 
   using Page = std::array<std::uint8_t, flash_page_size>;
 
-  /// Replaces the page that contains `address` with `data`, the rest of the page is erased. False when the
+  /// Replaces the page that contains `address` with `data` and erases the rest of the page. False if the
   /// address is beyond the memory. Requires data.size() <= flash_page_size.
   bool write_page(std::uint32_t address, std::span<const std::uint8_t> data);
 
-  /// 1 KiB from `address` on, which may begin anywhere; 0xFF where nothing was written or memory ends.
+  /// Returns 1 KiB from any `address` on; 0xFF in unwritten pages and beyond the memory.
   Page read(std::uint32_t address) const;
 
  private:

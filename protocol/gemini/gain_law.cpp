@@ -8,8 +8,9 @@ namespace sonard::gemini {
 
 namespace {
 
-// The early library turns g percent into trunc(500 exp((g - 100) / 25)): percent is logarithmic in
-// `spreading`. 0 percent gives 9, 100 percent gives 500; nothing is known to act beyond that.
+// The early library sends trunc(500 exp((g - 100) / 25)) for g percent, so percent is logarithmic in
+// `spreading`. 0 percent gives 9, 100 percent gives 500. Values outside are assumed to have no further
+// effect.
 constexpr double percent_per_neper = 25.0;
 constexpr double spreading_at_0_percent = 9.0;
 constexpr double spreading_at_100_percent = 500.0;
@@ -28,10 +29,9 @@ double gain_percent(std::uint16_t spreading) {
 }
 
 double spreading_gain_db(std::uint16_t spreading, const GainLaw& law) {
-  // Why this law: both client libraries offer a linear slider in percent and a user expects equal steps of it
-  // to sound equal, so dB is taken as linear in percent. `spreading` is all that travels, and the two
-  // libraries disagree about what 50 percent is in it; the head cannot tell them apart and gets the same
-  // value alike.
+  // Both client libraries have a linear slider in percent, and users expect equal steps to have equal effect.
+  // So dB is linear in percent. Only `spreading` is sent, and the two libraries encode 50 percent
+  // differently. The head cannot distinguish the libraries and treats equal values alike.
   const double audible = std::clamp<double>(spreading, spreading_at_0_percent, spreading_at_100_percent);
   const double percent_above_reference = percent_per_neper * std::log(audible / law.reference_spreading);
   return law.db_per_percent * percent_above_reference;

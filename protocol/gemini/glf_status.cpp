@@ -30,7 +30,7 @@ std::array<std::uint16_t, 3> mac_words(const MacAddress& mac) {
 }
 
 double celsius(std::uint16_t code) {
-  return temperature_celsius(code).value_or(0.0);  // a sensor that is not there
+  return temperature_celsius(code).value_or(0.0);  // 0 for a missing sensor
 }
 
 }  // namespace

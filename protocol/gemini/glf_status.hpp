@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A status packet in the fields that a .glf log has (docs/logs.md 1.5).
+// Converts a status packet to the fields of a .glf log (docs/logs.md 1.5).
 #pragma once
 
 #include "protocol/gemini/messages.hpp"
@@ -7,7 +7,7 @@
 
 namespace sonard::gemini {
 
-/// Temperatures of amplifiers that a 720i does not have are 0. The origin is left to the log.
+/// Converts a status packet. Temperatures of missing amplifiers are 0. The log sets the origin.
 glf::StatusRecord glf_status(const Status& status);
 
 }  // namespace sonard::gemini

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a topside knows of the clock of a head.
+// A topside's estimate of the clock of a head.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace sonard::gemini {
 
-/// Turns the topside's time into the least time that the clock of the head can show, from stamped datagrams:
-/// a stamp is never younger than its arrival. Tells a ping that was transmitted before a configuration left
-/// from one that answers it, however late it arrives.
+/// Computes the earliest time that the clock of the head can show, from the time stamps of datagrams. A stamp
+/// is never newer than its arrival. With this bound the topside recognises a ping that was transmitted before
+/// the configuration was sent, however late the ping arrives.
 class HeadClock {
  public:
-  /// A datagram stamped `head_us` arrived at `now`. Only the newest few count, so that slow drift cannot add
-  /// up. Stamps that no clock of a head reaches are ignored.
+  /// Adds a datagram stamped `head_us` that arrived at `now`. Only the newest 8 count, so that slow drift
+  /// does not accumulate. Stamps above `most_us` are ignored.
   void observe(std::chrono::nanoseconds now, std::uint64_t head_us) {
     if (head_us > most_us) {
       return;
@@ -26,10 +26,10 @@ class HeadClock {
     count_ = std::min(count_ + 1, behind_.size());
   }
 
-  /// The head was started again; its old stamps mean nothing.
+  /// Drops all stamps, after a restart of the head.
   void forget() { count_ = next_ = 0; }
 
-  /// The clock of the head shows at least this at `now`, in microseconds; 0 while nothing is known.
+  /// Lower bound of the head's clock at `now` in microseconds; 0 before the first stamp.
   std::uint64_t at_least_us(std::chrono::nanoseconds now) const {
     if (count_ == 0) {
       return 0;
@@ -43,7 +43,7 @@ class HeadClock {
   /// Two crystals drift apart by less than 2 ms over the seconds that the samples span.
   static constexpr std::chrono::nanoseconds slack = std::chrono::milliseconds{2};
 
-  /// A hundred years, which nanoseconds can still hold.
+  /// 100 years, which still fits in nanoseconds.
   static constexpr std::uint64_t most_us = 3'153'600'000'000'000;
 
   std::array<std::chrono::nanoseconds, 8> behind_{};  ///< topside time less head time, ring

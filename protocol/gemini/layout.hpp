@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where each field of each fixed-layout message lies: the one table that the codec reads and writes by, and
-// that tools can print. Source: docs/protocols/gemini.md 3, 5, 6. The variable messages (SerialTransmit,
-// MdioCommands, PingLine's data, SerialData, InfoBlockWrite) have their variable part written out in
-// codec.cpp.
+// Layout tables of all fixed-layout messages, used by the codec for reading and writing, and printable by
+// tools. Source: docs/protocols/gemini.md 3, 5, 6. codec.cpp handles the variable parts (SerialTransmit,
+// MdioCommands, PingLine's data, SerialData, InfoBlockWrite).
 #pragma once
 
 #include <algorithm>
@@ -230,7 +229,7 @@ struct Layout<Status> : WholeLayout<110> {
 template <>
 struct Layout<PingHead> {
   static constexpr std::size_t size = 48;
-  static constexpr std::size_t minimum = 46;  // the last field and the padding are younger than the message
+  static constexpr std::size_t minimum = 46;  // earlier heads lack the last field and the padding
   static constexpr auto fields = std::tuple{
       Field{8, "ping_id", &PingHead::ping_id},
       Field{10, "ext_mode", &PingHead::ext_mode},
@@ -254,7 +253,7 @@ struct Layout<PingHead> {
   };
 };
 
-/// Up to the data, which follow.
+/// Without the data, which follow.
 template <>
 struct Layout<PingLine> : WholeLayout<16> {
   static constexpr auto fields = std::tuple{
@@ -343,7 +342,7 @@ struct Layout<Diagnostic> : WholeLayout<18> {
   };
 };
 
-/// Messages whose layout is all there is to them, or all but their last part.
+/// Messages with a layout table. The table may lack their last, variable part.
 template <class Message>
 concept HasLayout = requires {
   Layout<Message>::size;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages of a Gemini 720i as values, both directions, one struct per message.
 // Source: docs/protocols/gemini.md, section numbers beside each struct. Members keep the device's own
-// integers and units, so that decode and encode lose nothing; member functions and helpers give them a
-// meaning. Members not sent by any known peer (spare fields) are written as zero and skipped when read.
-// "Topside" is the computer of the vehicle; "head" is the sonar. Multi-byte integers travel little-endian.
+// integers and units, so that decode and encode lose nothing; member functions and helpers convert them.
+// Spare fields are written as zero and skipped on reading.
+// "Topside" is the computer of the vehicle; "head" is the sonar. Multi-byte integers are little-endian.
 #pragma once
 
 #include <array>
@@ -22,10 +22,10 @@ inline constexpr std::uint16_t topside_port =
 inline constexpr std::uint16_t head_port = 52901;  ///< every command goes to this UDP port (1.1)
 
 inline constexpr std::size_t header_size = 8;
-inline constexpr std::size_t max_datagram_size = 1472;  ///< nothing may fragment at MTU 1500 (1.1)
+inline constexpr std::size_t max_datagram_size = 1472;  ///< no fragmentation at MTU 1500 (1.1)
 inline constexpr std::size_t flash_page_size = 1024;
 
-inline constexpr int beam_count = 256;            ///< of every 720i ping
+inline constexpr int beam_count = 256;            ///< in every 720i ping
 inline constexpr int channel_count = 96;          ///< receive elements
 inline constexpr double line_rate_hz = 90422.0;   ///< native range lines per second (6.7)
 inline constexpr double carrier_hz = 723'380.0;   ///< of the sound (9)
@@ -68,10 +68,10 @@ enum class MessageType : std::uint8_t {
   diagnostic = 0x4D,
 };
 
-/// Bytes 0..7 of every message without the type, which the struct implies (2). A head accepts any value but
-/// in sonar_id.
+/// Bytes 0..7 of every message without the type, which the struct implies (2). A head accepts any values
+/// except in sonar_id.
 struct Header {
-  std::uint16_t sonar_id = 0;        ///< of the addressed or sending head
+  std::uint16_t sonar_id = 0;        ///< ID of the addressed or sending head
   std::uint8_t version = 1;          ///< of the data link
   std::uint16_t packet_latency = 0;  ///< never implemented; 0
   std::uint8_t destination = 0;      ///< sub-device; later clients send 2
@@ -80,14 +80,14 @@ struct Header {
   bool operator==(const Header&) const = default;
 };
 
-/// Octets in the order they are written, most significant first; on the wire they travel backwards.
+/// Octets in the order of the text form, most significant first; the order on the wire is reversed.
 struct MacAddress {
   std::array<std::uint8_t, 6> octets{};
 
   bool operator==(const MacAddress&) const = default;
 };
 
-/// A message of a type that this library does not know. Take it in silence (3.1).
+/// A message of an unknown type. Receivers must ignore it (3.1).
 struct Unknown {
   Header header{};
   std::uint8_t type = 0;
@@ -131,11 +131,11 @@ inline constexpr std::uint16_t scope_data = 0x1000;
 inline constexpr std::uint16_t no_time_delay_beamforming = 0x2000;
 }  // namespace ext_bits
 
-/// Native lines per sent line as a power of two: bits 2..0, where 5..7 count as 0 (6.1).
+/// Native lines per sent line as a power of two: bits 2..0; 5..7 count as 0 (6.1).
 int compression_log2(std::uint16_t range_compression);
 
-/// 0x21, 68 bytes: settings of the receiver, and the order to ping (5). A new one replaces the last.
-/// Defaults are those of the early client library.
+/// 0x21, 68 bytes: settings of the receiver, and the command to ping (5). A new one replaces the last.
+/// Defaults are from the early client library.
 struct PingConfig {
   static constexpr MessageType type = MessageType::ping_config;
   Header header{};
@@ -148,7 +148,7 @@ struct PingConfig {
   std::uint16_t tx_length = 4;           ///< pulse, carrier cycles, 0..255; 0: listen without transmitting
   std::uint16_t tx_angle = 0;            ///< not implemented
   std::uint16_t main_gain = 1000;        ///< bits 15..14 base gain in steps of 5.5 dB; 13..0 variable gain
-  std::uint16_t absorption = 0;          ///< 12 bit, units undocumented
+  std::uint16_t absorption = 0;          ///< 12 bits, units undocumented
   std::uint32_t software_gain = 0xFF00;  ///< scale undocumented
   std::uint16_t spreading = 250;         ///< carries the percent gain of later clients (5)
   std::uint16_t auto_gain = 0;           ///< not implemented in the head
@@ -156,11 +156,10 @@ struct PingConfig {
   std::uint16_t shade_bank = 1;          ///< 0 none; 1..7 = 15..45 dB in steps of 5 dB
   std::uint16_t sound_speed = 15'000;    ///< 0.1 m/s
   std::uint16_t velocimeter_mode = 1;    ///< bit 0: 1 use sound_speed, 0 use the head's velocimeter
-  std::uint16_t range_compression =
-      0;                             ///< bits 2..0 see compression_log2; bit 8 peak (a 720i averages always)
-  std::uint16_t rle_threshold = 0;   ///< see rle_threshold_applied
-  std::uint16_t sample_channel = 0;  ///< 0..95, for DataType::channel_samples
-  std::uint16_t velocimeter_gain = 0;      ///< ignored
+  std::uint16_t range_compression = 0;  ///< bits 2..0: compression_log2; bit 8: peak (a 720i always averages)
+  std::uint16_t rle_threshold = 0;      ///< see rle_threshold_applied
+  std::uint16_t sample_channel = 0;     ///< 0..95, for DataType::channel_samples
+  std::uint16_t velocimeter_gain = 0;   ///< ignored
   std::uint8_t velocimeter_tx_length = 1;  ///< cycles
   std::uint8_t tx_mark = 29;               ///< transmitter mark time
   std::uint16_t image_mode = 0;
@@ -171,16 +170,16 @@ struct PingConfig {
 
   RunMode mode() const { return static_cast<RunMode>(run_mode & 3); }
   DataType data_type() const { return static_cast<DataType>(ext_mode & ext_bits::data_type_mask); }
-  /// Samples of one byte: bit 2 set and the data are magnitudes.
+  /// True if samples have one byte: bit 2 is set and the data are magnitudes.
   bool eight_bit() const;
   bool pings_out_of_water() const { return (ext_mode & ext_bits::ping_out_of_water) != 0; }
   bool uses_configured_sound_speed() const { return (velocimeter_mode & 1) != 0; }
   double sound_speed_mps() const { return sound_speed * 0.1; }
   int compression_log2() const { return gemini::compression_log2(range_compression); }
-  /// Lines the head will send: floor(end_range / 2^compression_log2).
+  /// Number of lines that the head sends: floor(end_range / 2^compression_log2).
   int line_count() const { return end_range >> compression_log2(); }
-  /// Threshold that the head really uses: 0 when off or when samples are not 8-bit magnitudes; 1 and 2 act as
-  /// 3; above 255 acts as 255.
+  /// Threshold that the head applies: 0 if off or if samples are not 8-bit magnitudes. 1 and 2 act as 3;
+  /// values above 255 act as 255.
   std::uint8_t rle_threshold_applied() const;
 
   bool operator==(const PingConfig&) const = default;
@@ -224,7 +223,7 @@ struct VelocimeterBlock {
   bool operator==(const VelocimeterBlock&) const = default;
 };
 
-/// Bank 2: what a user may program. Takes effect at the next reboot (3.7).
+/// Bank 2, programmable by users. Takes effect at the next reboot (3.7).
 struct AddressBlock {
   std::uint32_t alternate_ip = 0;  ///< first octet most significant
   std::uint32_t subnet_mask = 0;   ///< first octet most significant
@@ -232,8 +231,8 @@ struct AddressBlock {
   bool operator==(const AddressBlock&) const = default;
 };
 
-/// 0x24, 28 bytes for bank 0, 152 for banks 1 and 2 (3.7). Answered by FlashResult. The 128 filler bytes of
-/// the long form are uninitialised memory of the sender and are dropped.
+/// 0x24, 28 bytes for bank 0, 152 for banks 1 and 2 (3.7). Answered by FlashResult. The decoder drops the 128
+/// filler bytes of the long form, which are uninitialised memory of the sender.
 struct InfoBlockWrite {
   static constexpr MessageType type = MessageType::info_block_write;
   Header header{};
@@ -256,12 +255,12 @@ struct InfoBlockRead {
 struct SerialTransmit {
   static constexpr MessageType type = MessageType::serial_transmit;
   Header header{};
-  std::vector<std::uint8_t> data{};  ///< at most 255; encode() leaves out what is beyond
+  std::vector<std::uint8_t> data{};  ///< at most 255 bytes; encode() drops the rest
 
   bool operator==(const SerialTransmit&) const = default;
 };
 
-/// 0x2B, 12 bytes (3.9). No answer: the head goes away.
+/// 0x2B, 12 bytes (3.9). No answer: the head reboots.
 struct Reboot {
   static constexpr MessageType type = MessageType::reboot;
   Header header{};
@@ -306,11 +305,11 @@ struct AbortProductionTest {
 
 enum class RetryKind : std::uint16_t { head = 0, lines = 1, tail = 2 };
 
-/// 0x30, 16 bytes: send parts of the last ping again (3.5, 7).
+/// 0x30, 16 bytes: requests parts of the last ping again (3.5, 7).
 struct RetryRequest {
   static constexpr MessageType type = MessageType::retry_request;
   Header header{};
-  RetryKind kind = RetryKind::head;  ///< the wire may carry any other value: ignore the request then
+  RetryKind kind = RetryKind::head;  ///< may be any value on the wire; a head ignores unknown ones
   std::uint16_t first_line = 0;      ///< 0-based, for RetryKind::lines
   std::uint16_t line_count = 1;      ///< 0 counts as 1
 
@@ -327,7 +326,7 @@ struct NetworkConfig {
   std::uint8_t rate_adaption = 0;      ///< VDSL retraining, bits in 3.6
   std::uint16_t baud_divisor = 1302;   ///< of the serial port; 1302 = 9600 baud
   std::uint16_t serial_poll_us = 50'000;
-  std::uint16_t inter_packet_gap = 0;  ///< least distance of ping datagrams in units of 8 ns
+  std::uint16_t inter_packet_gap = 0;  ///< minimum time between ping datagrams, units of 8 ns
   std::uint16_t serial_routing = 0;
   std::optional<std::uint16_t>
       extension;  ///< only in the 22-byte form, meaning unknown; later clients send 10000
@@ -339,8 +338,7 @@ struct NetworkConfig {
 struct MdioCommands {
   static constexpr MessageType type = MessageType::mdio_commands;
   Header header{};
-  std::vector<std::uint16_t>
-      words;  ///< at most 731, so that the datagram stays whole; encode() drops the rest
+  std::vector<std::uint16_t> words;  ///< at most 731 to fit into a datagram; encode() drops the rest
 
   bool operator==(const MdioCommands&) const = default;
 };
@@ -371,7 +369,7 @@ struct GpioRead {
   bool operator==(const GpioRead&) const = default;
 };
 
-/// 0x36, 12 bytes (3.11). Answered by Diagnostic; later clients ask until they get it.
+/// 0x36, 12 bytes (3.11). Answered by Diagnostic; later clients repeat it until answered.
 struct DiagnosticRequest {
   static constexpr MessageType type = MessageType::diagnostic_request;
   Header header{};
@@ -379,7 +377,7 @@ struct DiagnosticRequest {
   bool operator==(const DiagnosticRequest&) const = default;
 };
 
-/// 0xC8, 10 bytes: the topside stops listening (8.2). A head stops pinging. No answer.
+/// 0xC8, 10 bytes: the topside stops listening and the head must stop pinging (8.2). No answer.
 struct GoingOffline {
   static constexpr MessageType type = MessageType::going_offline;
   Header header{};
@@ -389,19 +387,20 @@ struct GoingOffline {
 
 // ---- Head -> topside
 
-/// Sensor of a board as sent in Status: bit 15 present, bits 9..0 two's complement in 0.25 degC (3.3).
-/// Clamps to -128 .. +127.75; rounds to the nearest step. "Not fitted" is plain 0.
+/// Code of a board temperature in Status: bit 15 present, bits 9..0 two's complement in 0.25 degC (3.3).
+/// Clamps to -128 .. +127.75; rounds to the nearest step. The code of a missing sensor is 0.
 std::uint16_t temperature_code(double celsius);
-/// Inverse of temperature_code; nullopt when bit 15 is clear.
+/// Inverse of temperature_code; nullopt if bit 15 is clear.
 std::optional<double> temperature_celsius(std::uint16_t code);
-/// Die temperature of the FPGA: code * 503.975 / 1024 - 273.15 degC, rounded, clamped to 10 bits (3.3).
+/// Code of the FPGA's die temperature, code * 503.975 / 1024 - 273.15 degC; rounded, clamped to 10 bits
+/// (3.3).
 std::uint16_t die_temperature_code(double celsius);
 double die_temperature_celsius(std::uint16_t code);
 
 /// Bits of Status::shutdown_status (3.3).
 namespace shutdown_bits {
 inline constexpr std::uint16_t over_temperature = 0x0001;
-inline constexpr std::uint16_t out_of_water_stop = 0x0002;  ///< pings are held back for it
+inline constexpr std::uint16_t out_of_water_stop = 0x0002;  ///< out of the water, so the head does not ping
 inline constexpr std::uint16_t out_of_water = 0x0004;
 }  // namespace shutdown_bits
 
@@ -412,23 +411,23 @@ inline constexpr std::uint16_t ethernet_10 = 0x0002;
 inline constexpr std::uint16_t ethernet_100 = 0x0004;
 }  // namespace link_bits
 
-/// 0x40, 110 bytes: who the head is and how it feels, once a second, also the means of discovery (3.3, 1.3).
-/// Defaults describe a healthy 720i on 100 Mbit/s Ethernet; sonar_id and the addresses are left to the head.
+/// 0x40, 110 bytes: identity and health of the head, sent once a second, also for discovery (3.3, 1.3).
+/// Defaults describe a healthy 720i on 100 Mbit/s Ethernet; the head sets sonar_id and the addresses.
 struct Status {
   static constexpr MessageType type = MessageType::status;
   Header header{};
   std::uint16_t firmware_version = 0x0119;
   std::uint16_t sonar_id = 0;           ///< equals header.sonar_id
   std::uint32_t fixed_ip = 0x0A3D13C8;  ///< first octet most significant
-  std::uint32_t alternate_ip = 0;       ///< non-zero and reachable, or later clients send nothing
-  std::uint32_t surface_ip = 0;         ///< 0 when none is connected
+  std::uint32_t alternate_ip = 0;       ///< must be non-zero and reachable, or later clients send nothing
+  std::uint32_t surface_ip = 0;         ///< address of the connected topside; 0: not connected
   std::uint16_t flags = 0;              ///< high byte: product code, 0 = 720i
   std::uint16_t vcc_int = 341;          ///< raw monitor code, 1.0 V
   std::uint16_t vcc_aux = 853;          ///< raw monitor code, 2.5 V
   std::uint16_t dc_voltage = 2400;      ///< taken as 0.01 V
   std::uint16_t die_temperature = 0;    ///< die_temperature_code
-  std::uint16_t dip_switches = 0;       ///< not on a 720i
-  std::uint16_t vga1a_temperature = 0;  ///< temperature_code, as all that follow
+  std::uint16_t dip_switches = 0;       ///< a 720i has no DIP switches
+  std::uint16_t vga1a_temperature = 0;  ///< temperature_code, like all further temperatures
   std::uint16_t vga1b_temperature = 0;
   std::uint16_t vga2a_temperature = 0;
   std::uint16_t vga2b_temperature = 0;
@@ -440,10 +439,10 @@ struct Status {
   std::uint16_t tx1_temperature = 0;
   std::uint16_t tx2_temperature = 0;
   std::uint16_t tx3_temperature = 0;
-  std::uint32_t boot_status = 0x00000105;        ///< (value & 0x1FF) == 1 would read as "boot loader"
+  std::uint32_t boot_status = 0x00000105;        ///< (value & 0x1FF) == 1 means "boot loader"
   std::uint16_t shutdown_status = 0;             ///< bits of namespace shutdown_bits
   std::uint16_t die_shutdown_temperature = 0;    ///< die_temperature_code
-  std::uint16_t vga1a_shutdown_temperature = 0;  ///< temperature_code, as all that follow
+  std::uint16_t vga1a_shutdown_temperature = 0;  ///< temperature_code, like all further temperatures
   std::uint16_t vga1b_shutdown_temperature = 0;
   std::uint16_t vga2a_shutdown_temperature = 0;
   std::uint16_t vga2b_shutdown_temperature = 0;
@@ -465,7 +464,7 @@ struct Status {
   bool operator==(const Status&) const = default;
 };
 
-/// PingHead::sound_speed_used for a speed in 0.1 m/s that came from the ping configuration.
+/// Bit of PingHead::sound_speed_used: the speed is from the ping configuration.
 inline constexpr std::uint16_t sound_speed_from_config = 0x8000;
 
 /// 0x41, 48 bytes; 46 and 47 are accepted (6.2).
@@ -473,27 +472,28 @@ struct PingHead {
   static constexpr MessageType type = MessageType::ping_head;
   Header header{};
   std::uint16_t ping_id = 0;           ///< 0..255; later clients discard other values (6.3)
-  std::uint16_t ext_mode = 0;          ///< echo of the configuration
+  std::uint16_t ext_mode = 0;          ///< copied from the configuration
   std::uint64_t transmit_time_us = 0;  ///< head clock
   std::uint16_t start_range = 0;
-  std::uint16_t end_range = 0;  ///< echo of the configuration: native lines
+  std::uint16_t end_range = 0;  ///< native lines, as in the configuration but limited by plan_ping()
   std::uint32_t line_time = 0;  ///< not implemented; 0
   std::uint16_t beams = beam_count;
   std::uint16_t channels = channel_count;
   std::uint8_t sample_channel = 0;
-  std::uint8_t base_gain = 0;           ///< 0..3: bits 15..14 of the main gain
-  std::uint16_t velocimeter_speed = 0;  ///< 0.1 m/s; never 0 from a head
+  std::uint8_t base_gain = 0;           ///< bits 15..14 of the main gain, 0..3
+  std::uint16_t velocimeter_speed = 0;  ///< 0.1 m/s; a head never sends 0
   std::uint16_t velocimeter_echo_time = 0;
   std::uint16_t velocimeter_readings = 1;
   std::uint16_t tx_angle = 0;
   std::uint16_t sound_speed_used = 0;  ///< bits 14..0 in 0.1 m/s; bit 15: sound_speed_from_config
-  std::uint8_t rle_threshold = 0;      ///< applied by the head: 0, or 3..255
-  std::uint8_t range_compression = 0;  ///< applied by the head: 0..4
-  std::uint8_t decimation = 0;         ///< 0 on a 720i; absent from 46-byte heads
+  std::uint8_t rle_threshold = 0;      ///< as applied by the head: 0, or 3..255
+  std::uint8_t range_compression = 0;  ///< as applied by the head: 0..4
+  std::uint8_t decimation = 0;         ///< 0 on a 720i; absent in 46-byte messages
 
   bool eight_bit() const { return (ext_mode & ext_bits::eight_bit) != 0; }
   int compression_log2() const { return gemini::compression_log2(range_compression); }
-  /// Lines that follow: floor((end_range - start_range) / 2^compression_log2), never negative (6.1).
+  /// Number of lines that follow: floor((end_range - start_range) / 2^compression_log2), never negative
+  /// (6.1).
   int line_count() const;
   double sound_speed_mps() const { return (sound_speed_used & 0x7FFF) * 0.1; }
 
@@ -503,8 +503,8 @@ struct PingHead {
 inline constexpr std::uint16_t resent_line = 0x8000;  ///< bit of PingLine::line_id
 inline constexpr std::uint16_t last_line = 0x0040;    ///< bit of PingLine::line_info
 
-/// PingLine::line_info: words of 32 bits, last line or not, low bits of the ext mode (6.4).
-/// `data_bytes` is a multiple of 4, at most 2044.
+/// PingLine::line_info: number of 32-bit words, last-line flag, low bits of the ext mode (6.4).
+/// `data_bytes` must be a multiple of 4, at most 2044.
 constexpr std::uint16_t make_line_info(std::size_t data_bytes, bool last, std::uint16_t ext_mode) {
   return static_cast<std::uint16_t>((data_bytes / 4) << 7 | (last ? last_line : 0U) | (ext_mode & 0x3FU));
 }
@@ -518,8 +518,8 @@ struct PingLine {
   std::uint16_t line_id = 0;    ///< bits 14..0 line number, counted after compression; bit 15 resent_line
   std::uint16_t scale = 0;      ///< software gain of this line, scale undocumented
   std::uint16_t line_info = 0;  ///< see make_line_info()
-  /// Samples or their run-length coded form. A view: into the datagram after decode_report, into the caller's
-  /// bytes for encode. On the wire its length is 4 * word_count(); encode() expects the two to agree.
+  /// Samples or their run-length coded form. After decode_report() it views the datagram; for encode() it
+  /// views the caller's bytes. Its length must be 4 * word_count().
   std::span<const std::uint8_t> data{};
 
   int line_number() const { return line_id & 0x7FFF; }
@@ -527,7 +527,7 @@ struct PingLine {
   bool last() const { return (line_info & last_line) != 0; }
   std::size_t word_count() const { return line_info >> 7; }
 
-  bool operator==(const PingLine& other) const;  ///< compares the bytes that `data` views
+  bool operator==(const PingLine& other) const;  ///< compares the viewed bytes of `data`
 };
 
 inline constexpr std::uint8_t resent_tail = 0x80;  ///< bit of PingTail::flags
@@ -549,14 +549,14 @@ struct FlashResult {
   static constexpr MessageType type = MessageType::flash_result;
   Header header{};
   std::uint32_t address = 0;
-  std::uint16_t result = 0x8000;  ///< bit 15 ready; success when all other bits are clear
+  std::uint16_t result = 0x8000;  ///< bit 15: ready; all other bits clear: success
 
   bool success() const { return (result & 0x7FFF) == 0; }
 
   bool operator==(const FlashResult&) const = default;
 };
 
-/// Address in FlashReadback that answers InfoBlockRead of bank 0, 1, 2 (3.7).
+/// FlashReadback::address in the answer to InfoBlockRead of bank 0, 1, 2 (3.7).
 inline constexpr std::array<std::uint32_t, 3> info_block_addresses{0x3E0000, 0x7C0000, 0x7E0000};
 
 /// 0x45, 1040 bytes (3.7).
@@ -579,7 +579,7 @@ struct VelocimeterData {
   bool operator==(const VelocimeterData&) const = default;
 };
 
-/// One byte that came in at the serial port of the head.
+/// One byte received at the serial port of the head.
 struct SerialByte {
   std::uint64_t time_us = 0;  ///< head clock; the wire carries the low 56 bits
   std::uint8_t value = 0;
@@ -600,13 +600,13 @@ struct SerialData {
 struct Acknowledge {
   static constexpr MessageType type = MessageType::acknowledge;
   Header header{};
-  std::uint64_t receipt_us = 0;  ///< head clock when the request arrived
-  std::uint64_t reply_us = 0;    ///< head clock when this left
+  std::uint64_t receipt_us = 0;  ///< head clock at the arrival of the request
+  std::uint64_t reply_us = 0;    ///< head clock at the sending of this message
 
   bool operator==(const Acknowledge&) const = default;
 };
 
-/// 0x4A, 54 bytes (3.10). Defaults are the answer of a healthy head.
+/// 0x4A, 54 bytes (3.10). Defaults: a healthy head.
 struct TestResult {
   static constexpr MessageType type = MessageType::test_result;
   Header header{};
@@ -640,7 +640,7 @@ struct GpiData {
   bool operator==(const GpiData&) const = default;
 };
 
-/// 0x4D, 18 bytes: identities of the boards, any value (3.11).
+/// 0x4D, 18 bytes: identities of the boards; any values are valid (3.11).
 struct Diagnostic {
   static constexpr MessageType type = MessageType::diagnostic;
   Header header{};
@@ -653,13 +653,13 @@ struct Diagnostic {
   bool operator==(const Diagnostic&) const = default;
 };
 
-/// Everything a topside says.
+/// All messages from a topside.
 using Command = std::variant<StatusRequest, PingConfig, FlashWrite, FlashRead, InfoBlockWrite, InfoBlockRead,
                              SerialTransmit, Reboot, TestResultRequest, ProductionTest, PowerOnSelfTest,
                              AbortProductionTest, RetryRequest, NetworkConfig, MdioCommands, TxDriveTest,
                              GpoWrite, GpioRead, DiagnosticRequest, GoingOffline, Unknown>;
 
-/// Everything a head says.
+/// All messages from a head.
 using Report =
     std::variant<Status, PingHead, PingLine, PingTail, FlashResult, FlashReadback, VelocimeterData,
                  SerialData, Acknowledge, TestResult, MdioAcknowledge, GpiData, Diagnostic, Unknown>;

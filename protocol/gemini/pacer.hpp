@@ -9,39 +9,37 @@
 
 namespace sonard::gemini {
 
-/// A leaky bucket: datagrams leave at one per period on average, and a few of them may leave back to back.
-/// The allowance for that is what a real head does not need but a caller on a host does, whose timers are
-/// coarser than 27 us and sometimes late. In any span of time t no more than burst + t / period datagrams
-/// leave.
+/// A leaky bucket: on average one datagram leaves per period, and a few may leave back to back. In any time t
+/// at most burst + t / period datagrams leave. The burst exists because timers of a host are coarser than
+/// 27 us and sometimes late; a real head does not need it.
 ///
-/// Being late therefore costs nothing up to about half a burst (the caller wakes up once per half a burst,
-/// see wake_batch()), and beyond that it delays the rest of the ping by as much: the 100 Mbit/s link of a
-/// real head could not make up for it either.
+/// A delay of up to about half a burst costs nothing: the caller wakes up once per half a burst, see
+/// wake_batch(). A longer delay delays the rest of the ping by as much, because the 100 Mbit/s link of a real
+/// head could not catch up either.
 ///
-/// The interPacketGap of the topside is a least distance, not an average: when it is long enough to matter,
-/// datagrams leave one by one.
+/// The interPacketGap of the topside is a minimum time, not an average. If it exceeds 5 us, datagrams leave
+/// one by one.
 class Pacer {
  public:
   Pacer(std::chrono::nanoseconds period, int burst) : configured_period_(period), configured_burst_(burst) {
     set_gap({});
   }
 
-  /// Least distance as asked for by the topside. A host needs a few microseconds to hand over a datagram, so
-  /// shorter gaps are met within a burst.
+  /// Sets the minimum time between datagrams that the topside requests. A host needs a few microseconds per
+  /// datagram, so a burst observes shorter gaps anyway.
   void set_gap(std::chrono::nanoseconds gap) {
     period_ = std::max(configured_period_, gap);
     burst_ = gap > std::chrono::microseconds{5} ? 1 : configured_burst_;
   }
 
-  /// When `count` datagrams can leave, the last of them at that time and the others then or before.
+  /// Earliest time by which `count` datagrams can have left.
   TimePoint earliest(int count) const { return next_ + (count - burst_) * period_; }
-  /// One may leave now.
+  /// True if a datagram may leave now.
   bool ready(TimePoint now) const { return now >= earliest(1); }
-  /// One left at `now`.
+  /// Records that a datagram left at `now`.
   void sent(TimePoint now) { next_ = std::max(next_, now) + period_; }
 
-  /// Datagrams worth waking up for when there are many: half a burst, so that the other half absorbs
-  /// lateness.
+  /// Number of datagrams to collect before a wake-up: half a burst, so that the other half absorbs delays.
   int wake_batch() const { return std::max(1, burst_ / 2); }
 
  private:
@@ -49,7 +47,8 @@ class Pacer {
   int configured_burst_;
   std::chrono::nanoseconds period_{};
   int burst_ = 1;
-  /// When the next datagram would leave if all kept the period exactly. Far in the past: the line is free.
+  /// When the next datagram would leave if all kept the period exactly. Initially far in the past: a free
+  /// line.
   TimePoint next_ = TimePoint::min() / 2;
 };
 

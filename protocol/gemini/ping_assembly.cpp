@@ -31,7 +31,7 @@ void PingAssembly::set_head(const PingHead& head) {
   } else {
     samples_.u16.assign(samples, 0);
   }
-  // Start over: a line that waited counts only now that its content could be read.
+  // Count again: a waiting line counts only if its content can be decoded.
   received_.assign(lines, false);
   lines_received_ = 0;
   for (const Waiting& line : std::exchange(waiting_, {})) {

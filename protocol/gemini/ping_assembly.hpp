@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping as it comes together at the topside: head, lines and tail in any order, some twice, some never.
+// Assembles one ping at the topside. Head, lines and tail come in any order, may repeat or be lost.
 // Source: docs/protocols/gemini.md 6, 7.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace sonard::gemini {
 
-/// Neighbouring lines, `first` and `count` - 1 after it.
+/// `count` consecutive lines from `first` on.
 struct LineRange {
   int first = 0;
   int count = 0;
@@ -21,49 +21,49 @@ struct LineRange {
 };
 
 /// Samples of a ping, line after line, port to starboard; near lines first. Exactly one vector is filled.
-/// Samples of lines that never came are zero.
+/// Samples of lost lines are zero.
 struct PingSamples {
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
 };
 
-/// Whether a topside can make an image of what this head announces: beam magnitudes, at least one line, and
-/// sizes that fit the line numbers (15 bits) and datagrams of the protocol.
+/// True if a topside can make an image of the announced ping: beam magnitudes, at least one line, and sizes
+/// that fit the line numbers (15 bits) and datagrams of the protocol.
 bool is_receivable(const PingHead& head);
 
-/// Collects what arrives; asks for nothing itself. Lines that come before the head wait for it, because only
-/// the head says how to read them.
+/// Collects the parts of a ping, but requests nothing. Lines that come before the head wait for it, because
+/// only the head describes their format.
 class PingAssembly {
  public:
-  /// What became of a line.
+  /// Result of adding a line.
   enum class Added {
     fresh,      ///< it was missing
-    duplicate,  ///< it was there already
-    unusable    ///< its number or length does not fit the head, or it is shorter than it says
+    duplicate,  ///< it had been received already
+    unusable    ///< its number or length does not fit the head
   };
 
-  /// `id`: low byte of the ping ID, which lines and tail carry too.
+  /// @param id low byte of the ping ID, which lines and tail contain too
   explicit PingAssembly(std::uint8_t id) : id_(id) {}
 
   std::uint8_t id() const { return id_; }
   const std::optional<PingHead>& head() const { return head_; }
 
-  /// Requires is_receivable(head) and that no head is set yet. Reads the lines that waited for it.
+  /// Sets the head and decodes the waiting lines. Requires is_receivable(head) and that no head is set yet.
   void set_head(const PingHead& head);
-  /// Copies out of `line`. Before the head the answer is `fresh` for each line number seen first.
+  /// Copies the samples of `line`. Before the head is set, the first line of each number is `fresh`.
   Added add_line(const PingLine& line);
 
-  /// Lines announced by the head; 0 before it.
+  /// Number of lines that the head announces; 0 before the head.
   int line_count() const { return head_ ? head_->line_count() : 0; }
   int lines_received() const { return lines_received_; }
   bool has_line(int number) const;
-  /// Head and every line are there. The tail carries nothing of the image.
+  /// True if the head and all lines are there. The tail holds no part of the image.
   bool is_complete() const { return head_ && lines_received_ == line_count(); }
 
-  /// The lines of [from, to) that are missing, neighbours merged. Requires 0 <= from.
+  /// The missing lines of [from, to), consecutive ones merged. Requires 0 <= from.
   std::vector<LineRange> missing(int from, int to) const;
 
-  /// Moves the samples out; the assembly is spent. Without a head there are none.
+  /// Moves the samples out; the assembly cannot be used afterwards. Empty if there is no head.
   PingSamples take_samples();
 
  private:
@@ -72,7 +72,7 @@ class PingAssembly {
     std::vector<std::uint8_t> data;
   };
 
-  /// Decodes into the image; false when `data` holds fewer samples than the head announces beams.
+  /// Decodes into the image; false if `data` holds fewer samples than the head announces beams.
   bool store(int number, std::span<const std::uint8_t> data);
   void mark(int number);
 

@@ -65,7 +65,7 @@ PingConfig make_ping_config(const PingSettings& settings) {
   config.spreading = static_cast<std::uint16_t>(500.0 * std::exp((gain_percent - 100.0) / 25.0));
   config.filter_bank = filter_bank(settings.range_m);
   config.sound_speed = static_cast<std::uint16_t>(std::lround(10.0 * sound_speed_mps));
-  config.velocimeter_mode = 1;  // use the speed given here, in which range_m was counted
+  config.velocimeter_mode = 1;  // use the speed above, because range_m was converted with it
   config.range_compression = static_cast<std::uint16_t>(std::clamp(settings.compression_log2, 0, 4));
   config.rle_threshold = static_cast<std::uint16_t>(std::clamp(settings.rle_threshold, 0, 255));
   config.software_gain_ramp = 18;

@@ -11,8 +11,8 @@ namespace sonard::gemini {
 
 namespace {
 
-// The receivers' timers look at the last 25 and 35 lines and run for 5 ms; one millisecond is left for late
-// timers and for the time on the wire.
+// The receivers' timers watch the last 25 and 35 lines and run for 5 ms. One millisecond is reserved for late
+// timers and the time on the wire.
 constexpr int final_lines = 36;
 constexpr std::chrono::nanoseconds final_window = std::chrono::milliseconds{4};
 
@@ -39,7 +39,7 @@ void PingTransmission::send(TimePoint now, Pacer& pacer, std::vector<SharedBytes
 TimePoint PingTransmission::next_send(const Pacer& pacer) const {
   const int remaining = ping_.datagram_count() - next_;
   const int count =
-      next_ == 0 ? 1 : std::min(pacer.wake_batch(), remaining);  // clients wait for the head alone
+      next_ == 0 ? 1 : std::min(pacer.wake_batch(), remaining);  // send the head at once: clients wait for it
   return std::max(pacer.earliest(count), available_at(next_ + count - 1));
 }
 
@@ -53,7 +53,7 @@ TimePoint PingTransmission::available_at(int index) const {
     return transmit_time_;
   }
   const int lines = ping_.line_count();
-  const int line = std::min(index - 1, lines - 1);  // the tail is there with the last line
+  const int line = std::min(index - 1, lines - 1);  // the tail may leave with the last line
   const TimePoint line_received = transmit_time_ + acoustic_time((line + 1) << compression_log2_);
   if (line < lines - final_lines) {
     return line_received;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ping on its way to the topside, in the order and at the times at which a head sends it.
+// Transmission of one ping to the topside, in the order and at the times of a real head.
 #pragma once
 
 #include <optional>
@@ -11,26 +11,26 @@
 
 namespace sonard::gemini {
 
-/// Three rules say when a datagram leaves (docs/protocols/gemini.md 8.5): never before the sound of its range
-/// is back; paced by the Pacer; and the last 36 lines and the tail close together, because clients take slow
-/// last lines for a lost tail. After the tail it stays as the copy that retries are served from.
+/// Three rules decide when a datagram leaves (docs/protocols/gemini.md 8.5): not before the echo from its
+/// range arrives; paced by the Pacer; and the last 36 lines and the tail close together, because clients
+/// mistake slow last lines for a lost tail. After the tail the object serves retries.
 class PingTransmission {
  public:
-  /// `compression_log2` native lines per line as a power of two; `transmit_time` is that of the pulse.
+  /// 2^`compression_log2` native lines make one line; `transmit_time` is the start of the pulse.
   PingTransmission(EncodedPing ping, TimePoint transmit_time, int compression_log2);
 
   const EncodedPing& ping() const { return ping_; }
   bool finished() const { return next_ == ping_.datagram_count(); }
   /// Lines sent so far.
   int lines_sent() const;
-  /// When the tail left; nullopt until then.
+  /// When the tail was sent; nullopt before.
   std::optional<TimePoint> tail_sent_at() const { return tail_sent_at_; }
 
-  /// Appends what may leave now to `out`.
+  /// Appends the datagrams that may leave now to `out`.
   void send(TimePoint now, Pacer& pacer, std::vector<SharedBytes>& out);
-  /// When send() is next worth calling; requires !finished(). Lines are collected to small bursts.
+  /// When to call send() next; requires !finished(). Collects lines into small bursts.
   TimePoint next_send(const Pacer& pacer) const;
-  /// When the tail will have left if no call comes late; requires !finished().
+  /// When the tail leaves if no call is late; requires !finished().
   TimePoint predicted_end(const Pacer& pacer) const;
 
  private:

@@ -10,8 +10,8 @@ namespace sonard::gemini {
 
 namespace {
 
-// A start that comes this late is still dated at the time at which it was due, so that the timers of the host
-// do not slow the ping rate down. One that comes later is dated at the time at which it came.
+// A ping that starts at most this late gets its due time as transmit time, so that host timers do not slow
+// down the ping rate. A ping that starts later gets the current time.
 constexpr std::chrono::nanoseconds start_slack = std::chrono::milliseconds{5};
 
 std::optional<TimePoint> earlier(std::optional<TimePoint> a, std::optional<TimePoint> b) {
@@ -42,7 +42,7 @@ void Pinger::configure(TimePoint now, const PingConfig& config) {
   programme_.reset();
   pings_out_of_water_ = config.pings_out_of_water();
   if (acquisition_ && acquisition_->transmit_time > now) {
-    // Rendered ahead of its time. For the topside it has not begun, so the new settings come first.
+    // This ping is being rendered ahead of its transmit time. The topside has not seen it, so replace it.
     earliest_start_ = acquisition_->earliest_start_before;
     cancel_acquisition();
   }
@@ -61,7 +61,7 @@ void Pinger::on_trigger(TimePoint now) {
   if (!programme_ || programme_->mode != RunMode::external_trigger) {
     return;
   }
-  // An edge is a moment; a head that is busy cannot make up for it later.
+  // A busy head drops the edge and does not ping for it later.
   const bool too_early = now < earliest_start_ && !config_.waits_for_permission;
   if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || too_early) {
     ++counters_.pings_suppressed;
@@ -116,18 +116,17 @@ const PingPlan* Pinger::wanted_plan() const {
   return programme_ && programme_->mode == RunMode::continuous ? &*programme_ : nullptr;
 }
 
-// The rate rules (8.4) between two starts: not before the last echo is back, nor more often than the head
-// can.
+// Minimum time between two starts by the rate rules (8.4): the listening time and the head's own minimum.
 std::chrono::nanoseconds Pinger::period_of(const PingPlan& plan) const {
   return std::max(config_.min_ping_period, plan.job.listening_time);
 }
 
-// From a ping that begins now to the next one that is asked for.
+// Time from a ping that begins now to the next requested one.
 std::chrono::nanoseconds Pinger::wanted_period(const PingPlan& plan) const {
   return single_ ? period_of(plan) : std::max(plan.interval, period_of(plan));
 }
 
-// In the head's time. With simulated time the grant keeps these rules in that time.
+// In the head's time. With simulated time the granter observes these rules in simulated time.
 TimePoint Pinger::earliest_by_rate() const {
   if (config_.waits_for_permission) {
     return single_ ? single_->asked_at : boot_time_;
@@ -139,7 +138,7 @@ TimePoint Pinger::earliest_by_rate() const {
   return std::max(wanted_at, earliest_start_);
 }
 
-// Nor before the previous tail was sent. nullopt while no ping can be started or none is wanted.
+// Not before the previous tail was sent. nullopt if no ping can start or is wanted.
 std::optional<TimePoint> Pinger::next_transmit_time() const {
   if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
       (config_.plays_back && !fed_)) {
@@ -149,7 +148,7 @@ std::optional<TimePoint> Pinger::next_transmit_time() const {
   if (!sending()) {
     return transmission_ ? std::max(time, transmission_->tail_sent_at().value_or(time)) : time;
   }
-  // Pacing is deterministic, so the end of the ping on the wire is known ahead.
+  // Pacing is deterministic, so the end of the ping on the wire is known in advance.
   return config_.render_lead.count() > 0 ? std::optional(std::max(time, transmission_->predicted_end(pacer_)))
                                          : std::nullopt;
 }
@@ -226,7 +225,7 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
   }
   unanswered_.reset();
   if (!acquisition_) {
-    ++counters_.stale_images;  // cancelled meanwhile
+    ++counters_.stale_images;  // the ping was cancelled meanwhile
     return;
   }
   if (!fits(image, acquisition_->plan.job)) {
@@ -235,7 +234,8 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
     return;
   }
   PingHead head = acquisition_->plan.head;
-  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients want 0..255 (6.3)
+  head.ping_id =
+      static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients require 0..255 (6.3)
   head.transmit_time_us = clock_us(acquisition_->transmit_time);
   acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
   acquisition_->record = record_of(head, image);
@@ -267,9 +267,9 @@ void Pinger::cancel_acquisition() {
 // ---- On the wire
 // ------------------------------------------------------------------------------------------------
 
-// The new head is held back for a topside that is still repairing the last ping (7.3): while requests wait,
-// and for a while after the last one. A topside that asked for its next single ping after its last request is
-// done with the old one; only what it has already asked for is served first.
+// A new head waits while the topside still repairs the last ping (7.3): while requests are queued, and for
+// retry_hold after the last request. If the topside requested its next single ping after its last retry
+// request, it has finished the old ping; then the head waits only for the queued requests.
 std::optional<TimePoint> Pinger::head_due() const {
   if (!acquisition_ || !acquisition_->encoded || sending()) {
     return std::nullopt;
@@ -290,8 +290,8 @@ std::optional<TimePoint> Pinger::head_due() const {
 }
 
 void Pinger::put_on_wire() {
-  // Requests carry no ping ID: one for the old ping, served now, would make the topside ask for all of the
-  // new one.
+  // Requests have no ping ID. Serving one for the old ping now would make the topside request all of the new
+  // one.
   drop_retries(acquisition_->encoded->line_count());
   last_retry_arrival_.reset();
   last_retry_activity_.reset();
@@ -322,7 +322,7 @@ void Pinger::on_retry(TimePoint now, const RetryRequest& request) {
 }
 
 void Pinger::serve_retries(TimePoint now, std::vector<SharedBytes>& out) {
-  // A tail sent again in the middle of a ping would make the topside ask for all lines still to come.
+  // A tail resent in the middle of a ping would make the topside request all remaining lines.
   if (!transmission_ || sending()) {
     return;
   }

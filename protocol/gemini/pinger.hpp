@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a head pings, and what it sends for it: run modes, rate limits, transmission, retries.
+// Run modes, rate limits, transmission and retries of a head's pings.
 // Source: docs/protocols/gemini.md 7.3, 8.
 #pragma once
 
@@ -20,16 +20,16 @@
 
 namespace sonard::gemini {
 
-/// The part of a Device that pings. It knows no addresses: what it sends goes to the topside that is
-/// connected.
+/// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the connected
+/// topside.
 ///
-/// A ping goes through three stages. *Wanted*: a configuration, the interval or a trigger edge asks for it.
-/// *Acquired*: its transmit time is fixed, its job is out, its image is awaited. *On the wire*: from its head
-/// on; it stays as the copy for retries until the next head. A ping may be acquired while the last one is on
-/// the wire (only if DeviceConfig::render_lead allows) or is still being repaired.
+/// A ping has three stages. *Wanted*: a configuration, the interval or a trigger edge requests it.
+/// *Acquired*: its transmit time is fixed, its job has been issued, its image is pending. *On the wire*: from
+/// its head on; it serves retries until the next head. A ping may be acquired while the last one is on the
+/// wire (only if DeviceConfig::render_lead allows) or is still being repaired.
 class Pinger {
  public:
-  /// `config` and `counters` outlive the pinger. The clock of the head is 0 at `boot_time`.
+  /// `config` and `counters` must outlive the pinger. The clock of the head is 0 at `boot_time`.
   Pinger(const DeviceConfig& config, DeviceCounters& counters, TimePoint boot_time);
 
   void configure(TimePoint now, const PingConfig& config);
@@ -44,30 +44,30 @@ class Pinger {
   std::optional<NextPing> next_ping() const;
   void grant() { granted_ = true; }
 
-  /// The topside goes offline: no further pings. One that is on the wire is finished.
+  /// Stops pinging because the topside goes offline. Finishes the ping on the wire.
   void stop();
-  /// The topside has gone silent: sends nothing more; a continuous or triggered programme waits for resume().
+  /// Stops sending because the topside is silent. A continuous or triggered programme waits for resume().
   void suspend();
   void resume(TimePoint now);
-  /// A programme waits for resume().
+  /// True if a programme waits for resume().
   bool paused() const { return suspended_ && programme_; }
-  /// The head reboots: forgets everything but the job that is still to be answered, and the count of pings.
+  /// Reboots the head. Keeps only the unanswered job and the count of pings.
   void reset(TimePoint boot_time);
 
   /// Appends the datagrams due at `now` to `out`.
   void advance(TimePoint now, std::vector<SharedBytes>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
-  /// The ping that has gone onto the wire since the last call; advance() begins one at most.
+  /// The ping that went onto the wire since the last call; advance() begins at most one.
   std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
   /// See Actions::cancelled.
   std::optional<std::uint64_t> cancelled() const { return acquisition_ ? std::nullopt : unanswered_; }
 
-  /// Pinging is held back because the head is out of the water and was not told to ping anyway.
+  /// True if the head does not ping because it is out of the water and the configuration does not allow it.
   bool stopped_by_air() const { return out_of_water_ && !pings_out_of_water_; }
 
  private:
-  /// A ping that is to start as soon as the rules allow.
+  /// A ping that starts as soon as the rules allow.
   struct Wanted {
     PingPlan plan;
     TimePoint asked_at{};
@@ -77,11 +77,11 @@ class Pinger {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
     TimePoint asked_at{};
-    TimePoint earliest_start_before{};  ///< earliest_start_ as it was, should this ping never begin
+    TimePoint earliest_start_before{};  ///< earlier value of earliest_start_, in case this ping never begins
     double gain_percent = 0.0;          ///< for logs; below 0: unknown
-    std::optional<EncodedPing> encoded = std::nullopt;  ///< set when the image has come
-    PingRecord record = {};                             ///< from then on
-    TimePoint ready_at{};                               ///< when it came
+    std::optional<EncodedPing> encoded = std::nullopt;  ///< set at the arrival of the image
+    PingRecord record = {};                             ///< set at the arrival of the image
+    TimePoint ready_at{};                               ///< time of arrival of the image
   };
 
   std::uint64_t clock_us(TimePoint time) const;
@@ -113,22 +113,22 @@ class Pinger {
   TimePoint programme_due_{};          ///< when the next continuous ping is due
   bool suspended_ = false;
   bool out_of_water_ = false;
-  bool pings_out_of_water_ = false;  ///< by the newest configuration
+  bool pings_out_of_water_ = false;  ///< from the newest configuration
   std::optional<RecordedPing> fed_;
   bool granted_ = false;
 
   // Acquired.
   std::uint64_t next_ping_number_ = 0;
-  TimePoint earliest_start_;  ///< of the next ping by the rate rules
+  TimePoint earliest_start_;  ///< earliest start of the next ping by the rate rules
   std::optional<Acquisition> acquisition_;
   std::optional<PingJob> job_;               ///< not yet taken
-  std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
+  std::optional<std::uint64_t> unanswered_;  ///< number of the job that is taken but not yet answered
 
   // On the wire.
   std::optional<PingTransmission> transmission_;
   std::optional<PingRecord> record_;  ///< not yet taken
   RetryQueue retries_;
-  std::optional<TimePoint> last_retry_arrival_;   ///< about the ping in transmission_
+  std::optional<TimePoint> last_retry_arrival_;   ///< for the ping in transmission_
   std::optional<TimePoint> last_retry_activity_;  ///< arrival or service
 };
 

@@ -18,12 +18,12 @@ namespace {
 constexpr double sector_rad = 2.0 * std::numbers::pi / 3.0;
 constexpr int most_native_lines = 0xFFFF;
 constexpr int most_compression_log2 = 4;
-constexpr double step_tolerance = 1e-3;  // logs round the rate of lines to whole hertz, the speed to 0.1 m/s
+constexpr double step_tolerance = 1e-3;  // logs round the line rate to whole hertz, the speed to 0.1 m/s
 
-// What is smaller is a difference between two ways of rounding.
+// Smaller differences come from rounding.
 constexpr double gain_step_percent = 1.0;      // logs keep whole percents
-constexpr double sound_speed_step_mps = 0.11;  // the wire keeps tenths
-constexpr double range_slack = 0.002;          // of the rate of lines that a .glf rounds
+constexpr double sound_speed_step_mps = 0.11;  // the wire has steps of 0.1 m/s
+constexpr double range_slack = 0.002;          // relative; a .glf rounds the line rate
 
 std::vector<std::uint8_t> decoded_samples(const PingHead& head, const PingImage& image) {
   std::vector<std::uint8_t> samples;
@@ -109,7 +109,7 @@ std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
                                     const RecordedSettings& recorded) {
   const PingJob& job = asked.job;
   std::vector<Difference> found;
-  // A line for the remainder that compression leaves, and a hair for the rate of lines.
+  // Tolerance: one line for the remainder of the compression, and range_slack for the rounded line rate.
   if (std::abs(job.range_m() - recorded.range_m()) > recorded.bin_m + range_slack * recorded.range_m()) {
     found.push_back(
         {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", job.range_m(), recorded.range_m())});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a peer takes to answer, learned from its answers.
+// Estimates how long a peer takes to answer.
 #pragma once
 
 #include <algorithm>
@@ -8,21 +8,20 @@
 
 namespace sonard::gemini {
 
-/// Smoothed mean and deviation as TCP keeps them (RFC 6298), and the time after which an answer counts as
-/// lost.
+/// Smoothed mean and deviation of response times as in TCP (RFC 6298), and the resulting time-out.
 class ResponseTime {
  public:
   using Duration = std::chrono::nanoseconds;
 
   struct Limits {
-    Duration initial;  ///< patience before the first sample
+    Duration initial;  ///< patience() before the first sample
     Duration least;
     Duration most;
   };
 
   explicit ResponseTime(const Limits& limits) : limits_(limits) {}
 
-  /// Takes the response time of a question asked once; that of a repeated question says nothing.
+  /// Adds the response time of a request. Do not add repeated requests: their answers are ambiguous.
   void sample(Duration took) {
     if (!mean_) {
       mean_ = took;
@@ -34,7 +33,7 @@ class ResponseTime {
     *mean_ += error / 8;
   }
 
-  /// Time to wait for an answer before the question is asked again.
+  /// Time to wait for an answer before repeating a request.
   Duration patience() const {
     return mean_ ? std::clamp(*mean_ + 4 * deviation_, limits_.least, limits_.most) : limits_.initial;
   }

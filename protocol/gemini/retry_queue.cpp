@@ -25,7 +25,7 @@ bool RetryQueue::push(const RetryRequest& request) {
       ranges_.push_back({request.kind, 0, 1});
       return true;
   }
-  return false;  // the wire may carry any number
+  return false;  // unknown kind from the wire
 }
 
 bool RetryQueue::push_lines(int first, int count) {

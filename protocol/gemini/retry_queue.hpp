@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the topside wants to have again of the last ping (docs/protocols/gemini.md 7.3).
+// Queue of the topside's retry requests for the last ping (docs/protocols/gemini.md 7.3).
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 
 namespace sonard::gemini {
 
-/// Requests in the order of their arrival, handed out datagram by datagram. Bounded in memory and in effect:
-/// a peer that floods requests can make the head neither grow nor send for ever. Both libraries ask for a
-/// line at most six times; here each line goes out again at most `max_resends` times.
+/// Returns requests in the order of their arrival, datagram by datagram. Memory and resends are bounded, so
+/// that a flood of requests can neither grow the head nor make it send for ever. Both libraries request a
+/// line at most six times; each line is resent at most `max_resends` times.
 class RetryQueue {
  public:
   static constexpr std::size_t max_ranges = 4096;
@@ -28,20 +28,21 @@ class RetryQueue {
     bool operator==(const Resend&) const = default;
   };
 
-  /// Forgets everything; the ping that requests are about from now on has `line_count` lines.
+  /// Clears the queue for a new ping of `line_count` lines.
   void reset(int line_count);
 
-  /// False when the request is not kept: the queue is full, or the ping has no such thing. A request that
-  /// says the same as the last one waiting, or begins where it ends, joins it.
+  /// Adds a request. A request that equals, overlaps or continues the last queued one is merged with it.
+  /// False if the request is dropped: the queue is full, the line does not exist, or the kind is unknown.
   bool push(const RetryRequest& request);
 
-  /// The next datagram to send; nullopt when there is none. Lines that went out too often are passed over.
+  /// Removes and returns the next datagram to send; nullopt if the queue is empty. Skips lines that were
+  /// resent `max_resends` times.
   std::optional<Resend> pop();
 
   bool empty() const { return ranges_.empty(); }
-  /// Requests waiting, after joining.
+  /// Number of queued requests after merging.
   std::size_t size() const { return ranges_.size(); }
-  /// Datagrams waiting, at least 1 unless empty; no more than `limit` is looked at.
+  /// Number of queued datagrams, at most `limit`; at least 1 unless empty.
   int pending(int limit) const;
 
  private:

@@ -43,7 +43,7 @@ void rle_encode(std::span<const std::uint8_t> beams, std::uint8_t threshold, std
     out.push_back(beam);
   }
   append_zeros(run, out);
-  // Padding is told from data by the number of beams alone: a decoder has them all before it gets here.
+  // Decoders distinguish padding from data by the number of beams: they stop before the padding.
   out.resize(start + (out.size() - start + 3) / 4 * 4);
 }
 

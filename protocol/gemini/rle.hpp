@@ -9,20 +9,19 @@
 
 namespace sonard::gemini {
 
-/// Beams below it become zero under a threshold of 3..255; smaller thresholds act as 3, because 0 and 1 have
-/// a meaning of their own in the coded form.
+/// The smallest sample that is not set to zero for a threshold. Thresholds below 3 act as 3, because 0 and 1
+/// have special meanings in the coded form.
 std::uint8_t least_literal(std::uint8_t threshold);
 
-/// Appends the coded form of one range line to `out` and pads it with 0x00 to a multiple of 4 bytes, counted
-/// from where this call began. Beams below
-/// least_literal(threshold) become zero (PingConfig::rle_threshold_applied). A single zero is 0x01; runs
-/// of 2..255 are 0x00 followed by the count, longer runs are split; everything else is literal. The coded
-/// form never exceeds the line padded to 4.
+/// Appends the coded form of one range line to `out`, padded with 0x00 to a multiple of 4 bytes from its
+/// start. Beams below least_literal(threshold) become zero (PingConfig::rle_threshold_applied). A single zero
+/// is 0x01; runs of 2..255 are 0x00 followed by the count, longer runs are split; all other values are
+/// literal. The coded form is never longer than the line padded to 4.
 void rle_encode(std::span<const std::uint8_t> beams, std::uint8_t threshold, std::vector<std::uint8_t>& out);
 
-/// Decodes into `beams`; beams that `data` does not reach become zero. Stops at the end of `data` or when
-/// `beams` is full, whichever comes first, so padding is harmless; a run longer than what is left is cut, and
-/// a 0x00 that ends the data without its count is no beam. Returns how many beams came out of `data`.
+/// Decodes into `beams` and returns the number of decoded beams; the remaining beams become zero. Stops at
+/// the end of `data` or when `beams` is full, so padding has no effect. A run longer than the remaining beams
+/// is cut. A final 0x00 without a count is ignored.
 std::size_t rle_decode(std::span<const std::uint8_t> data, std::span<std::uint8_t> beams);
 
 }  // namespace sonard::gemini

@@ -14,58 +14,57 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
-constexpr std::uint16_t resent_head = 0x0100;  // of PingHead::ping_id (6.3)
+constexpr std::uint16_t resent_head = 0x0100;  // bit of PingHead::ping_id (6.3)
 
 constexpr nanoseconds stay_alive_period = seconds{1};
 
-/// From a configuration to the first datagram of its ping. The head may be rendering or waiting for its own
-/// rate limit, so patience costs less than a second ping.
+/// Time from a configuration to the first datagram of its ping. The head may be rendering or waiting for its
+/// rate limit, so waiting costs less than a second ping.
 constexpr ResponseTime::Limits config_limits{seconds{1}, milliseconds{200}, seconds{2}};
 constexpr nanoseconds config_patience_most = seconds{2};
 
-/// From a retry request to the first re-sent datagram. In continuous mode a head holds its next ping back
-/// only while requests came within the last 10 ms (7.3): asked every 2 ms with two datagrams, that chain
-/// breaks once in 1e13 times on a link that loses 5 %. Over a slow link the answer takes longer than that
-/// hold, so there it has to be asked for several times.
+/// Time from a retry request to the first resent datagram. In continuous mode a head delays its next ping
+/// only while requests arrived within the last 10 ms (7.3). Two datagrams every 2 ms fail to keep this up
+/// once in 1e13 times on a link that loses 5 %. On a slow link the answer takes longer than the 10 ms, so the
+/// topside sends several requests.
 constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
 constexpr nanoseconds answer_patience_continuous = milliseconds{2};
 constexpr nanoseconds answer_patience_most = milliseconds{100};
 constexpr int fruitless_rounds_at_full_speed = 4;
 
-/// Lines may overtake each other by so much before one counts as lost. The head answers after the tail, so
-/// that asking earlier would gain nothing.
+/// A line that arrives later than this after a higher one counts as lost. The head answers only after the
+/// tail, so an earlier request would gain nothing.
 constexpr nanoseconds reorder_patience = milliseconds{1};
-/// Quiet in the first pass that means its end was lost, beside the acoustic time of a burst, which a head
-/// waits for before it sends one. A false alarm costs a re-sent tail. Clients of real heads are as patient:
-/// near its end they ask again after 5 ms (early ones) or lines slower than one a millisecond (later ones,
-/// within the last 35); before that they give a ping 400 ms (7.1, 7.2).
+/// Silence in the first pass that means its end was lost, in addition to the acoustic time of a burst, for
+/// which a head waits before it sends one. A false alarm costs a resent tail. Real clients wait similarly
+/// long (7.1, 7.2). Near the end early ones repeat requests after 5 ms, later ones if the last 35 lines come
+/// slower than one per millisecond. Before, they give a ping 400 ms.
 constexpr nanoseconds stream_patience = milliseconds{8};
 constexpr nanoseconds stream_patience_before_the_end = milliseconds{400};
 constexpr int last_lines = 35;
 constexpr int burst_lines = 32;
-/// The tail follows the last line, and the head comes before the first, at once.
+/// The tail follows the last line immediately, and the first line follows the head immediately.
 constexpr nanoseconds neighbour_patience = milliseconds{2};
-/// So close to its end, a ping that has already lost something gets a request ahead of need: in continuous
-/// mode a head goes on to its next ping at once unless it has been asked for something lately, and the last
-/// lines may be lost along with the tail.
+/// This close to its end, an incomplete ping gets a precautionary request in continuous mode. Without a
+/// recent request the head begins its next ping at once, and the last lines may be lost along with the tail.
 constexpr int precaution_lines = 8;
-/// The image does not need the tail.
+/// Rounds of requests if only the tail is missing, which the image does not need.
 constexpr int rounds_for_the_tail_alone = 8;
-/// Nothing new for so long: the rest of the ping will not come.
+/// If nothing new arrives for this long, the rest of the ping will not arrive.
 constexpr nanoseconds give_up_after = seconds{1};
-/// What was under way when the next ping began is here by then.
+/// Datagrams in transit at the start of the next ping arrive within this time.
 constexpr nanoseconds linger_time = milliseconds{10};
-/// A ping that was not requested has ended when no more of it comes.
+/// An unrequested ping has ended if no datagram of it arrives for this long.
 constexpr nanoseconds unrequested_patience = milliseconds{100};
 
 constexpr int copies_of_a_repeated_request = 2;
-constexpr int few_lines = 16;  ///< up to here a second copy costs the link nothing that counts
+constexpr int few_lines = 16;  ///< up to this number, second copies of requests cost the link little
 constexpr std::size_t most_ranges_a_round = 256;
 constexpr int probes_before_config = 3;
 constexpr std::size_t ended_kept = 8;
-/// More skipped IDs than this are a jump, not loss.
+/// If more IDs than this are skipped, it is a jump, not loss.
 constexpr int most_missed_at_once = 32;
-/// Back by more than any delay of a status can explain.
+/// A larger step back of the head's clock is a reboot, not a delayed status.
 constexpr std::uint64_t reboot_jump_us = 500'000;
 
 std::uint8_t low_byte(std::uint16_t ping_id) {
@@ -82,8 +81,8 @@ void take_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePo
   }
 }
 
-/// A compression of 4 is the most there is; without a head, expect it.
-/// @param highest line that has come, -1 for none
+/// Without a head, assumes the maximum compression of 4.
+/// @param highest highest line number that has arrived, -1 if no line has
 nanoseconds stream_quiet(const PingAssembly& ping, int highest) {
   const bool before_the_end = ping.head() && highest < ping.line_count() - last_lines;
   const int native_lines = burst_lines << (ping.head() ? ping.head()->compression_log2() : 4);
@@ -207,7 +206,7 @@ std::vector<ReceivedPing> Topside::take_pings() {
 void Topside::on_report(TimePoint now, const Status& status) {
   const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
   if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
-    ++statistics_.bad_datagrams;  // no client could talk to it (1.2, 1.4)
+    ++statistics_.bad_datagrams;  // no client could reach such a head (1.2, 1.4)
     return;
   }
   ++statistics_.statuses;
@@ -287,9 +286,9 @@ void Topside::send_config(TimePoint now) {
   request_->due = now + doubled(config_to_ping_.patience(), request_->sends - 1, config_patience_most);
 }
 
-/// No ping came. Either the configuration was lost, or all of the ping was; only in the first case a second
-/// configuration is harmless. So first ask for the head of the last ping: a new one can be repaired; an old
-/// one, or no answer at all, means that the head has nothing for us.
+/// No ping came: either the configuration or the whole ping was lost. A second configuration is harmless only
+/// in the first case, so request the head of the last ping first. A new ping can be repaired. If the ping is
+/// old or there is no answer, send the configuration again.
 void Topside::on_request_due(TimePoint now) {
   if (request_->probes == probes_before_config) {
     send_config(now);
@@ -305,7 +304,7 @@ void Topside::watch_for_silence(TimePoint now) {
     return;
   }
   request_.emplace(Request{});
-  request_->sends = 1;  // the programme that fell silent counts: the next one is a repetition
+  request_->sends = 1;  // counts the programme's first configuration, so that the next one is a repetition
   request_->due = now;
 }
 
@@ -316,13 +315,13 @@ void Topside::await_next(TimePoint now) {
     return;
   }
   if (programme_->continuous()) {
-    // A head that renders slowly takes longer than it was told to.
+    // A head that renders slowly exceeds the configured interval.
     const nanoseconds interval = std::chrono::microseconds{programme_->config.interping_us};
     silence_due_ = now + 2 * std::max(interval, now - last_end_.value_or(now)) + seconds{1};
     last_end_ = now;
   } else if (repeated) {
-    // The first configuration may have arrived after all, and a second ping be under way. A third
-    // configuration would now cut the repair of that one short, and so on for ever.
+    // The first configuration may have arrived after all, so a second ping may be arriving. A third
+    // configuration now would cut short its repair, again and again.
     next_request_due_ = now + config_to_ping_.patience();
   } else {
     request_ping(now);
@@ -345,7 +344,7 @@ void Topside::on_report(TimePoint now, const PingHead& head) {
   const Ended* ended = find_ended(id);
   if (ended != nullptr && ended->transmit_time_us.value_or(head.transmit_time_us) == head.transmit_time_us) {
     if (request_ && request_->due && request_->probes > 0) {
-      send_config(now);  // the head still holds the ping before: ours has not begun
+      send_config(now);  // the head still holds the previous ping, so the requested one has not begun
     }
     return;
   }
@@ -459,7 +458,7 @@ void Topside::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
   ping.assembly.set_head(head);
   ping.progress = now;
   if (head.transmit_time_us < programme_->least_head_us) {
-    ping.requested = false;  // transmitted before our configuration left, which now waits for it to end
+    ping.requested = false;  // transmitted before our configuration; the request waits for its end
     return;
   }
   if (request_ && request_->sends == 1 && request_->probes == 0 && !request_->timed) {
@@ -471,7 +470,7 @@ void Topside::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
   }
 }
 
-/// A head serves requests only after the tail: whatever is marked as re-sent ends the first pass.
+/// A head serves requests only after the tail, so any resent datagram ends the first pass.
 void Topside::on_answer(TimePoint now, Incoming& ping) {
   if (ping.asked) {
     request_to_answer_.sample(now - *ping.asked);
@@ -496,7 +495,7 @@ void Topside::end_pass(Incoming& ping) {
   }
 }
 
-/// Line `number` came for the first time.
+/// Handles line `number` of the first pass.
 void Topside::follow_first_pass(TimePoint now, Incoming& ping, int number) {
   ping.highest = std::max(ping.highest, number);
   if (!ping.requested) {
@@ -515,7 +514,7 @@ void Topside::follow_first_pass(TimePoint now, Incoming& ping, int number) {
   }
 }
 
-/// Asks for what is missing below `end` and has not been asked for.
+/// Requests the lines below `end` that are missing and have not been requested.
 void Topside::ask_unasked(Incoming& ping, int end) {
   for (const LineRange& range : ping.assembly.missing(ping.asked_to, end)) {
     ask(&ping, RetryKind::lines, range, 1);
@@ -523,7 +522,7 @@ void Topside::ask_unasked(Incoming& ping, int end) {
   ping.asked_to = std::max(ping.asked_to, end);
 }
 
-/// A round: everything that is missing, in the order in which it helps.
+/// One round: requests everything that is missing, the head first.
 void Topside::ask_again(TimePoint now, Incoming& ping) {
   ++ping.fruitless;
   ping.last_arrival = now;
@@ -590,18 +589,18 @@ void Topside::settle(TimePoint now) {
   stop_when_finished();
 }
 
-/// A head in continuous mode has to be told; in single mode it has nothing more to do.
+/// Stops a finished continuous programme; in single mode the head stops by itself.
 void Topside::stop_when_finished() {
   if (!stopped_ && programme_ && programme_->continuous() && programme_->finished()) {
     stop();
   }
 }
 
-/// Another ping begins before the end of one: the head has dropped the old one (7.3).
+/// Handles a new ping that begins before the end of the old one, which the head has dropped (7.3).
 void Topside::supersede(TimePoint now) {
   Incoming& ping = *incoming_;
   if (ping.requested && ping.assembly.is_complete()) {
-    finish(now);  // only the tail was awaited
+    finish(now);  // only the tail was missing
     return;
   }
   if (!ping.requested) {
@@ -613,7 +612,7 @@ void Topside::supersede(TimePoint now) {
   } else {
     close_lingering(now);
     lingering_ = std::move(incoming_);
-    lingering_->pass_over = true;  // nothing of it can be asked for any more
+    lingering_->pass_over = true;  // the head cannot resend parts of it any more
     lingering_due_ = now + linger_time;
     incoming_.reset();
     return;
@@ -630,7 +629,7 @@ void Topside::finish(TimePoint now) {
     note_end(ping);
     ++statistics_.pings_unrequested;
     if (next_request_due_) {
-      next_request_due_ = now;  // this was the second ping that had to pass
+      next_request_due_ = now;  // this was the second ping that the next configuration waited for
     }
     if (request_ && request_->sends > 0) {
       request_->due = now + config_to_ping_.patience();
@@ -642,7 +641,7 @@ void Topside::finish(TimePoint now) {
     if (!request_) {
       request_.emplace(Request{});
     }
-    // The configuration is still to be answered; if it is by a late head, all of the ping can be repaired.
+    // The configuration is still unanswered. If a late head answers it, the whole ping can be repaired.
     request_->due = now;
     return;
   }
