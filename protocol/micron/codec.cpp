@@ -33,7 +33,7 @@ static_assert(layout_is_contiguous<Layout<SendData>>(13) && layout_is_contiguous
 enum class Form : std::uint8_t { full = 0x01, full_with_gain_block = 0x1D, gain = 0x1E, reverse = 0x0F };
 
 constexpr std::size_t form_offset = 13;
-constexpr std::size_t line_count_excess = 31;  // by how much the total count exceeds that of the data
+constexpr std::size_t line_count_excess = 31;  // total count less data count
 constexpr std::size_t older_user_blocks_end = 174;
 constexpr std::size_t dst_duplex_offset = 146;
 constexpr std::size_t dst_user_blocks_end = 263;
@@ -43,7 +43,7 @@ concept HasLayout = requires {
   Layout<Message>::size;
 };
 
-// ---- Bodies: by the table; an overload for one message says what no table can
+// ---- Bodies: by the layout table; overloads for messages that no table can describe
 
 template <class Message>
 void read_body(ByteReader& reader, Message& message) {
@@ -77,7 +77,7 @@ void write_body(ByteWriter& writer, const ReverseCommand&) {
   writer.u8(static_cast<std::uint8_t>(Form::reverse));
 }
 
-/// The counts are held to what is there: a line that says otherwise was cut or is noise.
+/// The counts must match the data: otherwise the line was cut or is noise.
 void read_body(ByteReader& reader, HeadData& message) {
   const std::size_t total = reader.u16le("total_count");
   read_fields<Layout<HeadData>>(reader, message);
@@ -135,7 +135,7 @@ void write_body(ByteWriter& writer, const AuxData& message) {
 
 // ---- Dispatch over the variants
 
-/// Which of the messages that share the type of head commands.
+/// Reads one of the three messages that share the type of head commands.
 Command read_head_command(ByteReader& reader) {
   switch (static_cast<Form>(reader.u8("form"))) {
     case Form::full: {
@@ -163,7 +163,7 @@ Command read_head_command(ByteReader& reader) {
   return Unknown{};
 }
 
-/// Turns `variant` into a Message and reads it, if that is what `type` announces.
+/// Turns `variant` into a Message and reads it, if `type` is its type.
 template <class Message, class Variant>
 void read_if_announced(ByteReader& reader, std::uint8_t type, Variant& variant) {
   if constexpr (std::is_same_v<Message, HeadCommand>) {

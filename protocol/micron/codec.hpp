@@ -13,22 +13,22 @@
 
 namespace sonard::micron {
 
-/// A frame from a host, as FrameBuffer gives it. Lengths and counts inside are not looked at, only what is
-/// there; bytes beyond the message are ignored, and fields at its end that a head can do without may be
-/// absent (layout.hpp). A type that a head does not serve gives Unknown; a frame too short for its type, or a
-/// head command of a form that no client sends, gives an error.
+/// Decodes a frame from a host, as returned by FrameBuffer. Ignores the lengths and counts in the frame and
+/// bytes beyond the message. Fields at the end that a head does not need may be absent (layout.hpp). Returns
+/// Unknown for a type that a head does not serve. Returns an error if the frame is too short for its type or
+/// has an unknown form of head command.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> frame);
 
-/// A frame from a head, by the same rules; user blocks must have one of their two lengths.
-/// HeadData::data views `frame`.
+/// Decodes a frame from a head by the rules of decode_command(). In addition, the counts of lines and the
+/// length of user blocks must be consistent. HeadData::data views `frame`.
 Result<Report, WireError> decode_report(std::span<const std::uint8_t> frame);
 
-/// Exactly one frame, to or from the head at `head_node`. Any message struct converts to its variant. A line
-/// of more than max_bins bytes is cut.
+/// Encodes one frame, to or from the head at `head_node`. Any message struct converts to its variant. Cuts
+/// lines to max_bins bytes.
 std::vector<std::uint8_t> encode(const Command& command, std::uint8_t head_node = default_head_node);
 std::vector<std::uint8_t> encode(const Report& report, std::uint8_t head_node = default_head_node);
 
-/// The type byte of whichever message is held, also for Unknown.
+/// The type byte of the message in the variant, also for Unknown.
 std::uint8_t type_of(const Command& command);
 std::uint8_t type_of(const Report& report);
 

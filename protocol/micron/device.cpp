@@ -69,16 +69,16 @@ class Device::Impl {
         clock_zero_(start),
         next_alive_(start) {}
 
-  // One for each event.
+  // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& piece);
   void take(TimePoint, const ClientCame&) {}
   void take(TimePoint, const ClientGone&) { input_.clear(); }
   void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
   void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
-  void take(TimePoint, const TriggerEdge&) {}   // it has no such input
-  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
-  void take(TimePoint, const SensorsRead&) {}   // it has none
+  void take(TimePoint, const TriggerEdge&) {}   // the head has no trigger input
+  void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
+  void take(TimePoint, const SensorsRead&) {}   // the head has no such sensors
   void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
   void take(TimePoint, const PingGranted&) { scanner_.grant(); }
 
@@ -98,7 +98,7 @@ class Device::Impl {
   bool take_frame(TimePoint now, const FrameBuffer::Frame& frame);
   bool has_parameters();
 
-  // One for each command.
+  // One overload for each command.
   void handle(TimePoint, const SendVersion&);
   void handle(TimePoint, const SendBBUser&);
   void handle(TimePoint now, const Reboot&) { power_cycle(now); }
@@ -109,7 +109,7 @@ class Device::Impl {
   void handle(TimePoint now, const HeadCommand& command);
   void handle(TimePoint now, const GainCommand& command);
   void handle(TimePoint now, const ReverseCommand& command);
-  void handle(TimePoint, const Unknown&) {}  // take_frame has dropped it
+  void handle(TimePoint, const Unknown&) {}  // never called: take_frame() drops unknown commands
 
   void send(const Report& report) { outgoing_.push_back(encode(report, config_.node)); }
   void send_alive(TimePoint now);
@@ -124,11 +124,11 @@ class Device::Impl {
 
   const TimePoint power_up_;
   TimePoint boot_end_{};    ///< in the future while the head boots
-  TimePoint clock_zero_{};  ///< when the clock of the head was or would have been 0
+  TimePoint clock_zero_{};  ///< time at which the clock of the head was or would have been 0
   TimePoint next_alive_{};
   bool alives_stopped_ = false;
   bool sent_config_ = false;
-  std::vector<std::vector<std::uint8_t>> outgoing_;  ///< of the step that is under way
+  std::vector<std::vector<std::uint8_t>> outgoing_;  ///< frames of the step in progress
 
   std::vector<Notice> notices_;
   std::optional<HeadState> noticed_state_;
@@ -164,14 +164,14 @@ void Device::Impl::read_frames(TimePoint now) {
       input_.reject();
     }
     if (booting(now)) {
-      input_.clear();  // bytes behind the order to reboot are lost
+      input_.clear();  // bytes after the reboot command are lost
     }
   }
   counters_.dropped_bytes = input_.dropped();
 }
 
-/// False when the frame means nothing and may hide another. Lengths of a whole frame are right, so that it is
-/// done with, whatever is in it.
+/// False if the frame is invalid and may contain the start of another. A whole frame has a correct length, so
+/// it is consumed in any case.
 bool Device::Impl::take_frame(TimePoint now, const FrameBuffer::Frame& frame) {
   const FrameHeader header = frame_header(frame.bytes);
   if (header.rx_node != config_.node && header.rx_node != broadcast_node) {
@@ -211,7 +211,7 @@ void Device::Impl::handle(TimePoint, const SendBBUser&) {
   }
   send(blocks);
   if (config_.user_blocks == UserBlocks::dst) {
-    send(FpgaCalData{});  // unasked, in this order
+    send(FpgaCalData{});  // unrequested, in this order
     send(FpgaVersionData{});
   }
 }
@@ -311,7 +311,7 @@ void Device::Impl::send_due_alive(TimePoint now) {
   if (!quiet) {
     send_alive(now);
   }
-  // Keeps the phase; what a late caller has missed is lost.
+  // Keeps the phase; alives that a late caller missed are skipped.
   next_alive_ += config_.alive_period * ((now - next_alive_) / config_.alive_period + 1);
 }
 
@@ -319,7 +319,7 @@ void Device::Impl::advance(TimePoint now) {
   if (booting(now)) {
     return;
   }
-  read_frames(now);  // one that was cut may count by now
+  read_frames(now);  // a cut frame may have become acceptable by now
   if (booting(now)) {
     return;
   }
@@ -346,8 +346,8 @@ Actions Device::Impl::actions(TimePoint now) {
   return actions;
 }
 
-/// `ready` after `scanning` is said when no line has been asked for in a while: between two lines of a scan
-/// some clients let a head be ready.
+/// Reports the change from `scanning` to `ready` only after 2 s without requests, because with some clients
+/// the head is briefly ready between two lines of a scan.
 void Device::Impl::notice_state(TimePoint now) {
   constexpr std::chrono::seconds idle_after{2};
   const HeadState state_now = state(now);
@@ -364,14 +364,14 @@ void Device::Impl::notice_state(TimePoint now) {
 }
 
 std::optional<TimePoint> Device::Impl::next_deadline() const {
-  TimePoint next = next_alive_;  // at the end of booting, too
+  TimePoint next = next_alive_;  // this is also the end of booting
   for (const auto& due : {scanner_.next_deadline(), input_.next_deadline()}) {
     next = std::min(next, due.value_or(next));
   }
   return std::max(next, boot_end_);
 }
 
-// ---- The door
+// ---- Device
 
 Device::Device(const DeviceConfig& config, TimePoint start) : impl_(std::make_unique<Impl>(config, start)) {}
 Device::~Device() = default;

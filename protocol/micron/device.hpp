@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Micron as a pure state machine: bytes and time go in; frames and jobs come out.
-// It knows no sockets, serial ports, clocks or threads. Source: docs/protocols/micron.md.
+// The Micron as a pure state machine: input is bytes and time, output is frames and jobs.
+// It uses no sockets, serial ports, clocks or threads. Source: docs/protocols/micron.md.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 namespace sonard::micron {
 
 enum class HeadState : std::uint8_t {
-  booting,             ///< deaf and dumb
-  centring,            ///< looks for its centre; takes parameters
+  booting,             ///< neither receives nor sends
+  centring,            ///< turns to its centre; accepts parameters
   without_parameters,  ///< centred
   ready,
   scanning,  ///< lines are owed
@@ -25,13 +25,12 @@ enum class HeadState : std::uint8_t {
 /// "booting", "centring", "without_parameters", "ready", "scanning".
 std::string_view to_string(HeadState state);
 
-/// One head on one line that all clients share. It runs whether a client listens or not: the caller discards
-/// what it sends while none is connected. Every message it sends is one whole frame for
-/// everybody, to be written in one go. A job's transmit time is up to 50 ms before now where the caller is
-/// late.
+/// One head on one line that all clients share. It runs with or without clients; the caller discards its
+/// output if no client is connected. Every message that it sends is one whole frame for everybody, to write
+/// at once. If the caller is late, the transmit time of a job may be up to 50 ms in the past.
 class Device final : public sonard::Device {
  public:
-  /// A head that was powered up in time: at `start` it is centred and has no parameters.
+  /// A head that was powered up earlier: at `start` it is centred and has no parameters.
   /// @throws std::invalid_argument naming the field of `config` that is out of range
   Device(const DeviceConfig& config, TimePoint start);
   ~Device() override;
@@ -40,9 +39,9 @@ class Device final : public sonard::Device {
   PingProgress progress() const override;
   std::vector<Counter> counts() const override;
 
-  /// Power fails and comes back: a reboot without a command.
+  /// Simulates a power cycle: a reboot without a command.
   void power_cycle(TimePoint now);
-  /// The motor loses its step: lines say so until new parameters come.
+  /// Simulates a lost motor step: lines report it until new parameters come.
   void lose_step();
 
   const DeviceCounters& counters() const;

@@ -10,12 +10,12 @@ namespace sonard::micron {
 namespace {
 
 constexpr std::size_t digits_end = 5;    // start, hexadecimal length
-constexpr std::size_t lengths_end = 7;   // the same, and binary length
+constexpr std::size_t lengths_end = 7;   // start, hexadecimal length, binary length
 constexpr std::size_t min_length = 8;    // of a frame without data
-constexpr std::size_t count_offset = 5;  // by how much the count is less than the length
+constexpr std::size_t count_offset = 5;  // length less count
 constexpr std::uint8_t only_packet = 0x80;
 constexpr std::chrono::milliseconds cut_silence{100};
-// One client sends head commands of 82 bytes that say 66 (2.4).
+// One client sends head commands of 82 bytes with a length for 66 (2.4).
 constexpr std::size_t head_command_size = 66;
 constexpr std::size_t longer_head_command_size = 82;
 
@@ -32,7 +32,7 @@ std::optional<unsigned> hex_digit(std::uint8_t c) {
   return std::nullopt;
 }
 
-/// The length in its hexadecimal spelling.
+/// The hexadecimal length; nullopt if it has invalid digits.
 std::optional<std::size_t> spelled_length(std::span<const std::uint8_t> bytes) {
   std::size_t length = 0;
   for (const std::uint8_t c : bytes.subspan(1, 4)) {
@@ -45,15 +45,15 @@ std::optional<std::size_t> spelled_length(std::span<const std::uint8_t> bytes) {
   return length;
 }
 
-/// The length that both spellings agree on.
+/// The length; nullopt if the hexadecimal and the binary length differ.
 std::optional<std::size_t> stated_length(std::span<const std::uint8_t> bytes) {
   const auto length = spelled_length(bytes);
   const std::size_t binary = bytes[5] | static_cast<std::size_t>(bytes[6]) << 8;
   return length == binary ? length : std::nullopt;
 }
 
-/// Whether the hexadecimal length may have been written with five digits, as one client does: the binary one
-/// then follows a byte later (2.4). It is certain from a byte more than that on.
+/// True if the hexadecimal length may have five digits, as one client writes it, so that the binary length
+/// follows one byte later (2.4). The result is certain if there are more than lengths_end bytes.
 bool has_fifth_digit(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < lengths_end || bytes[0] != frame_start || !hex_digit(bytes[digits_end])) {
     return false;
@@ -124,7 +124,7 @@ std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_s
   if (bytes.size() < size) {
     return 0;
   }
-  // Where a byte was lost the next frame begins there.
+  // If the last byte starts a frame, a byte was lost; then this is not the longer command.
   if (size == head_command_size && bytes[size - 1] != frame_end && bytes[size - 1] != frame_start &&
       frame_header(bytes).type == static_cast<std::uint8_t>(MessageType::head_command)) {
     size = longer_head_command_size;
@@ -153,7 +153,7 @@ std::optional<FrameBuffer::Frame> FrameBuffer::front(TimePoint now) {
     if (!has_fifth_digit(rest())) {
       drop(static_cast<std::size_t>(-found));
     } else if (rest().size() == lengths_end) {
-      return std::nullopt;  // the next byte tells
+      return std::nullopt;  // the next byte decides
     } else {
       bytes_.erase(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_ + digits_end));
       ++dropped_;

@@ -13,7 +13,7 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds silence_before_asking{2};  // a head whose alives were stopped has to be spoken to
+constexpr seconds silence_before_asking{2};  // a head with stopped alives only answers requests
 constexpr seconds answer_timeout{1};
 constexpr seconds alive_timeout{3};
 constexpr int user_block_tries = 3;
@@ -71,7 +71,7 @@ void Host::ask_identity(TimePoint now) {
     ++tries_;
     send(SendBBUser{});
   } else {
-    met(now);  // a head that keeps them to itself; lines are asked for one by one then
+    met(now);  // without user blocks this host requests single lines
   }
 }
 
@@ -180,7 +180,7 @@ std::chrono::nanoseconds Host::line_timeout() const {
   return answer_timeout + 2 * parameters.bins * parameters.ad_interval * ad_interval_unit;
 }
 
-/// In full duplex one line is always left to wait for while the next are asked for.
+/// In full duplex this is called while one requested line is still to come.
 void Host::request(TimePoint now) {
   send(SendData{});
   ++statistics_.requests;
@@ -188,7 +188,8 @@ void Host::request(TimePoint now) {
   due_ = now + line_timeout();
 }
 
-/// What a driver compares, but for gain and window: they change while lines are under way.
+/// Compares the parameters as drivers do, except gain and window, which may change while lines are in
+/// transit.
 bool Host::matches(const HeadData& line) const {
   const HeadCommand& asked = programme_->parameters;
   constexpr unsigned compared = control_bits::eight_bit | control_bits::continuous | control_bits::invert;
@@ -241,7 +242,7 @@ void Host::on_timeout(TimePoint now) {
     case Phase::idle:
       due_.reset();
       return;
-    case Phase::configuring:  // no alives: they were stopped, or it is gone; a request will tell
+    case Phase::configuring:  // alives were stopped or the head is gone; a request finds out
       phase_ = Phase::scanning;
       tries_ = 0;
       request(now);

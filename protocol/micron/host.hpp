@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host's side of a Micron as a pure state machine: bytes and time go in; frames and lines come out. It
-// knows no serial ports, sockets, clocks or threads. Source: docs/protocols/micron.md 5, 7, 8.
+// A Micron client as a pure state machine: input is bytes and time, output is frames and lines. It uses no
+// serial ports, sockets, clocks or threads. Source: docs/protocols/micron.md 5, 7, 8.
 //
-// It goes the way that most drivers go: waits for the head to speak, asks who it is and how its link works,
-// gives it parameters, waits until it says that it is centred and has them, then asks for lines. Whatever is
-// lost on the way is asked for again; a head that has rebooted or lost its step gets its parameters again.
+// It follows most drivers: waits for an alive, requests the version and user blocks, sends parameters, waits
+// until the head reports that it is centred and has them, then requests lines. It repeats lost requests. It
+// sends the parameters again if the head has rebooted or lost its step.
 #pragma once
 
 #include <chrono>
@@ -22,13 +22,13 @@ namespace sonard::micron {
 struct HostConfig {
   std::uint8_t node = default_head_node;  ///< of the head
   NibbleOrder nibble_order = NibbleOrder::high_first;
-  bool reboot_first = false;  ///< begin with a head that has forgotten everything
+  bool reboot_first = false;  ///< reboot the head first, so that it has no parameters
 };
 
-/// What a head has said of itself.
+/// What is known about the head.
 struct HeadIdentity {
   std::optional<VersionData> version;
-  std::optional<BBUserData> user_blocks;  ///< nullopt: the request was not answered
+  std::optional<BBUserData> user_blocks;  ///< nullopt: not received
   std::optional<Alive> alive;             ///< the newest
 };
 
@@ -36,25 +36,25 @@ struct HeadIdentity {
 struct ReceivedLine {
   std::uint64_t number = 0;  ///< 0, 1, 2, ... in the order of delivery
   TimePoint received{};
-  HeadData head;                   ///< all but its data
-  std::vector<std::uint8_t> bins;  ///< from near to far: 0..255, or 0..15 of 4-bit lines
+  HeadData head;                   ///< without its data
+  std::vector<std::uint8_t> bins;  ///< from near to far: 0..255, or 0..15 in 4-bit lines
 };
 
 /// Counters since construction. They only grow.
 struct HostStatistics {
   std::uint64_t frames = 0;         ///< whole, and for this host
-  std::uint64_t dropped_bytes = 0;  ///< part of no frame
-  std::uint64_t bad_frames = 0;     ///< could not be read
-  std::uint64_t other_nodes = 0;    ///< not from the head, or not for us
+  std::uint64_t dropped_bytes = 0;  ///< not part of a frame
+  std::uint64_t bad_frames = 0;     ///< undecodable
+  std::uint64_t other_nodes = 0;    ///< not from the head, or not for this host
   std::uint64_t alives = 0;
   std::uint64_t lines = 0;              ///< delivered
-  std::uint64_t lines_unmatched = 0;    ///< of other parameters than those of this host
-  std::uint64_t lines_unrequested = 0;  ///< came while nothing was asked for
+  std::uint64_t lines_unmatched = 0;    ///< made with other parameters than this host's
+  std::uint64_t lines_unrequested = 0;  ///< arrived while no line was requested
   std::uint64_t requests = 0;
-  std::uint64_t timeouts = 0;       ///< requests that no line came for
-  std::uint64_t head_commands = 0;  ///< parameters sent, the first time and again
+  std::uint64_t timeouts = 0;       ///< requests without a line in answer
+  std::uint64_t head_commands = 0;  ///< parameters sent, including repetitions
   std::uint64_t reboots = 0;        ///< the head had lost its parameters
-  std::uint64_t motor_errors = 0;   ///< lines that told a lost step
+  std::uint64_t motor_errors = 0;   ///< lines that reported a lost step
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
@@ -62,38 +62,38 @@ class Host {
  public:
   Host(const HostConfig& config, TimePoint now);
 
-  /// Bytes from the head, cut as they happen to come. Bad ones are counted and dropped.
+  /// Handles bytes from the head, in parts of any size. Counts and drops bad ones.
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
 
-  /// Scans with these parameters (1..1500 bins, ad_interval >= 1), at once or as soon as the head is known;
-  /// replaces what was running. Ends after `lines` delivered lines; 0: continues until stop().
+  /// Scans with these parameters (1..1500 bins, ad_interval >= 1), at once or when the head is known;
+  /// replaces the running scan. Ends after `lines` delivered lines; 0: continues until stop().
   void start(TimePoint now, const HeadCommand& parameters, std::uint64_t lines);
-  /// Changes gain and window of a running scan; does nothing before start().
+  /// Changes gain and window of the scan; has no effect before start().
   void set_gain(const GainBlock& values);
-  /// Turns the scan about; nothing before start().
+  /// Reverses the scan; has no effect before start().
   void reverse();
-  /// Asks for nothing more. What the head still owes is not delivered.
+  /// Stops requesting lines. Lines that the head still owes are not delivered.
   void stop();
 
-  /// Runs everything due at `now`. Call after every other call and at next_deadline().
+  /// Runs everything that is due at `now`. Call after every other call and at next_deadline().
   void advance(TimePoint now);
-  /// When advance() is next needed; nullopt: only after an event.
+  /// When to call advance() next; nullopt: only after an event.
   std::optional<TimePoint> next_deadline() const;
 
-  /// Frames due, in order, each to be written in one go. Each call empties the list.
+  /// Frames due, in order; write each at once. Each call empties the list.
   std::vector<std::vector<std::uint8_t>> take_outgoing();
-  /// Lines that came, in order. Each call empties the list.
+  /// Received lines, in order. Each call empties the list.
   std::vector<ReceivedLine> take_lines();
 
   const HeadIdentity& head() const { return head_; }
-  /// All lines asked for by start() are delivered, or stop() was called.
+  /// True if all lines of start() are delivered, or stop() was called.
   bool finished() const { return stopped_ || (programme_ && programme_->finished()); }
   const HostStatistics& statistics() const { return statistics_; }
 
  private:
   enum class Phase : std::uint8_t { meeting, idle, configuring, scanning };
 
-  /// What start() asked for.
+  /// The arguments of start(), and its progress.
   struct Programme {
     HeadCommand parameters;
     std::uint64_t wanted = 0;
@@ -108,7 +108,7 @@ class Host {
   void on_report(TimePoint now, const BBUserData& blocks);
   void on_report(TimePoint now, const HeadData& line);
   template <class Other>
-  void on_report(TimePoint, const Other&) {}  // nothing that a host needs
+  void on_report(TimePoint, const Other&) {}  // a host does not need these
 
   void ask_identity(TimePoint now);
   void met(TimePoint now);
@@ -125,13 +125,13 @@ class Host {
   FrameBuffer input_;
   HeadIdentity head_;
   Phase phase_ = Phase::meeting;
-  std::optional<TimePoint> due_;  ///< when what the phase waits for is given up
+  std::optional<TimePoint> due_;  ///< time-out of the phase
   int tries_ = 0;       ///< user blocks: requests without an answer; configuring: alives without effect;
                         ///< scanning: requests without a line
-  bool asked_ = false;  ///< meeting: the head was asked something
+  bool asked_ = false;  ///< meeting: a request was sent to the head
   std::optional<Programme> programme_;
   bool stopped_ = false;
-  int expected_ = 0;  ///< lines asked for
+  int expected_ = 0;  ///< requested lines that have not arrived
   std::vector<std::vector<std::uint8_t>> outgoing_;
   std::vector<ReceivedLine> lines_;
   HostStatistics statistics_;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where each field of each message lies: the one table that the codec reads and writes by. Offsets are from
-// the start of the frame; the line feed at its end is not counted. Source: docs/protocols/micron.md 5, 6.
-// What depends on the message itself (forms of the head command, data of lines, older user blocks) is written
-// out in codec.cpp.
+// Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
+// frame; sizes exclude the line feed at its end. Source: docs/protocols/micron.md 5, 6. codec.cpp handles the
+// parts that depend on the message itself (forms of the head command, data of lines, older user blocks).
 #pragma once
 
 #include <cstddef>
@@ -15,9 +14,9 @@
 
 namespace sonard::micron {
 
-/// Table of one message, or of the part of it that a table can say (protocol/common/layout.hpp). A command
-/// may end before fields that a head can do without: its table insists on the last one that matters, and what
-/// is absent keeps the value of its struct (2.5).
+/// Table of one message or of its fixed part (protocol/common/layout.hpp). A command may lack fields at its
+/// end that a head does not need. Its table requires bytes up to the last needed field; missing fields keep
+/// the defaults of the struct (2.5).
 template <class Message>
 struct Layout;
 
@@ -28,7 +27,7 @@ struct Layout<SendData> {
   static constexpr auto fields = std::tuple{Field{13, "time_ms", &SendData::time_ms}};
 };
 
-/// After the byte that says which form it is. A head uses nothing behind `bins`.
+/// Follows the byte of the form. A head uses no fields after `bins`.
 template <>
 struct Layout<HeadCommand> {
   static constexpr std::size_t size = 65;
@@ -59,8 +58,8 @@ struct Layout<HeadCommand> {
   };
 };
 
-/// Offsets from its own start: byte 14 of a gain command, byte 65 of a long head command. A head uses nothing
-/// behind `gain`.
+/// Offsets are from the block's start: byte 14 of a gain command, byte 65 of a long head command. A head uses
+/// no fields after `gain`.
 template <>
 struct Layout<GainBlock> {
   static constexpr std::size_t size = 16;
@@ -94,7 +93,7 @@ struct Layout<Alive> : WholeLayout<21> {
   };
 };
 
-/// Between the total count and the count of data.
+/// The fields between the total count and the data count.
 template <>
 struct Layout<HeadData> : WholeLayout<42> {
   static constexpr auto fields = std::tuple{
@@ -117,7 +116,7 @@ struct Layout<HeadData> : WholeLayout<42> {
   };
 };
 
-/// Offsets from its own start: bytes 35 and 47 of the user blocks.
+/// Offsets are from the start of the settings: bytes 35 and 47 of the user blocks.
 template <>
 struct Layout<PortSettings> : WholeLayout<12> {
   static constexpr auto fields = std::tuple{
@@ -141,7 +140,7 @@ struct sonard::WireSize<sonard::micron::PortSettings> : std::integral_constant<s
 
 namespace sonard::micron {
 
-/// The fields on which older heads and a DST agree.
+/// The common fields of older heads and a DST.
 template <>
 struct Layout<BBUserData> : WholeLayout<100> {
   static constexpr auto fields = std::tuple{

@@ -12,7 +12,7 @@
 namespace sonard::micron {
 namespace {
 
-/// @param interval between two bins, in units of the wire
+/// @param interval time between two bins, in units of the wire
 void set_bins(PingJob& job, int bins, int interval, double sound_speed_mps) {
   job.native_bins = bins;
   job.sound_speed_mps = sound_speed_mps;

@@ -8,8 +8,8 @@
 namespace sonard::micron {
 namespace {
 
-constexpr int line_frame_size = 45;  // beside the data
-constexpr int bits_per_byte = 10;    // start, eight, stop
+constexpr int line_frame_size = 45;  // without the data
+constexpr int bits_per_byte = 10;    // start bit, eight bits, stop bit
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long the parts of one line take (docs/protocols/micron.md 8.4).
+// Durations of the parts of one line (docs/protocols/micron.md 8.4).
 #pragma once
 
 #include <chrono>
@@ -9,20 +9,20 @@
 
 namespace sonard::micron {
 
-/// Bins that a head really delivers, and the interval it really uses, for what a host may ask (4).
+/// Number of bins that a head delivers, and interval that it uses, for any requested values (4).
 int effective_bins(const HeadCommand& command);
 int effective_ad_interval(const HeadCommand& command);
 
-/// For a motor to turn by `units` of bearing.
+/// Time for the motor to turn by `units` of bearing.
 std::chrono::nanoseconds turning_time(const HeadCommand& command, int units);
 
 struct LineTiming {
-  std::chrono::nanoseconds listen{};  ///< for the echoes, from transmission on
-  std::chrono::nanoseconds turn{};    ///< to the next bearing
-  std::chrono::nanoseconds send{};    ///< of the line, on the link
+  std::chrono::nanoseconds listen{};  ///< from transmission to the last echo
+  std::chrono::nanoseconds turn{};    ///< turn to the next bearing
+  std::chrono::nanoseconds send{};    ///< transfer of the line on the link
 
-  /// From one transmission to the next, without any wait. In full duplex a line travels while the next ping
-  /// listens; in half duplex one comes after the other.
+  /// Minimum time from one transmission to the next. In full duplex a line is sent while the next ping
+  /// listens; in half duplex before the next ping.
   std::chrono::nanoseconds period(const DeviceConfig& config) const;
 };
 

@@ -2,8 +2,8 @@
 // The messages of a Micron as values, both directions, one struct per message.
 // Source: docs/protocols/micron.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
-// and skipped when read. "Host" is the computer of the vehicle; "head" is the sonar. Multi-byte integers
-// travel little-endian. Frame headers (frame.hpp) are not part of a message.
+// and skipped on reading. "Host" is the computer of the vehicle; "head" is the sonar. Multi-byte integers
+// are little-endian. Frame headers (frame.hpp) are not part of a message.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace sonard::micron {
 
-inline constexpr int max_bins = 1500;                ///< per line, the most that any driver asks for (4)
+inline constexpr int max_bins = 1500;                ///< per line, the maximum that any driver requests (4)
 inline constexpr std::uint8_t device_type_dst = 17;  ///< of every Micron (6.3)
 inline constexpr std::uint8_t dst_user_blocks = 15;  ///< BBUserData::kind of every Micron (6.4)
 
@@ -38,7 +38,7 @@ enum class MessageType : std::uint8_t {
   stop_alives = 66,
 };
 
-/// A message of a type that this library does not know. Take it in silence (3).
+/// A message of an unknown type. Receivers must ignore it (3).
 struct Unknown {
   std::uint8_t type = 0;
 
@@ -65,7 +65,7 @@ struct Reboot {
   bool operator==(const Reboot&) const = default;
 };
 
-/// No more Alive until the next reboot (5.1).
+/// Stops Alive messages until the next reboot (5.1).
 struct StopAlives {
   static constexpr MessageType type = MessageType::stop_alives;
   bool operator==(const StopAlives&) const = default;
@@ -81,17 +81,17 @@ struct SendFpgaCalData {
   bool operator==(const SendFpgaCalData&) const = default;
 };
 
-/// Asks for one line, or in full duplex for two (5.2, 8.1).
+/// Requests one line, or in full duplex two (5.2, 8.1).
 struct SendData {
   static constexpr MessageType type = MessageType::send_data;
-  std::uint32_t time_ms = 0;  ///< of day; 0: not said
+  std::uint32_t time_ms = 0;  ///< time of day; 0: not set
 
   bool operator==(const SendData&) const = default;
 };
 
 /// Bits of HeadCommand::control and HeadData::control (5.4).
 namespace control_bits {
-inline constexpr std::uint16_t eight_bit = 0x0001;   ///< clear: two bins to a byte
+inline constexpr std::uint16_t eight_bit = 0x0001;   ///< clear: two bins per byte
 inline constexpr std::uint16_t continuous = 0x0002;  ///< clear: sector between the limits
 inline constexpr std::uint16_t scan_right = 0x0004;  ///< clockwise; clear: counter-clockwise
 inline constexpr std::uint16_t invert = 0x0008;      ///< mounted boot down
@@ -104,8 +104,8 @@ inline constexpr std::uint16_t stare = 0x1000;           ///< hold still at the 
 inline constexpr std::uint16_t reply_analogue = 0x2000;  ///< always set
 }  // namespace control_bits
 
-/// Gain and window of both channels: the body of GainCommand, and the block at the end of some HeadCommands.
-/// A Micron has channel 1 only (5.5).
+/// Gain and window of both channels: the body of GainCommand, and the last block of some HeadCommands. A
+/// Micron has only channel 1 (5.5).
 struct GainBlock {
   std::array<std::uint8_t, 2> ad_span{};
   std::array<std::uint8_t, 2> ad_low{};
@@ -117,26 +117,26 @@ struct GainBlock {
   bool operator==(const GainBlock&) const = default;
 };
 
-/// All parameters of a scan (5.3). Defaults: those of the ROS driver, a continuous scan to the right of 400
+/// All parameters of a scan (5.3). Defaults: as in the ROS driver, a continuous scan to the right with 400
 /// bins over 10 m.
 struct HeadCommand {
   static constexpr MessageType type = MessageType::head_command;
   std::uint16_t control = control_bits::eight_bit | control_bits::continuous | control_bits::scan_right |
                           control_bits::raw | control_bits::has_motor | control_bits::reply_analogue;
-  std::uint8_t head_type = device_type_dst;  ///< drivers send various; ignored
+  std::uint8_t head_type = device_type_dst;  ///< varies between drivers; ignored
   std::array<std::uint32_t, 2> tx_word{};    ///< transmit frequency; a Micron ignores it
   std::array<std::uint32_t, 2> rx_word{};    ///< ignored
   std::uint16_t tx_pulse_us = 0;             ///< ignored
-  std::uint16_t range_scale = 100;           ///< bits 13..0 range, 0.1; 15..14 m, ft, fathom, yd. Only echoed
+  std::uint16_t range_scale = 100;  ///< bits 13..0 range in 0.1; 15..14 unit: m, ft, fathom, yd. Only copied
   std::uint16_t left_limit = 2400;
   std::uint16_t right_limit = 3999;
   std::uint8_t ad_span = 255;
   std::uint8_t ad_low = 0;
   std::array<std::uint8_t, 2> gain{105, 105};  ///< initial gain, 0..210; the second is ignored
   std::array<std::uint16_t, 2> slope{};        ///< ignored
-  std::uint8_t motor_time = 25;                ///< 10 us for one unit of bearing
-  std::uint8_t step = 32;                      ///< between lines; 0 acts as 16
-  std::uint16_t ad_interval = 53;              ///< 640 ns between bins
+  std::uint8_t motor_time = 25;                ///< time to turn by one unit of bearing, in 10 us
+  std::uint8_t step = 32;                      ///< units of bearing between lines; 0 acts as 16
+  std::uint16_t ad_interval = 53;              ///< time between bins, in 640 ns
   std::uint16_t bins = 400;
   std::uint16_t max_ad_buffer = 500;  ///< ignored
   std::uint16_t lockout_us = 100;     ///< ignored: a common driver sends ten times too much
@@ -145,14 +145,14 @@ struct HeadCommand {
   std::uint8_t control_2 = 0;         ///< ignored
   std::uint16_t scan_z = 0;           ///< ignored
   std::optional<GainBlock>
-      gain_block;  ///< in the longer form only; ignored, for drivers leave anything in it
+      gain_block;  ///< in the longer form only; ignored, because drivers leave arbitrary values in it
 
   bool has(std::uint16_t control_bit) const { return (control & control_bit) != 0; }
 
   bool operator==(const HeadCommand&) const = default;
 };
 
-/// A HeadCommand that changes gain and window only (5.5).
+/// A form of the head command that changes only gain and window (5.5).
 struct GainCommand {
   static constexpr MessageType type = MessageType::head_command;
   GainBlock values;
@@ -160,7 +160,7 @@ struct GainCommand {
   bool operator==(const GainCommand&) const = default;
 };
 
-/// A HeadCommand that turns the scan about (5.6).
+/// A form of the head command that reverses the scan (5.6).
 struct ReverseCommand {
   static constexpr MessageType type = MessageType::head_command;
   bool operator==(const ReverseCommand&) const = default;
@@ -171,7 +171,7 @@ using Command = std::variant<Unknown, SendVersion, SendBBUser, Reboot, StopAlive
 
 // ---- Head -> host
 
-/// 25 bytes (6.1). The values are those of a published example.
+/// 25 bytes (6.1). The defaults are from a published example.
 struct VersionData {
   static constexpr MessageType type = MessageType::version_data;
   std::uint8_t software_version = 0x31;
@@ -193,7 +193,7 @@ inline constexpr std::uint8_t motor_on = 0x08;
 inline constexpr std::uint8_t off_centre = 0x10;
 inline constexpr std::uint8_t scanning = 0x20;
 inline constexpr std::uint8_t no_parameters = 0x40;
-inline constexpr std::uint8_t sent_config = 0x80;  ///< user blocks were asked for or parameters came (7.3)
+inline constexpr std::uint8_t sent_config = 0x80;  ///< user blocks were requested or parameters came (7.3)
 }  // namespace head_info_bits
 
 /// 22 bytes, once a second (6.2).
@@ -212,14 +212,14 @@ struct Alive {
 /// Bits of HeadData::status (6.3).
 namespace head_status_bits {
 inline constexpr std::uint8_t power_loss = 0x01;
-inline constexpr std::uint8_t motor_error = 0x02;  ///< lost its position; wants a new HeadCommand
+inline constexpr std::uint8_t motor_error = 0x02;  ///< the motor lost its position; a HeadCommand is needed
 inline constexpr std::uint8_t eight_bit = 0x10;
 inline constexpr std::uint8_t aux_follows = 0x80;
 }  // namespace head_status_bits
 
 enum class SweepCode : std::uint8_t { normal = 0, left_limit = 1, right_limit = 2, centre = 5 };
 
-/// One line, 45 bytes and the data (6.3).
+/// One line: 45 bytes plus the data (6.3).
 struct HeadData {
   static constexpr MessageType type = MessageType::head_data;
   std::uint8_t device_type = device_type_dst;
@@ -238,14 +238,14 @@ struct HeadData {
   std::uint16_t right_limit = 0;
   std::uint8_t step = 0;
   std::uint16_t bearing = 0;
-  std::span<const std::uint8_t> data;  ///< bins from near to far, as bins.hpp packs them; not owned
+  std::span<const std::uint8_t> data;  ///< bins from near to far, packed as in bins.hpp; not owned
 
   bool eight_bit() const { return (control & control_bits::eight_bit) != 0; }
 
   bool operator==(const HeadData& other) const;
 };
 
-/// Three settings, each for the low and for the high speed of a port: 0 or a code (6.4).
+/// Three settings, each for the low and the high speed of a port: 0 or a code (6.4).
 struct PortSettings {
   std::array<std::uint16_t, 2> baud{};  ///< 1 = 2400, 2 = 4800, ... 5 = 38400, 6 = 57600, 7 = 115200
   std::array<std::uint16_t, 2> parity{};
@@ -269,8 +269,8 @@ struct BBUserData {
   std::uint8_t has_motor = 1;
   std::uint8_t has_aux = 0;
   std::uint8_t has_roll = 0;
-  std::uint8_t older_half_duplex = 0;  ///< where heads other than DST say it
-  /// Where a DST says it; nothing: the short message of an older head.
+  std::uint8_t older_half_duplex = 0;  ///< the duplex mode of heads other than DST
+  /// The duplex mode of a DST; nullopt: the short message of an older head.
   std::optional<std::uint8_t> dst_half_duplex = std::uint8_t{0};
 
   bool half_duplex() const { return dst_half_duplex.value_or(older_half_duplex) != 0; }
@@ -294,7 +294,7 @@ struct FpgaCalData {
   bool operator==(const FpgaCalData&) const = default;
 };
 
-/// What a device on the auxiliary port said (6.6).
+/// Data from a device on the auxiliary port (6.6).
 struct AuxData {
   static constexpr MessageType type = MessageType::aux_data;
   std::vector<std::uint8_t> data;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the transducer stands while it turns a long way: to the centre, or to a new sector.
+// Position of the transducer during long turns: to the centre or to a new sector.
 #pragma once
 
 #include "protocol/micron/frame.hpp"
@@ -11,20 +11,20 @@ class Motor {
  public:
   explicit Motor(int bearing) : from_(bearing) {}
 
-  /// Turns the short way to `bearing`, evenly from `begin` to `end`.
+  /// Starts a turn at constant speed the short way to `bearing`, from `begin` to `end`.
   void turn_to(int bearing, TimePoint begin, TimePoint end) {
     from_ = position(begin);
     way_ = shortest_turn(from_, bearing);
     begin_ = begin;
     end_ = end;
   }
-  /// Jumps to `bearing`: a step from line to line, whose middle is not visible from outside.
+  /// Jumps to `bearing`, for steps between lines, whose course is not visible from outside.
   void place(int bearing) {
     from_ = bearing;
     way_ = 0;
   }
 
-  /// 0..6399.
+  /// Bearing at `now`, 0..6399.
   int position(TimePoint now) const {
     if (now >= end_) {
       return wrapped(from_ + way_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line of a Micron as logs keep it, and back: what goes to a log, and how a head sends what comes from one.
+// Conversion of a Micron's lines to log records and back.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,14 @@ namespace sonard::micron {
 inline constexpr double carrier_hz = 700'000.0;  ///< of the sound (docs/protocols/micron.md 10)
 
 /// PingRecord::wire of a line: a frame without data.
-/// @param line its data are left out
-/// @param node the address of the head that sent it
+/// @param line its data are ignored
+/// @param node node of the head that sent it
 std::vector<std::uint8_t> recorded_wire(const HeadData& line, std::uint8_t node);
-/// The line in a message; nullopt where it holds none.
+/// The line in a recorded frame; nullopt if the frame does not contain a line.
 std::optional<HeadData> recorded_line(std::span<const std::uint8_t> wire);
 
-/// How `asked` differs from what is sent in its place. Rounding of the wire and of logs is no difference.
+/// Differences between `asked` and the line that is sent instead. Rounding on the wire and in logs is
+/// ignored.
 std::vector<Difference> differences(const HeadCommand& asked, const PingJob& sent, const HeadData& recorded);
 
 }  // namespace sonard::micron

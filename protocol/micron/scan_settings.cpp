@@ -22,7 +22,7 @@ void assign(std::uint16_t& control, std::uint16_t bit, bool on) {
 
 int ad_interval(const ScanSettings& settings) {
   const double wanted_s = 2.0 * settings.range_m / (settings.sound_speed_mps * settings.bins);
-  constexpr double rounding = 1e-9;  // of a range that was computed from an interval
+  constexpr double rounding = 1e-9;  // for ranges that were computed from an interval
   return static_cast<int>(wanted_s / bin_time_s(1) + rounding);
 }
 

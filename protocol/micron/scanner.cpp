@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// A caller that is late by less keeps the pace; what it has missed beyond is lost.
+/// Up to this delay of the caller the line rate is kept; longer delays lose time.
 constexpr std::chrono::milliseconds lateness_allowed{50};
 
 }  // namespace
@@ -40,7 +40,7 @@ void Scanner::restart(TimePoint now, TimePoint begin) {
 void Scanner::configure(TimePoint now, const HeadCommand& parameters) {
   settle(now);
   if (!config_.plays_back) {
-    cancel_ping();  // no line with old parameters may follow
+    cancel_ping();  // no line with old parameters may follow the command the command
   }
   parameters_ = parameters;
   configured_at_ = now;
@@ -75,9 +75,9 @@ void Scanner::request(TimePoint now) {
   counters_.requests_beyond_cap += static_cast<std::uint64_t>(lines - added);
 }
 
-// ---- Where it looks
+// ---- Direction
 
-/// The centre is reached: on to the sector, if there is one.
+/// When the centre is reached, starts the turn to the sector if there are parameters.
 void Scanner::settle(TimePoint now) {
   if (placed_ || now < centred_at_) {
     return;
@@ -94,7 +94,7 @@ void Scanner::take_up_position(TimePoint begin) {
   const nanoseconds way = turning_time(*parameters_, std::abs(shortest_turn(from, sweep_.bearing())));
   const nanoseconds turn = std::min(way, config_.reposition_limit);
   motor_.turn_to(sweep_.bearing(), begin, begin + turn);
-  // A client gives its first line one second.
+  // A client waits one second for its first line.
   const nanoseconds all = std::min(config_.reconfiguration_time + way, config_.reposition_limit);
   ready_at_ = std::max(begin + turn, configured_at_ + all);
 }
@@ -112,7 +112,7 @@ std::optional<TimePoint> Scanner::ping_possible() const {
   }
   const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
   if (config_.waits_for_permission) {
-    return possible;  // a grant keeps the pace in simulated time
+    return possible;  // the granter observes the line rate in simulated time
   }
   const TimePoint due = std::max(possible, next_ping_at_);
   return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
@@ -126,7 +126,7 @@ std::optional<NextPing> Scanner::next_ping() const {
   return NextPing{*possible, wanted_period(), line_timing(*parameters_, config_, 0).listen};
 }
 
-/// From a ping of the sweep to the next.
+/// Time from one ping of the sweep to the next.
 nanoseconds Scanner::wanted_period() const {
   const LineTiming timing = line_timing(*parameters_, config_, parameters_->step);
   return std::max(config_.line_period.value_or(timing.period(config_)), timing.listen);
@@ -140,7 +140,7 @@ std::optional<TimePoint> Scanner::line_due() const {
   return ping_ && !ping_->samples.empty() ? std::optional{ping_->line_due} : std::nullopt;
 }
 
-/// When a rendered line is due.
+/// When a rendered line may be sent.
 TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) const {
   if (config_.waits_for_permission) {
     return transmit_time;
@@ -163,7 +163,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   ++counters_.pings_started;
 }
 
-/// At the bearing of the sweep, with the parameters of the host.
+/// Makes a job at the bearing of the sweep with the parameters of the host.
 void Scanner::aim(TimePoint transmit_time) {
   job_ = make_line_job(*parameters_, config_, sweep_.bearing());
   job_->period = wanted_period();
@@ -174,7 +174,7 @@ void Scanner::aim(TimePoint transmit_time) {
   ping_ = std::move(ping);
 }
 
-/// No faster than its echoes came; the recording says how much slower.
+/// Makes a job for a recorded line. Its line leaves when its echoes have arrived; its due time sets the pace.
 void Scanner::repeat(TimePoint transmit_time, const FedPing& fed) {
   job_ = make_line_job(fed.ping, fed.line);
   job_->differences = differences(*parameters_, *job_, fed.line);
@@ -204,7 +204,7 @@ std::optional<PingJob> Scanner::take_job() {
   return job;
 }
 
-/// True when it answers the ping that is acquired.
+/// Marks the job as answered; true if it belongs to the acquired ping.
 bool Scanner::answered(TimePoint now, std::uint64_t number) {
   if (unanswered_ != number) {
     ++counters_.stale_lines;
@@ -258,7 +258,7 @@ HeadData Scanner::make_line() const {
   return line;
 }
 
-/// The bins in the form of the wire.
+/// The bins with the bit depth of the wire.
 std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
   if (ping.line.eight_bit() || config_.plays_back) {
     return ping.samples;
@@ -297,20 +297,20 @@ void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
   end_ping();
 }
 
-/// The line is sent, or will never be: on to the next bearing.
+/// Ends a sent or failed ping and moves to the next bearing.
 void Scanner::end_ping() {
   next_ping_at_ = config_.plays_back ? ping_->line_due : time_of_next_ping();
   --owed_;
   ping_.reset();
 }
 
-/// Turns, and when it may ping there.
+/// Turns to the next bearing and returns the earliest time of a ping there.
 TimePoint Scanner::time_of_next_ping() {
   const int way = sweep_.step();
   motor_.place(sweep_.bearing());
   const LineTiming timing = line_timing(*parameters_, config_, way);
   const TimePoint next = ping_->transmit_time + config_.line_period.value_or(timing.period(config_));
-  // After a line that came late.
+  // In half duplex the next ping waits for a late line.
   return config_.half_duplex && !config_.line_period ? std::max(next, link_free_at_ + timing.turn) : next;
 }
 

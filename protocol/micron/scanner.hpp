@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When and where a head pings, and the lines it sends for it. Source: docs/protocols/micron.md 7.4, 8.
+// Times and bearings of a head's pings, and the lines that it sends. Source: docs/protocols/micron.md 7.4, 8.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,20 @@ namespace sonard::micron {
 
 /// The part of a Device that turns and pings.
 ///
-/// A ping is *owed* once it was asked for, *acquired* from its transmission on, when its job goes out, and
-/// ended when its line is sent, failed, or overtaken by new parameters; overtaken ones are still owed. There
-/// is one acquired ping at most: even in full duplex a line is complete before the next ping transmits.
+/// A ping is *owed* from its request on and *acquired* from its transmission on, when its job is issued. It
+/// ends when its line is sent, fails, or is cancelled by new parameters. Cancelled ones stay owed. At most
+/// one ping is acquired: even in full duplex a line is complete before the next ping transmits.
 class Scanner {
  public:
-  /// Centred. `config` and `counters` outlive the scanner.
+  /// Starts centred. `config` and `counters` must outlive the scanner.
   Scanner(const DeviceConfig& config, DeviceCounters& counters);
 
-  /// Power or a reboot: forgets everything but the job that is still to be answered, and turns to the centre
-  /// from `begin` on.
+  /// Restarts after power-up or a reboot: keeps only the unanswered job and turns to the centre from `begin`
+  /// on.
   void restart(TimePoint now, TimePoint begin);
 
   void configure(TimePoint now, const HeadCommand& parameters);
-  /// These need parameters.
+  /// set_gain(), reverse() and request() require parameters().
   void set_gain(const GainBlock& values);
   void reverse();
   void request(TimePoint now);
@@ -42,14 +42,14 @@ class Scanner {
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
   void grant() { granted_ = true; }
-  /// Nothing, too, where `ping` does not say how it travelled.
+  /// Sets the next recorded ping; a ping without a line in its `wire` counts as nullopt.
   void feed(const std::optional<RecordedPing>& ping);
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
-  /// The line that has left since the last call; advance() sends one at most.
+  /// The line that was sent since the last call; advance() sends at most one.
   std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
   /// See Actions::cancelled.
   std::optional<std::uint64_t> cancelled() const { return ping_ ? std::nullopt : unanswered_; }
@@ -69,8 +69,8 @@ class Scanner {
   struct Ping {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
-    TimePoint line_due{};  ///< not earlier than this the line leaves
-    HeadData line;         ///< what it will say, but for its data
+    TimePoint line_due{};  ///< earliest time at which the line leaves
+    HeadData line;         ///< without its data
     RecordedSettings settings;
     double bearing_rad = 0.0;
     std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
@@ -98,30 +98,30 @@ class Scanner {
   const DeviceConfig& config_;
   DeviceCounters& counters_;
 
-  // Where it looks.
+  // Direction.
   Motor motor_;
   Sweep sweep_;
   TimePoint centred_at_{};
   bool placed_ = true;  ///< centred, and in the sector of its parameters if it has any
   TimePoint ready_at_{};
 
-  // What it was told.
+  // Commands.
   std::optional<HeadCommand> parameters_;
   TimePoint configured_at_{};
   bool motor_error_ = false;
-  int owed_ = 0;  ///< lines
+  int owed_ = 0;  ///< number of requested lines
   TimePoint owed_since_{};
   std::optional<FedPing> fed_;
 
-  // What it does.
+  // Pings.
   bool granted_ = false;
   std::uint64_t next_ping_number_ = 0;
   std::optional<Ping> ping_;
   std::optional<PingRecord> record_;         ///< not yet taken
   std::optional<PingJob> job_;               ///< not yet taken
-  std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
-  TimePoint free_since_{};                   ///< when the last ping ended, or its job was answered
-  TimePoint next_ping_at_{};                 ///< by the pace of lines
+  std::optional<std::uint64_t> unanswered_;  ///< number of the job that is taken but not yet answered
+  TimePoint free_since_{};                   ///< when the last job was answered
+  TimePoint next_ping_at_{};                 ///< earliest time of the next ping by the line period
   TimePoint link_free_at_{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a host has set, in words for the log.
+// A host's settings as text for the log.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ std::vector<Setting> settings_of(const PingJob& job, const HeadCommand& paramete
 /// Settings of a recorded ping, from the header of its `line` on the wire.
 std::vector<Setting> settings_of(const PingJob& job, const HeadData& line);
 
-/// What in such parameters is most likely not what the client means. Each is said once.
+/// Warns once about each parameter that is probably a mistake of the client.
 class SettingsWarnings {
  public:
   explicit SettingsWarnings(const DeviceConfig& config) : config_(config) {}

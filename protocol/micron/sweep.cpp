@@ -44,7 +44,7 @@ int Sweep::offset_of(int bearing) const {
     return offset;
   }
   const int beyond = offset - sector_.width;     // clockwise from the right limit
-  const int short_of = units_per_turn - offset;  // counter-clockwise from the left one
+  const int short_of = units_per_turn - offset;  // counter-clockwise from the left limit
   return short_of <= beyond ? 0 : sector_.width;
 }
 
