@@ -52,7 +52,7 @@ std::vector<std::uint8_t> encode_text(MessageId id, std::string_view text, const
   return bytes;
 }
 
-/// Whether counts, offsets and sizes fit each other and the message, which has `size` bytes.
+/// True if counts, offsets and sizes are consistent with each other and with a message of `size` bytes.
 bool fits(const PingResult& ping, std::uint64_t size) {
   const std::size_t fixed_size = ping.fire.extension ? result_v2_size : result_v1_size;
   const std::uint64_t image_size = std::uint64_t{ping.ranges} * row_size(ping);

@@ -13,32 +13,32 @@
 
 namespace sonard::oculus {
 
-/// How a head names itself in the header of all that it sends, the status too (1).
+/// The identity of a head in the headers of all its messages, including the status (1).
 struct Identity {
   std::uint16_t device_id = 0;  ///< not 0
   std::uint16_t part_number = 0;
 };
 
-/// A command as CommandBuffer gives it. A fire is of version 2 where it is long enough for one, whatever its
-/// header states (3.1); what is behind a message is ignored. Another message gives Unknown.
+/// Decodes a command, as returned by CommandBuffer. A fire has version 2 if it is long enough for it,
+/// whatever its header states (3.1). Ignores bytes after a message. Returns Unknown for other messages.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> message);
 
-/// A command as a client sends it that states its length.
+/// Encodes a command as a client sends it, with its length in the header.
 std::vector<std::uint8_t> encode(const SimpleFire& fire);
 std::vector<std::uint8_t> encode(const UserConfig& config);
 
-/// As heads answer.
+/// Encodes a message as a head sends it.
 std::vector<std::uint8_t> encode(const UserConfig& config, const Identity& identity);
 std::vector<std::uint8_t> encode(const Status& status, const Identity& identity);
-/// Requires `image_offset` behind the bearings; bytes between are 0. Counts and sizes that `ping` states are
-/// replaced by those of its bearings and image.
+/// Requires `image_offset` after the bearings; the bytes between are 0. Derives counts and sizes from the
+/// bearings and image, not from the members of `ping`.
 std::vector<std::uint8_t> encode(const PingResult& ping, const Identity& identity);
 std::vector<std::uint8_t> encode_dummy(const Identity& identity);
 std::vector<std::uint8_t> encode_log(std::string_view text, const Identity& identity);
 
-/// What a client reads. PingResult::image views `message`. Refuses sizes that do not fit each other (4.3).
+/// Decodes a ping as a client. PingResult::image views `message`. Rejects inconsistent sizes (4.3).
 Result<PingResult, WireError> decode_ping_result(std::span<const std::uint8_t> message);
-/// The same without the image, of a message that may end behind its bearings.
+/// Decodes a ping without its image; the message may end after the bearings.
 Result<PingResult, WireError> decode_ping_head(std::span<const std::uint8_t> message);
 Result<Status, WireError> decode_status(std::span<const std::uint8_t> datagram);
 

@@ -54,8 +54,8 @@ class Device::Impl {
   void take(TimePoint now, const ClientGone& gone);
   void take(TimePoint, const PingRendered& ping);
   void take(TimePoint, const PingNotRendered& ping);
-  void take(TimePoint, const TriggerEdge&) {}   // it has no such input here
-  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
+  void take(TimePoint, const TriggerEdge&) {}   // the model has no trigger input
+  void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead& sensors) { depth_m_ = sensors.readings.depth_m; }
   void take(TimePoint, const PingFed& feed) { fed_ = feed.ping; }
   void take(TimePoint, const PingGranted&) { granted_ = true; }
@@ -72,8 +72,8 @@ class Device::Impl {
     PingPlan plan;
     TimePoint transmit_time{};
     double gain_percent = 0.0;        ///< for logs
-    double amplitude_exponent = 1.0;  ///< likewise
-    std::vector<std::uint8_t> image;  ///< empty: it is still being rendered
+    double amplitude_exponent = 1.0;  ///< for logs
+    std::vector<std::uint8_t> image;  ///< empty while it is being rendered
   };
 
   bool pinging() const { return plan_.has_value(); }
@@ -102,18 +102,18 @@ class Device::Impl {
   TimePoint next_status_;
   TimePoint next_dummy_{};
   TimePoint next_ping_{};
-  std::array<std::uint8_t, 4> address_, netmask_;  ///< at which it is reached
+  std::array<std::uint8_t, 4> address_, netmask_;  ///< as reported in the status
   UserConfig user_config_;
   std::optional<double> depth_m_;  ///< for the status; nullopt: not known
 
   std::optional<Peer> client_;
-  TimePoint newest_command_{};  ///< of the client; when it came, if there is none
+  TimePoint newest_command_{};  ///< time of the client's last command, or of its connection
   CommandBuffer input_;
-  std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: there is none, or it was for standby
+  std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: no fire, or standby
   std::optional<RecordedPing> fed_;
   bool granted_ = false;
-  std::optional<Ping> ping_;                ///< that is wanted
-  std::optional<std::uint64_t> cancelled_;  ///< that is not answered yet
+  std::optional<Ping> ping_;                ///< in progress
+  std::optional<std::uint64_t> cancelled_;  ///< number of a cancelled job that is not answered yet
   std::uint64_t next_number_ = 0;
   std::uint32_t ping_id_ = 0;
   Actions actions_;
@@ -128,8 +128,8 @@ class Device::Impl {
 
 // ---- The client
 
-/// A client that pings may only listen, for as long as it likes. One that did not say anything for long, and
-/// has no pings, keeps others out for nothing.
+/// A client with pings may stay silent for any time. A client without pings that is silent for long blocks
+/// others without need.
 bool Device::Impl::client_is_idle(TimePoint now) const {
   return !pinging() && now - newest_command_ >= most_silence;
 }
@@ -211,12 +211,12 @@ void Device::Impl::handle(TimePoint now, const SimpleFire& fire) {
 
 void Device::Impl::handle(TimePoint, const UserConfig& config) {
   if (config.address != UserConfig{}.address) {
-    user_config_ = config;  // remembered only: this machine's network is left as it is
+    user_config_ = config;  // stored only; the network of this machine is not changed
   }
   send(encode(user_config_, identity_));
 }
 
-// What a client has programmed is remembered, as it was never used.
+// A configuration that a client has programmed stays stored, because it was never applied.
 void Device::Impl::move_to(Ipv4 address, Ipv4 netmask) {
   const bool programmed = user_config_.address != address_;
   address_ = octets(address);
@@ -269,12 +269,12 @@ void Device::Impl::take(TimePoint, const PingNotRendered& ping) {
   }
 }
 
-/// nullopt: none is wanted, or it waits for an image, a recorded ping or a grant.
+/// Start of the next ping; nullopt if no ping is wanted, or if an answer or a recorded ping is missing.
 std::optional<TimePoint> Device::Impl::next_start() const {
   if (!pinging() || ping_ || cancelled_ || (config_.plays_back && !fed_)) {
     return std::nullopt;
   }
-  if (config_.waits_for_permission) {  // the grant keeps the period, in a time of its own
+  if (config_.waits_for_permission) {  // the granter observes the period in simulated time
     return boot_time_;
   }
   return fed_ && fed_->due ? std::max(next_ping_, *fed_->due) : next_ping_;
@@ -299,7 +299,7 @@ void Device::Impl::begin_ping(TimePoint now) {
                gamma_exponent(plan_->asked.fire.gamma),
                {}};
   const PingPlan& plan = ping_->plan;
-  // Keeps the phase; of what a late caller has missed, one period at most is made up for.
+  // Keeps the phase; after a late call at most one missed period is caught up.
   next_ping_ = std::max(std::max(next_ping_, now - plan.period) + plan.period, now + plan.listening);
   PingJob job = job_of(plan, config_.plan);
   job.number = ping_->number;
@@ -404,7 +404,7 @@ std::vector<Counter> Device::Impl::counts() const {
           {"other_clients", other_clients_, Shown::warns, "{} times a second client came"}};
 }
 
-// ---- The door
+// ---- Device
 
 Device::Device(const DeviceConfig& config, TimePoint boot_time)
     : impl_(std::make_unique<Impl>(config, boot_time)) {}

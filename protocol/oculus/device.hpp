@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Oculus as a pure state machine: bytes and time go in; messages and jobs come out.
+// An Oculus as a pure state machine: input is bytes and time, output is messages and jobs.
 // Source: docs/protocols/oculus.md.
 #pragma once
 
@@ -13,9 +13,9 @@
 
 namespace sonard::oculus {
 
-/// One head, with one client at a time. Its channels are the stream of that client and the status datagrams,
-/// which go to everybody. A second client is disconnected at once, and what it sends is not read; but it
-/// takes the place of a client that has no pings and sent no command for most_silence.
+/// One head with one client at a time. Its channels are the stream of that client and the broadcast of status
+/// datagrams. It disconnects a second client at once and ignores its bytes. But if the first client has no
+/// pings and has sent no command for most_silence, the second client replaces it.
 class Device final : public sonard::Device {
  public:
   static constexpr int stream_channel = 0;
@@ -30,7 +30,7 @@ class Device final : public sonard::Device {
   PingProgress progress() const override;
   std::vector<Counter> counts() const override;
 
-  /// The machine that serves the head has another address: status datagrams report it from now on.
+  /// Sets a new address of the machine that serves the head. Status datagrams report it from now on.
   void move_to(Ipv4 address, Ipv4 netmask);
 
  private:

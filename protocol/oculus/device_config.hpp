@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything a user may set about a simulated Oculus, as plain values.
+// All settings of a simulated Oculus, as plain values.
 #pragma once
 
 #include <array>
@@ -12,19 +12,18 @@
 
 namespace sonard::oculus {
 
-/// Section numbers are those of docs/protocols/oculus.md. The Device constructor refuses what is out of
-/// range.
+/// Section numbers refer to docs/protocols/oculus.md. The Device constructor rejects values out of range.
 struct DeviceConfig {
-  std::uint16_t id = 7892;    ///< not 0, the same in status and TCP (1)
-  Ipv4 address = 0x7F000001;  ///< clients connect to exactly this; 127.0.0.1 (6)
+  std::uint16_t id = 7892;    ///< not 0; used in the status and over TCP (1)
+  Ipv4 address = 0x7F000001;  ///< clients connect to exactly this address; default 127.0.0.1 (6)
   Ipv4 netmask = 0xFFFFFF00;  ///< (6)
   std::array<std::uint8_t, 6> mac{0x00, 0x1E, 0x63, 0x01, 0x02, 0x03};
   PlanConfig plan;
-  std::string log_text = "sonard Oculus\nready\n";                  ///< sent to who connects (5)
+  std::string log_text = "sonard Oculus\nready\n";                  ///< sent to each new client (5)
   std::chrono::nanoseconds status_period{std::chrono::seconds{1}};  ///< > 0 (6)
   std::chrono::nanoseconds dummy_period{std::chrono::seconds{1}};   ///< > 0 (5)
-  bool waits_for_permission = false;                                ///< each ping begins with PingGranted
-  bool plays_back = false;                                          ///< sends recorded pings, and no others
+  bool waits_for_permission = false;                                ///< each ping needs PingGranted to begin
+  bool plays_back = false;                                          ///< sends only recorded pings
 };
 
 }  // namespace sonard::oculus

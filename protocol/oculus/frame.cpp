@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint8_t first_start = oculus_id & 0xFF;
 constexpr std::uint8_t second_start = oculus_id >> 8;
 
-/// Bytes in front that begin no message; the last one may be the first half of a start.
+/// Number of bytes before a message start. The last byte is kept if it may be the first half of a start.
 std::size_t before_start(std::span<const std::uint8_t> bytes) {
   std::size_t count = 0;
   while (count < bytes.size() &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a message of a host begins and ends in a stream of bytes. Source: docs/protocols/oculus.md 3.1.
+// Finds the messages of a host in a stream of bytes. Source: docs/protocols/oculus.md 3.1.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,29 @@
 
 namespace sonard::oculus {
 
-/// Bytes behind the header that a host may announce; what announces more is no client of a head.
+/// Maximum payload that a host may announce in a header; a larger value is not from a client of a head.
 inline constexpr std::size_t most_command_payload = 4096;
 
-/// The header of a message of at least header_size bytes.
+/// Reads the header of a message of at least header_size bytes.
 Header read_header(std::span<const std::uint8_t> message);
 
-/// Bytes behind the header of a command: what it states, or what hosts send that state 0.
+/// Payload size of a command: the stated size, or the known size of its message if the header states 0.
 std::size_t command_payload_size(const Header& header);
 
-/// Gathers the bytes of one client, in parts of any size, into commands. Not thread-safe.
+/// Collects the bytes of one client, in parts of any size, into commands. Not thread-safe.
 class CommandBuffer {
  public:
   void append(std::span<const std::uint8_t> bytes);
-  /// The command in front with its header, after dropping bytes that begin none; valid until the next call.
-  /// Stays until pop().
+  /// The command in front with its header, after dropping bytes before it; valid until the next call. It
+  /// stays in front until pop().
   std::optional<std::span<const std::uint8_t>> front();
   void pop();
-  /// What has begun will not be finished. The next bytes are those of another connection.
+  /// Drops all bytes, because the next bytes are from another connection.
   void clear();
 
-  /// True from the first command on that is longer than most_command_payload: the connection is to be closed.
+  /// True after a command longer than most_command_payload; then close the connection.
   bool broken() const { return broken_; }
-  /// Bytes that were part of no command, since construction.
+  /// Bytes outside commands, since construction.
   std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -42,8 +42,8 @@ class CommandBuffer {
   void drop_to_start();
 
   std::vector<std::uint8_t> bytes_;
-  std::size_t begin_ = 0;       ///< bytes before it are done with
-  std::size_t front_size_ = 0;  ///< of the command that front() gave
+  std::size_t begin_ = 0;       ///< bytes before it have been consumed
+  std::size_t front_size_ = 0;  ///< of the command that front() returned
   bool broken_ = false;
   std::uint64_t dropped_ = 0;
 };

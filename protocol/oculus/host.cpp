@@ -24,7 +24,7 @@ std::optional<std::size_t> Host::front_size() {
   while (true) {
     auto begin = std::search(bytes_.begin(), bytes_.end(), start.begin(), start.end());
     if (begin == bytes_.end() && !bytes_.empty() && bytes_.back() == start[0]) {
-      --begin;  // perhaps the first half of one
+      --begin;  // this may be the first half of a start
     }
     statistics_.dropped_bytes += static_cast<std::uint64_t>(begin - bytes_.begin());
     bytes_.erase(bytes_.begin(), begin);

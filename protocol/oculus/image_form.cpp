@@ -34,7 +34,7 @@ std::vector<std::uint8_t> eight_bit_samples(const PingResult& ping) {
   std::vector<std::uint8_t> samples;
   samples.reserve(std::size_t{ping.ranges} * ping.beams);
   for (std::size_t range = 0; range < ping.ranges; ++range) {
-    const std::size_t first = (range + 1) * row - ping.beams * width;  // behind the gain, where there is one
+    const std::size_t first = (range + 1) * row - ping.beams * width;  // after the gain, if there is one
     for (std::size_t beam = 0; beam < ping.beams; ++beam) {
       samples.push_back(ping.image[first + beam * width + width - 1]);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What shape the image of a ping has, and where its samples lie. Source: docs/protocols/oculus.md 3.2, 4.
+// Size and sample layout of a ping's image. Source: docs/protocols/oculus.md 3.2, 4.
 #pragma once
 
 #include <cstddef>
@@ -10,21 +10,21 @@
 
 namespace sonard::oculus {
 
-/// Rate of the samples of a head in hertz, from the steps of a recorded M1200d (4.6).
+/// Sample rate of a head in hertz, from the range steps of a recorded M1200d (4.6).
 inline constexpr double sample_rate_hz = 37.5e6 / 143.0;
-/// Rows of an image at most, unless the configuration says otherwise (4.6).
+/// Default maximum number of rows of an image (4.6).
 inline constexpr int usual_most_ranges = 1200;
 
-/// 256 or 512, as a fire asks.
+/// Number of beams that a fire requests: 256 or 512.
 int beams_of(const Fire& fire);
-/// 32 bits need an extension that asks for them.
+/// Sample width that a fire requests; 32 bits only with an extension.
 DataSize data_size_of(const SimpleFire& fire);
 std::size_t bytes_per_sample(DataSize size);
-/// Bytes of a row: its gain, where there is one, and its samples.
+/// Bytes of a row: its gain, if there is one, and its samples.
 std::size_t row_size(const PingResult& ping);
-/// The samples of a ping that has its image, row after row, without gains: of wide ones the high byte.
+/// The samples of a ping with an image, row after row, without gains; the high bytes of wide samples.
 std::vector<std::uint8_t> eight_bit_samples(const PingResult& ping);
-/// Where the image of a ping begins: the first multiple of 2048 behind the bearings (4.3).
+/// Offset of the image in a ping message: the first multiple of 2048 after the bearings (4.3).
 std::uint32_t usual_image_offset(bool second_version, int beams);
 
 /// Bearings of the beams in hundredths of a degree, the most negative first: equally spaced in their sine,
@@ -36,17 +36,17 @@ struct RangeGrid {
   int ranges = 0;
   double resolution_m = 0.0;
 };
-/// As many rows as fit in `range_m`, each the least multiple of half a sample's way by which there are at
-/// most `most_ranges` (4.6). Requires all to be positive.
+/// The range grid for `range_m`. A row is the smallest multiple of a sample's one-way length that gives at
+/// most `most_ranges` rows (4.6). All arguments must be positive.
 RangeGrid range_grid(double range_m, double sound_speed_mps, int most_ranges = usual_most_ranges);
 
-/// The exponent of the normalised amplitude that a gamma asks for: 0 and 255 are 1 (4.7).
+/// The exponent of the normalised amplitude for a gamma, gamma / 255; 1 for 0 (4.7).
 double gamma_exponent(std::uint8_t gamma);
 
-/// The gain that a ping reports: hardware reports 40 to 100 for 0 to 100 in the high-frequency mode (4.4).
+/// The gain that hardware reports: in the high-frequency mode 40 to 100 for 0 to 100 (4.4).
 double reported_gain_percent(const Fire& fire);
 
-/// Speed of sound in metres per second at the surface, from temperature and salinity (Medwin 1975).
+/// Speed of sound in m/s at the water surface, from temperature and salinity (Medwin 1975).
 double sound_speed_of_water_mps(double temperature_c, double salinity_ppt);
 
 }  // namespace sonard::oculus

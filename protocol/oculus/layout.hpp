@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where each field of each message lies: the one table that the codec reads and writes by. Offsets are from
-// the start of the message. Source: docs/protocols/oculus.md. Bearings and image follow the table of a result
-// and are written out in codec.cpp.
+// Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
+// message. Source: docs/protocols/oculus.md. Bearings and image follow the table of a result; codec.cpp
+// handles them.
 #pragma once
 
 #include <tuple>

@@ -17,8 +17,8 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
 constexpr double percent = 0.01;
-constexpr double bar_per_m = 0.1;      // within 2 % of fresh and of sea water
-constexpr std::uint32_t row_gain = 1;  // never 0: clients divide by it (4.7)
+constexpr double bar_per_m = 0.1;      // within 2 % of fresh water and sea water
+constexpr std::uint32_t row_gain = 1;  // must not be 0: clients divide by it (4.7)
 
 nanoseconds seconds(double value) {
   return nanoseconds{std::llround(value * 1e9)};
@@ -157,7 +157,7 @@ std::optional<std::vector<std::uint8_t>> image_bytes(const PingResult& ping,
     if (i % ping.beams == 0 && (ping.fire.fire.flags & fire_flags::row_gains) != 0) {
       writer.u32le(row_gain);
     }
-    // Full scale is full scale, in any width.
+    // Full scale maps to full scale in every width.
     if (ping.data_size == DataSize::bits_8) {
       writer.u8(u8[i]);
     } else if (ping.data_size == DataSize::bits_16) {

@@ -13,7 +13,7 @@
 namespace sonard::oculus {
 namespace {
 
-// What is smaller is a difference between two ways of rounding.
+// Smaller differences come from rounding.
 constexpr double gain_step_percent = 1.0;
 constexpr double sound_speed_step_mps = 0.1;
 constexpr double gamma_step = 1e-6;
@@ -77,7 +77,7 @@ PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked) {
   const double way_s = 2.0 * plan.range_m / recorded.settings.sound_speed_mps;
   plan.listening = std::chrono::nanoseconds{std::llround(way_s * 1e9)};
   if (recorded.due) {
-    plan.period = {};  // it has a time of its own
+    plan.period = {};  // its due time sets the rate
   }
   return plan;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ping of an Oculus as logs keep it, and back: what goes to a log, and how a head sends what comes from
-// one.
+// Conversion of an Oculus' pings to log records and back.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +12,20 @@
 
 namespace sonard::oculus {
 
-/// The record of a ping that leaves as `message`, whose image it views. Of samples of more than 8 bits the
-/// high ones are kept; `wire` ends where the bearings do. Number, time and gain are left out.
+/// The record of a ping that is sent as `message`. Keeps the high byte of samples with more than 8 bits;
+/// `wire` ends after the bearings. Number, time and gain are not set.
 PingRecord record_of(const PingResult& ping, std::span<const std::uint8_t> message);
 
-/// The ping that PingRecord::wire tells of, without its image; nullopt where it tells of none that a head
-/// could send: of 256 or 512 beams, with rows.
+/// The ping in PingRecord::wire, without its image; nullopt if a head could not send it: it must have 256 or
+/// 512 beams and at least one row.
 std::optional<PingResult> recorded_form(std::span<const std::uint8_t> wire);
 
-/// What a head does about `asked` that has only this recorded ping to send: its rows, beams, bearings and
-/// frequency, in the form that the client asks for, whose samples have 8 bits of meaning. The client finds
-/// the settings that it has sent, but for the flag of the beams. Requires a recorded_form().
+/// Changes the plan `asked` so that it sends this recorded ping, with the recorded rows, beams, bearings and
+/// frequency. Samples have the requested width, but only 8 significant bits. The client's settings are
+/// returned unchanged except the flag of the beams. Requires a recorded_form().
 PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked);
 
-/// How `asked` differs from what is sent in its place. Rounding is no difference.
+/// Differences between `asked` and the ping that is sent instead. Rounding is ignored.
 std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
                                     const RecordedSettings& recorded);
 
