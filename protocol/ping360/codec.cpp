@@ -49,7 +49,7 @@ concept HasData = requires(Message message) {
   message.data;
 };
 
-// ---- Bodies: by the table, then what no table can say
+// ---- Bodies: by the layout table, then text or data
 
 template <class Message>
 void read_body(ByteReader& reader, Message& message) {
@@ -86,7 +86,7 @@ void write_body(ByteWriter& writer, const Message& message) {
 
 // ---- Dispatch over the variants
 
-/// Turns `variant` into a Message and reads it, if that is what `id` announces.
+/// Turns `variant` into a Message and reads it, if `id` is its id.
 template <class Message, class Variant>
 void read_if_announced(ByteReader& reader, std::uint16_t id, Variant& variant) {
   if constexpr (!std::is_same_v<Message, Unknown>) {
@@ -104,7 +104,7 @@ std::variant<Messages...> read_message(ByteReader& reader, std::uint16_t id,
   return variant;
 }
 
-/// Whether an empty message with this number is a request for it (2.1).
+/// True if an empty message with this id is a request for that message (2.1).
 bool is_older_request(std::uint16_t id) {
   return id == static_cast<std::uint16_t>(MessageId::device_information) ||
          id == static_cast<std::uint16_t>(MessageId::protocol_version) ||

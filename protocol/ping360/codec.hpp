@@ -13,22 +13,22 @@
 
 namespace sonard::ping360 {
 
-/// A frame from a host, as FrameBuffer gives it. A number that no host sends gives Unknown; a payload that is
-/// shorter or longer than its message gives an error.
+/// Decodes a frame from a host, as returned by FrameBuffer. Returns Unknown for an id that no host sends, and
+/// an error if the payload is shorter or longer than its message.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> frame);
 
-/// A frame from a head. A number that no head sends gives Unknown; bytes beyond the message are ignored.
-/// DeviceData::data and AutoDeviceData::data view `frame`.
+/// Decodes a frame from a head. Returns Unknown for an id that no head sends, and an error if the payload is
+/// too short. Ignores bytes beyond the message. DeviceData::data and AutoDeviceData::data view `frame`.
 Result<Report, WireError> decode_report(std::span<const std::uint8_t> frame);
 
-/// Exactly one frame. Any message struct converts to its variant. A text or data that would make the payload
-/// longer than a receiver takes are cut.
+/// Encodes one frame. Any message struct converts to its variant. Cuts text or data that would make the
+/// payload longer than max_payload_size.
 std::vector<std::uint8_t> encode(const Command& command, std::uint8_t source = host_id,
                                  std::uint8_t destination = 0);
 std::vector<std::uint8_t> encode(const Report& report, std::uint8_t source = default_device_id,
                                  std::uint8_t destination = host_id);
 
-/// The number of whichever message is held, also for Unknown.
+/// The id of the message in the variant, also for Unknown.
 std::uint16_t id_of(const Command& command);
 std::uint16_t id_of(const Report& report);
 

@@ -56,16 +56,16 @@ class Device::Impl {
   Impl(const DeviceConfig& config, TimePoint start)
       : config_(validated(config)), scanner_(config_, counters_), power_up_(start), id_(config_.id) {}
 
-  // One for each event.
+  // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& piece);
   void take(TimePoint, const ClientCame&) {}
   void take(TimePoint now, const ClientGone& gone);
   void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
   void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
-  void take(TimePoint, const TriggerEdge&) {}   // it has no such input
-  void take(TimePoint, const WaterChanged&) {}  // it pings in air, too
-  void take(TimePoint, const SensorsRead&) {}   // it has none
+  void take(TimePoint, const TriggerEdge&) {}   // the head has no trigger input
+  void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
+  void take(TimePoint, const SensorsRead&) {}   // the head has no such sensors
   void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
   void take(TimePoint, const PingGranted&) { scanner_.grant(); }
 
@@ -82,7 +82,7 @@ class Device::Impl {
     TimePoint heard{};
   };
 
-  /// The address that has the head, where it is locked to the first.
+  /// The address that controls the head while it is locked to the first client.
   struct Holder {
     Ipv4 address = 0;  ///< 0: the serial line
     TimePoint heard{};
@@ -113,7 +113,7 @@ class Device::Impl {
   void end_scan(TimePoint now, std::string_view why);
   void set_id(const Peer& asker, MessageId order, std::uint8_t device_id);
 
-  // One for each command.
+  // One overload for each command.
   void handle(TimePoint now, const Peer& asker, const GeneralRequest& command);
   void handle(TimePoint now, const Peer& asker, const SetCommonDeviceId& command);
   void handle(TimePoint now, const Peer& asker, const SetDeviceId& command);
@@ -129,11 +129,11 @@ class Device::Impl {
   Scanner scanner_;
   const TimePoint power_up_;
   std::uint8_t id_;
-  TimePoint silent_until_ = TimePoint::min();  ///< in the future while it restarts
+  TimePoint silent_until_ = TimePoint::min();  ///< in the future while the head restarts
   std::vector<Client> clients_;
   std::optional<Holder> holder_;
 
-  // Of the step that is under way.
+  // Of the step in progress.
   std::vector<Outgoing> outgoing_;
   std::vector<Notice> notices_;
 };
@@ -161,12 +161,13 @@ Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
     make_room();
     found = clients_.insert(clients_.end(), Client{});
   }
-  found->peer = peer;  // it may speak to another of our addresses than before
+  found->peer = peer;  // the client may use another of our addresses than before
   found->heard = now;
   return *found;
 }
 
-/// Whoever has begun the scan stays: it only listens. There are two clients at least.
+/// Drops the client that has been silent longest, if there are too many. Keeps the starter of a scan, which
+/// may only listen. max_clients is at least 2.
 void Device::Impl::make_room() {
   if (clients_.size() < config_.max_clients) {
     return;
@@ -217,8 +218,8 @@ std::string Device::Impl::name_of(const Peer& peer) const {
 
 // ---- Frames
 
-/// An empty datagram is a break of the line behind a bridge, and so is 'U' between frames on a line of which
-/// the break itself is not seen (4.3, 4.4).
+/// An empty datagram stands for a break of the serial line behind a bridge. A 'U' between frames stands for a
+/// break if the line does not report breaks (4.3, 4.4).
 void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
   if (now < silent_until_) {
     counters_.unheard_bytes += piece.bytes.size();
@@ -237,7 +238,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
     end_scan(now, "an empty datagram came");
   }
   if (now < silent_until_) {
-    clients_.clear();  // it was told to restart
+    clients_.clear();  // a reset command came
     holder_.reset();
   }
 }
@@ -360,7 +361,7 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const SetDeviceId& comma
   set_id(asker, SetDeviceId::id, command.device_id);
 }
 
-/// The answer still comes from the old one.
+/// The answer still has the old id as source.
 void Device::Impl::set_id(const Peer& asker, MessageId order, std::uint8_t device_id) {
   const auto order_id = static_cast<std::uint16_t>(order);
   if (is_device_id(device_id)) {
@@ -377,7 +378,7 @@ void Device::Impl::handle(TimePoint now, const Peer&, const Reset& command) {
   ++counters_.resets;
   notice(command.bootloader != 0 ? "reset into the bootloader" : "reset");
   silent_until_ = now + (command.bootloader != 0 ? config_.bootloader_silence : config_.reset_silence);
-  // take() forgets the clients, one of which is being read.
+  // take() clears the clients later, because the input of one is being read.
 }
 
 void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& command) {
@@ -391,7 +392,7 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& co
   scanner_.command(now, asker, command);
 }
 
-/// A client that is not content with what it gets sends the same command again and again: that is not told.
+/// Repeated commands of a client are not logged, because some clients repeat them often.
 void Device::Impl::handle(TimePoint now, const Peer& asker, const AutoTransmit& command) {
   if (refused(asker, command)) {
     return;
@@ -409,7 +410,8 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const MotorOff& comm
   reply(asker, Ack{id_of(command)});
 }
 
-/// What only heads say, as a nack, is not refused: two heads on one line would never come to an end.
+/// Ignores messages that only heads send, such as a nack. Otherwise two heads on one line would answer each
+/// other for ever.
 void Device::Impl::handle(TimePoint, const Peer& asker, const Unknown& command) {
   if (command.id > static_cast<std::uint16_t>(MessageId::ascii_text)) {
     refuse(asker, command.id, not_recognised);
@@ -455,7 +457,7 @@ std::optional<TimePoint> Device::Impl::next_deadline() const {
   return next;
 }
 
-// ---- The door
+// ---- Device
 
 Device::Device(const DeviceConfig& config, TimePoint start) : impl_(std::make_unique<Impl>(config, start)) {}
 Device::~Device() = default;

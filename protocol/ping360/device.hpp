@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Ping360 as a pure state machine: bytes and time go in; frames and jobs come out.
-// It knows no sockets, serial ports, clocks or threads. Source: docs/protocols/ping360.md.
+// The Ping360 as a pure state machine: input is bytes and time, output is frames and jobs.
+// It uses no sockets, serial ports, clocks or threads. Source: docs/protocols/ping360.md.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace sonard::ping360 {
 
-/// One head on any number of channels: UDP ports, where an empty BytesReceived is an empty datagram and means
-/// something, and at most one serial line. Clients are told apart by channel and remote end; what they are
-/// sent is for one peer each, never for everybody. A job's transmit time is up to 50 ms before now where the
-/// caller is late.
+/// One head on any number of channels: UDP ports and at most one serial line. On a UDP port an empty
+/// BytesReceived is an empty datagram, which ends a scan. Clients are distinguished by channel and remote
+/// end; every message goes to one peer, never to everybody. If the caller is late, the transmit time of a job
+/// may be up to 50 ms in the past.
 class Device final : public sonard::Device {
  public:
-  /// A head that was powered up in time, with the settings of its boot.
+  /// A head that was powered up earlier, with the settings of a head at boot.
   /// @throws std::invalid_argument naming the field of `config` that is out of range
   Device(const DeviceConfig& config, TimePoint start);
   ~Device() override;
@@ -29,7 +29,7 @@ class Device final : public sonard::Device {
   std::vector<Counter> counts() const override;
 
   const DeviceCounters& counters() const;
-  std::uint8_t id() const;  ///< the present one
+  std::uint8_t id() const;  ///< the current device id
 
  private:
   class Impl;

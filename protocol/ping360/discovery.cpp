@@ -9,9 +9,9 @@
 namespace sonard::ping360 {
 namespace {
 
-constexpr std::size_t longest_datagram = 64;  // of those that mean something
+constexpr std::size_t longest_datagram = 64;  // longer ones are ignored
 
-/// The text of a datagram without what is blank around it; empty where it is too long to mean anything.
+/// The text of a datagram without blanks around it; empty if it is too long.
 std::string trimmed(std::span<const std::uint8_t> datagram) {
   if (datagram.size() > longest_datagram) {
     return {};

@@ -12,7 +12,7 @@ namespace sonard::ping360 {
 namespace {
 
 constexpr std::chrono::milliseconds give_up_silence{100};
-constexpr std::size_t length_end = 4;  // of what tells how long a frame is
+constexpr std::size_t length_end = 4;  // end of the length field
 
 std::uint16_t u16le(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<std::uint16_t>(bytes[offset] | bytes[offset + 1] << 8);
@@ -108,7 +108,7 @@ bool FrameBuffer::take_baud_bytes() {
   return std::exchange(baud_bytes_, false);
 }
 
-/// What next_frame() refuses though it starts and says its length as a frame does has a wrong checksum.
+/// If the bytes have a valid start and length, next_frame() rejected them for a wrong checksum.
 void FrameBuffer::note_broken_frame() {
   const auto bytes = rest();
   if (bytes.size() >= length_end && bytes[0] == frame_start_1 && bytes[1] == frame_start_2 &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of the Ping protocol: where one begins and ends in a stream of bytes, and how one is written.
+// Frames of the Ping protocol: finds them in a stream of bytes and writes them.
 // Source: docs/protocols/ping360.md 1.
 #pragma once
 
@@ -18,13 +18,13 @@ inline constexpr std::uint8_t frame_start_2 = 0x52;  ///< 'R'
 inline constexpr std::size_t frame_header_size = 8;
 inline constexpr std::size_t checksum_size = 2;
 inline constexpr std::size_t frame_overhead = frame_header_size + checksum_size;
-inline constexpr std::size_t max_payload_size = 4096;  ///< what is longer is no frame (1.1)
+inline constexpr std::size_t max_payload_size = 4096;  ///< a longer one is not a frame (1.1)
 inline constexpr std::uint8_t default_device_id = 2;   ///< of the head
 inline constexpr std::uint8_t host_id = 0;             ///< of every known client
 inline constexpr std::uint8_t broadcast_id = 255;
-inline constexpr std::uint8_t baud_byte = 0x55;  ///< 'U', by which a serial head finds the speed of its line
+inline constexpr std::uint8_t baud_byte = 0x55;  ///< 'U', with which a serial head detects the baud rate
 
-/// What stands before the payload of a frame, without the start bytes.
+/// The header of a frame, without the start bytes.
 struct FrameHeader {
   std::uint16_t payload_length = 0;
   std::uint16_t message_id = 0;
@@ -34,40 +34,41 @@ struct FrameHeader {
   bool operator==(const FrameHeader&) const = default;
 };
 
-/// The header of a frame of at least frame_header_size bytes.
+/// Reads the header of a frame of at least frame_header_size bytes.
 FrameHeader frame_header(std::span<const std::uint8_t> frame);
 
-/// One frame with `payload` in it, of at most max_payload_size bytes.
+/// Makes one frame with `payload`, at most max_payload_size bytes.
 std::vector<std::uint8_t> make_frame(std::uint16_t message_id, std::uint8_t source, std::uint8_t destination,
                                      std::span<const std::uint8_t> payload);
 
-/// What to do with `bytes`, the front of a stream (1.1):
-///   n > 0  a frame of n bytes with a right checksum starts here
-///   n < 0  drop -n bytes: they start no frame
+/// Returns how to continue with `bytes`, the front of a stream (1.1):
+///   n > 0  a frame of n bytes with a correct checksum starts here
+///   n < 0  drop -n bytes: no frame starts in them
 ///   0      more bytes are needed
-/// Of what looks like a frame and is none, one byte is dropped: a true frame may start inside.
+/// Drops only the first byte of a false frame, because a true frame may start inside it.
 std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes);
 
-/// Gathers the bytes of one client, in pieces of any size, into frames. Holds less than one frame and what
-/// came with its last piece. Not thread-safe; `now` never goes backwards.
+/// Collects the bytes of one client, in parts of any size, into frames. Holds less than one frame plus the
+/// last part. Not thread-safe; `now` never goes backwards.
 class FrameBuffer {
  public:
-  /// What has stopped to come for 100 ms will not go on: a length that noise has made hides no frame for
-  /// longer than that.
+  /// Adds bytes. Drops an unfinished frame after a gap of 100 ms, so that a false length caused by noise
+  /// cannot hide frames for longer.
   void append(TimePoint now, std::span<const std::uint8_t> bytes);
-  /// The frame in front, after dropping what is none; valid until the next call. Stays until pop().
+  /// The frame in front, after dropping other bytes; valid until the next call. It stays in front until
+  /// pop().
   std::optional<std::span<const std::uint8_t>> front();
-  /// The frame in front is dealt with.
+  /// Removes the frame in front.
   void pop();
-  /// What has begun will not be finished.
+  /// Drops an unfinished frame.
   void clear();
 
-  /// Whether baud bytes stood before the frame in front, or after the last one, since the last call. Those
-  /// inside of a broken frame do not count.
+  /// True if baud bytes came before the frame in front, or after the last one, since the last call. Baud
+  /// bytes inside a broken frame do not count.
   bool take_baud_bytes();
-  /// Bytes that were part of no frame, since construction.
+  /// Bytes outside frames, since construction.
   std::uint64_t dropped() const { return dropped_; }
-  /// Frames whose checksum was wrong, since construction.
+  /// Frames with a wrong checksum, since construction.
   std::uint64_t bad_checksums() const { return bad_checksums_; }
 
  private:
@@ -76,8 +77,8 @@ class FrameBuffer {
   void note_broken_frame();
 
   std::vector<std::uint8_t> bytes_;
-  std::size_t begin_ = 0;       ///< bytes before it are done with
-  std::size_t front_size_ = 0;  ///< of the frame that front() gave
+  std::size_t begin_ = 0;       ///< bytes before it have been consumed
+  std::size_t front_size_ = 0;  ///< of the frame that front() returned
   std::size_t broken_ = 0;      ///< bytes from `begin_` on that belong to a broken frame
   bool baud_bytes_ = false;
   TimePoint last_byte_{};

@@ -15,8 +15,8 @@ using std::chrono::seconds;
 
 constexpr milliseconds answer_timeout{500};
 constexpr milliseconds ping_timeout{4200};
-constexpr milliseconds quiet_time{200};  ///< from an empty datagram to the order to scan
-constexpr seconds sign_of_life{10};      ///< a head may stop a scan of which it hears nothing more
+constexpr milliseconds quiet_time{200};  ///< from an empty datagram to the scan command
+constexpr seconds sign_of_life{10};      ///< a head may end the scan of a silent client
 constexpr milliseconds stop_period{100};
 constexpr int stop_tries = 10;
 
@@ -101,7 +101,7 @@ void Host::begin(TimePoint now, const Programme& programme) {
   }
 }
 
-/// A scan that somebody else has left behind is ended first.
+/// Ends a scan of an earlier client before starting a new scan.
 void Host::ask_for_pings(TimePoint now) {
   if (std::holds_alternative<AutoTransmit>(programme_->command)) {
     outgoing_.emplace_back();
@@ -122,9 +122,8 @@ void Host::order(TimePoint now) {
   }
 }
 
-/// A link may bring an answer twice. Each ping leads to the next command, so a copy must not count as one.
-/// Otherwise settings are not compared: where an old recording is played the head says what that was made
-/// with.
+/// A link may deliver an answer twice. Each ping triggers the next command, so a copy must not count. Other
+/// settings are not compared, because a head that plays a recording reports the recorded settings.
 void Host::on_report(TimePoint now, const DeviceData& data) {
   const std::vector<std::uint8_t> before = std::exchange(last_data_, encode(data));
   if (phase_ == Phase::meeting) {
@@ -133,7 +132,7 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
     return;
   }
   if (phase_ == Phase::stopping) {
-    return;  // The head pings on until the stop reaches it.
+    return;  // The head pings until the stop command reaches it.
   }
   auto* const command = programme_ ? std::get_if<Transducer>(&programme_->command) : nullptr;
   const bool unwanted = phase_ != Phase::pinging || command == nullptr;
@@ -148,7 +147,7 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
   }
 }
 
-/// Of the settings only those of the scan are compared, as above.
+/// Compares only the settings of the scan, because a head that plays a recording reports recorded settings.
 void Host::on_report(TimePoint now, const AutoDeviceData& data) {
   if (phase_ == Phase::stopping) {
     return;
@@ -165,7 +164,7 @@ void Host::on_report(TimePoint now, const AutoDeviceData& data) {
   deliver(now, data, data.data);
 }
 
-/// Of itself a scan never ends.
+/// Delivers a ping. After the last one it stops a scan, which never ends by itself.
 void Host::deliver(TimePoint now, const Report& report, std::span<const std::uint8_t> data) {
   pings_.push_back({programme_->delivered++, now, *form_of(report), {data.begin(), data.end()}});
   ++statistics_.pings;

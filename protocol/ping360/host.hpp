@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The client's side of a Ping360 as a pure state machine: bytes and time go in; frames and pings come out. It
-// knows no serial ports, sockets, clocks or threads. Source: docs/protocols/ping360.md 3, 6.
+// A Ping360 client as a pure state machine: input is bytes and time, output is frames and pings. It uses no
+// serial ports, sockets, clocks or threads. Source: docs/protocols/ping360.md 3, 6.
 //
-// It goes the way of known clients: asks for protocol version, identity and state, then either commands one
-// ping after another and waits for each, or starts a scan and listens. What does not come is asked for again.
+// It follows known clients: requests protocol version, identity and state, then either commands one ping
+// after another and waits for each, or starts a scan and listens. It repeats unanswered requests.
 #pragma once
 
 #include <chrono>
@@ -20,11 +20,11 @@
 
 namespace sonard::ping360 {
 
-/// What a head has said of itself.
+/// What is known about the head.
 struct HeadIdentity {
   std::optional<ProtocolVersion> protocol;
   std::optional<DeviceInformation> information;
-  std::optional<PingForm> state;  ///< at the beginning
+  std::optional<PingForm> state;  ///< at first contact
 };
 
 struct ReceivedPing {
@@ -36,14 +36,14 @@ struct ReceivedPing {
 
 /// Counters since construction. They only grow.
 struct HostStatistics {
-  std::uint64_t frames = 0;         ///< with a right checksum
-  std::uint64_t dropped_bytes = 0;  ///< part of no frame
-  std::uint64_t bad_frames = 0;     ///< could not be read
+  std::uint64_t frames = 0;         ///< decoded
+  std::uint64_t dropped_bytes = 0;  ///< not part of a frame
+  std::uint64_t bad_frames = 0;     ///< undecodable
   std::uint64_t pings = 0;          ///< delivered
-  /// Of another scan, second copies, or none was asked for; not those sent before a stop was read.
+  /// Pings of another scan, second copies, and unrequested pings, except while stopping.
   std::uint64_t pings_unwanted = 0;
-  std::uint64_t commands = 0;  ///< that ask for pings, the first time and again
-  std::uint64_t timeouts = 0;  ///< commands that no ping came for
+  std::uint64_t commands = 0;  ///< commands for pings, including repetitions
+  std::uint64_t timeouts = 0;  ///< commands without a ping in answer
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
@@ -51,33 +51,33 @@ class Host {
  public:
   explicit Host(TimePoint now);
 
-  /// Bytes from the head, cut as they happen to come. Bad ones are counted and dropped.
+  /// Handles bytes from the head, in parts of any size. Counts and drops bad ones.
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
 
-  /// Pings with these settings, each time `step` gradians on, at once or as soon as the head is known;
-  /// replaces what was going on. Ends after `pings` delivered ones; 0: goes on until stop().
+  /// Commands single pings, each `step` gradians after the last, at once or when the head is known; replaces
+  /// the running programme. Ends after `pings` delivered pings; 0: continues until stop().
   void start(TimePoint now, const Transducer& first, int step, std::uint64_t pings);
-  /// Scans; all else as above.
+  /// Starts a scan, at once or when the head is known. `pings` as in the other overload.
   void start(TimePoint now, const AutoTransmit& scan, std::uint64_t pings);
-  /// Asks for nothing more, and tells the head to stop until it says that it has.
+  /// Stops requesting pings, and repeats the stop command until the head acknowledges it.
   void stop(TimePoint now);
 
-  /// Runs everything due at `now`. Call after every other call and at next_deadline().
+  /// Runs everything that is due at `now`. Call after every other call and at next_deadline().
   void advance(TimePoint now);
-  /// When advance() is next needed; nullopt: only after an event.
+  /// When to call advance() next; nullopt: only after an event.
   std::optional<TimePoint> next_deadline() const;
 
-  /// Frames due, in order, each a datagram of its own; an empty one, too, is sent over UDP and left out on
-  /// other lines. Each call empties the list.
+  /// Frames due, in order, each as its own datagram. Send empty ones over UDP too, but skip them on other
+  /// lines. Each call empties the list.
   std::vector<std::vector<std::uint8_t>> take_outgoing();
-  /// Pings that came, in order. Each call empties the list.
+  /// Received pings, in order. Each call empties the list.
   std::vector<ReceivedPing> take_pings();
 
   const HeadIdentity& head() const { return head_; }
-  /// What the head has answered to the present command instead of a ping. It is not asked again.
+  /// The head's refusal of the current command, which is not repeated.
   const std::optional<Nack>& refusal() const { return refusal_; }
-  /// All pings asked for by start() are delivered or refused; after stop(): the head has stopped, or does
-  /// not answer.
+  /// True if all pings of start() are delivered or refused. After stop(): true if the head has stopped or
+  /// does not answer.
   bool finished() const { return finished_; }
   const HostStatistics& statistics() const { return statistics_; }
 
@@ -85,11 +85,11 @@ class Host {
   enum class Phase : std::uint8_t {
     meeting,
     idle,
-    quieting,  ///< an empty datagram was sent, a scan will be ordered
+    quieting,  ///< an empty datagram was sent, a scan command follows
     pinging,
     stopping
   };
-  /// What start() asked for.
+  /// The arguments of start(), and its progress.
   struct Programme {
     std::variant<Transducer, AutoTransmit> command;
     int step = 0;
@@ -105,7 +105,7 @@ class Host {
   void on_report(TimePoint now, const Ack& ack);
   void on_report(TimePoint now, const Nack& nack);
   template <class Other>
-  void on_report(TimePoint, const Other&) {}  // nothing that a client needs
+  void on_report(TimePoint, const Other&) {}  // a client does not need these
 
   void begin(TimePoint now, const Programme& programme);
   void ask_identity(TimePoint now);
@@ -119,11 +119,11 @@ class Host {
   FrameBuffer input_;
   HeadIdentity head_;
   Phase phase_ = Phase::meeting;
-  std::optional<TimePoint> due_;               ///< when what the phase waits for is given up
-  std::optional<TimePoint> sign_of_life_due_;  ///< while a scan goes on
+  std::optional<TimePoint> due_;               ///< time-out of the phase
+  std::optional<TimePoint> sign_of_life_due_;  ///< while a scan runs
   int stop_orders_ = 0;
   std::optional<Programme> programme_;
-  std::vector<std::uint8_t> last_data_;  ///< the last DeviceData that came, as a frame
+  std::vector<std::uint8_t> last_data_;  ///< the last received DeviceData, as a frame
   std::optional<Nack> refusal_;
   bool finished_ = false;
   std::vector<std::vector<std::uint8_t>> outgoing_;

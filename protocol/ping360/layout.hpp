@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where each field of each message lies: the one table that the codec reads and writes by. Offsets are from
-// the start of the frame, so 8 more than those of the tables in docs/protocols/ping360.md 2; the checksum at
-// its end is not counted. Texts, and samples with their count, follow the table of their message and are
-// written out in codec.cpp.
+// Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
+// frame, 8 more than in docs/protocols/ping360.md 2; sizes exclude the checksum at its end. Texts, and
+// samples with their count, follow the table of their message; codec.cpp handles them.
 #pragma once
 
 #include <tuple>
@@ -12,7 +11,7 @@
 
 namespace sonard::ping360 {
 
-/// Table of one message, or of the part of it that a table can say (protocol/common/layout.hpp).
+/// Table of one message or of its fixed part (protocol/common/layout.hpp).
 template <class Message>
 struct Layout;
 
@@ -72,7 +71,7 @@ struct Layout<Ack> : WholeLayout<10> {
   static constexpr auto fields = std::tuple{Field{8, "acked_id", &Ack::acked_id}};
 };
 
-/// Up to its text.
+/// Without the text, which follows.
 template <>
 struct Layout<Nack> : WholeLayout<10> {
   static constexpr auto fields = std::tuple{Field{8, "nacked_id", &Nack::nacked_id}};
@@ -114,7 +113,7 @@ struct Layout<DeviceData> : WholeLayout<20> {
   };
 };
 
-/// Up to the count of its samples. The order differs from that of the command.
+/// Without the samples and their count. The order of fields differs from the command.
 template <>
 struct Layout<AutoDeviceData> : WholeLayout<26> {
   static constexpr auto fields = std::tuple{

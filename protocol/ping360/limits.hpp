@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which values of a command a head takes (docs/protocols/ping360.md 2.3).
+// Value ranges that a head accepts in commands (docs/protocols/ping360.md 2.3).
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace sonard::ping360 {
 
-/// The first field of a command whose value is refused.
+/// The first field of a command with a refused value.
 struct OutOfRange {
-  std::string_view field;  ///< as the layout tables spell it
+  std::string_view field;  ///< name as in the layout tables
   int value = 0;
   int least = 0;
   int most = 0;
@@ -23,7 +23,7 @@ struct OutOfRange {
 std::optional<OutOfRange> out_of_range(const Transducer& command, const DeviceConfig& config);
 std::optional<OutOfRange> out_of_range(const AutoTransmit& command, const DeviceConfig& config);
 
-/// A limit of a scan in whole gradians, 0..399, as the head is told to read it.
+/// A limit of a scan in gradians, 0..399, read as signed or unsigned (DeviceConfig::signed_scan_angles).
 int scan_angle(std::uint16_t angle, const DeviceConfig& config);
 
 }  // namespace sonard::ping360

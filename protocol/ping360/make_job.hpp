@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ping that a head makes with given settings, or made once (docs/protocols/ping360.md 2.3).
+// Jobs for pings with given settings and for recorded pings (docs/protocols/ping360.md 2.3).
 #pragma once
 
 #include "protocol/common/ping_record.hpp"
@@ -8,10 +8,10 @@
 
 namespace sonard::ping360 {
 
-/// A ping of this form. Its number and transmit time are left for the caller.
+/// The job of a ping of this form. The caller sets number and transmit time.
 PingJob make_job(const PingForm& form, const DeviceConfig& config);
 
-/// What a recorded ping was made with, which said `form`; number and transmit time as above.
+/// The job of a recorded ping with this form. The caller sets number and transmit time.
 PingJob make_job(const RecordedPing& recorded, const PingForm& form, const DeviceConfig& config);
 
 }  // namespace sonard::ping360

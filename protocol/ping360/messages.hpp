@@ -2,7 +2,7 @@
 // The messages of a Ping360 as values, both directions, one struct per message.
 // Source: docs/protocols/ping360.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
-// and skipped when read. "Host" is the client's computer; "head" is the sonar. Multi-byte integers travel
+// and skipped on reading. "Host" is the client's computer; "head" is the sonar. Multi-byte integers are
 // little-endian. Frame headers (frame.hpp) are not part of a message.
 #pragma once
 
@@ -30,7 +30,7 @@ enum class MessageId : std::uint16_t {
   motor_off = 2903,
 };
 
-/// A message whose number this library does not know.
+/// A message with an unknown id.
 struct Unknown {
   std::uint16_t id = 0;
 
@@ -39,8 +39,8 @@ struct Unknown {
 
 // ---- Host -> head
 
-/// Asks for the message `requested_id` (2.1, 3.1). An empty message with the number 4, 5 or 2300 is an older
-/// spelling of the request for it, and decodes to this one.
+/// Requests the message `requested_id` (2.1, 3.1). An empty message with the id 4, 5 or 2300 is an older form
+/// of this request and decodes to it.
 struct GeneralRequest {
   static constexpr MessageId id = MessageId::general_request;
   std::uint16_t requested_id = 0;
@@ -48,7 +48,7 @@ struct GeneralRequest {
   bool operator==(const GeneralRequest&) const = default;
 };
 
-/// The order of the common set, which heads in the field refuse (3.6).
+/// Sets the device id; from the common message set. Real heads refuse it (3.6).
 struct SetCommonDeviceId {
   static constexpr MessageId id = MessageId::set_common_device_id;
   std::uint8_t device_id = 0;  ///< 1..254
@@ -56,7 +56,7 @@ struct SetCommonDeviceId {
   bool operator==(const SetCommonDeviceId&) const = default;
 };
 
-/// An order of a host; a head that is asked for it answers with its present number (3.1, 3.6).
+/// Sets the device id. A head also sends it with its current id, in answer to a request (3.1, 3.6).
 struct SetDeviceId {
   static constexpr MessageId id = MessageId::set_device_id;
   std::uint8_t device_id = 0;  ///< 1..254
@@ -72,22 +72,22 @@ struct Reset {
   bool operator==(const Reset&) const = default;
 };
 
-/// Moves the head and pings there once (3.2). The defaults are those of a head at boot (2.3).
+/// Moves the head and pings there once (3.2). Defaults: the settings of a head at boot (2.3).
 struct Transducer {
   static constexpr MessageId id = MessageId::transducer;
-  std::uint8_t mode = 1;  ///< hosts send 0, too
+  std::uint8_t mode = 1;  ///< hosts also send 0
   std::uint8_t gain_setting = 0;
   std::uint16_t angle = 0;  ///< gradians
   std::uint16_t transmit_duration_us = 32;
   std::uint16_t sample_period = 80;  ///< units of 25 ns
   std::uint16_t transmit_frequency_khz = 740;
   std::uint16_t number_of_samples = 1024;
-  std::uint8_t transmit = 1;  ///< 0: moves only
+  std::uint8_t transmit = 1;  ///< 0: only moves
 
   bool operator==(const Transducer&) const = default;
 };
 
-/// Scans until it is told to stop (3.3).
+/// Scans until stopped (3.3).
 struct AutoTransmit {
   static constexpr MessageId id = MessageId::auto_transmit;
   std::uint8_t mode = 1;
@@ -99,12 +99,12 @@ struct AutoTransmit {
   std::uint16_t start_angle = 0;   ///< gradians
   std::uint16_t stop_angle = 399;  ///< gradians, clockwise from the start
   std::uint8_t num_steps = 1;      ///< gradians between two pings
-  std::uint8_t delay_ms = 0;       ///< in addition, between two pings
+  std::uint8_t delay_ms = 0;       ///< additional time between two pings
 
   bool operator==(const AutoTransmit&) const = default;
 };
 
-/// Ends a scan and all that is queued (3.4).
+/// Ends a scan and drops all queued commands (3.4).
 struct MotorOff {
   static constexpr MessageId id = MessageId::motor_off;
   bool operator==(const MotorOff&) const = default;
@@ -142,7 +142,7 @@ struct DeviceInformation {
   static constexpr MessageId id = MessageId::device_information;
   std::uint8_t device_type = 2;      ///< 1 Ping1D, 2 Ping360
   std::uint8_t device_revision = 1;  ///< > 0
-  std::uint8_t firmware_major = 3;   ///< up to 3.3.0 a known viewer scans with `transducer` (6)
+  std::uint8_t firmware_major = 3;   ///< up to version 3.3.0 a known viewer scans with `transducer` (6)
   std::uint8_t firmware_minor = 3;
   std::uint8_t firmware_patch = 8;
 
@@ -158,22 +158,22 @@ struct ProtocolVersion {
   bool operator==(const ProtocolVersion&) const = default;
 };
 
-/// A ping of `transducer`, or the present state of the head (3.1, 3.2).
+/// A ping of `transducer`, or the current state of the head (3.1, 3.2).
 struct DeviceData {
   static constexpr MessageId id = MessageId::device_data;
   std::uint8_t mode = 1;  ///< as commanded
   std::uint8_t gain_setting = 0;
-  std::uint16_t angle = 0;  ///< gradians, 0..399: where the head is
+  std::uint16_t angle = 0;  ///< angle of the head, gradians, 0..399
   std::uint16_t transmit_duration_us = 32;
   std::uint16_t sample_period = 80;  ///< units of 25 ns
   std::uint16_t transmit_frequency_khz = 740;
   std::uint16_t number_of_samples = 1024;
-  std::span<const std::uint8_t> data;  ///< nearest sample first; views the frame; empty: there was no ping
+  std::span<const std::uint8_t> data;  ///< nearest sample first; views the frame; empty: no ping
 
   bool operator==(const DeviceData& other) const;
 };
 
-/// A ping of a scan (3.3). All but angle and data is as commanded.
+/// A ping of a scan (3.3). All fields except angle and data are as commanded.
 struct AutoDeviceData {
   static constexpr MessageId id = MessageId::auto_device_data;
   std::uint8_t mode = 1;
@@ -195,9 +195,9 @@ struct AutoDeviceData {
 using Report = std::variant<Unknown, Ack, Nack, AsciiText, DeviceInformation, ProtocolVersion, SetDeviceId,
                             DeviceData, AutoDeviceData>;
 
-// ---- What the four messages about pings have in common
+// ---- Common fields of the four messages about pings
 
-/// Takes over gain, pulse, sampling and frequency from one message about pings to another.
+/// Copies mode, gain, pulse, sampling and frequency between messages about pings.
 template <class To, class From>
 void copy_ping_settings(To& to, const From& from) {
   to.mode = from.mode;
@@ -208,7 +208,7 @@ void copy_ping_settings(To& to, const From& from) {
   to.number_of_samples = from.number_of_samples;
 }
 
-/// Takes over sector, step and delay from one message about scans to another.
+/// Copies sector, step and delay between messages about scans.
 template <class To, class From>
 void copy_scan_settings(To& to, const From& from) {
   to.start_angle = from.start_angle;

@@ -16,9 +16,9 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// A caller that is late by less keeps the pace; what it has missed beyond is not made up for.
+/// Up to this delay of the caller the ping rate is kept; longer delays lose time.
 constexpr std::chrono::milliseconds lateness_allowed{50};
-/// A scan goes on for ever: where no ping can be rendered it takes its time all the same.
+/// Limits the rate of a scan, which runs for ever, if no ping can be rendered.
 constexpr std::chrono::milliseconds least_time_of_failed_ping{10};
 
 }  // namespace
@@ -33,7 +33,7 @@ void Scanner::restart(TimePoint now) {
   last_samples_.clear();
 }
 
-// ---- What it is told
+// ---- Commands
 
 void Scanner::command(TimePoint now, const Peer& asker, const Transducer& command) {
   const bool joins = config_.joins_repeated_commands && is_repeated(asker, command);
@@ -51,11 +51,11 @@ void Scanner::command(TimePoint now, const Peer& asker, const Transducer& comman
   }
 }
 
-/// Clients repeat a command while the head still turns, and take each answer as the order for the next one:
-/// two answers to one command would make them ping every angle twice for ever.
+/// Clients repeat a command while the head still turns, and send the next command after each answer. Two
+/// answers to one command would make them ping every angle twice for ever.
 bool Scanner::is_repeated(const Peer& asker, const Transducer& command) const {
   if (scan_) {
-    return false;  // the client has ordered something else since then
+    return false;  // a scan was started after the last command
   }
   const PingForm form = form_of(command);
   const bool transmit = command.transmit != 0;
@@ -69,7 +69,7 @@ bool Scanner::is_repeated(const Peer& asker, const Transducer& command) const {
 
 void Scanner::scan(TimePoint now, const Peer& starter, const AutoTransmit& command) {
   if (scan_ && same_client(scan_->starter, starter) && scan_->command == command) {
-    return;  // clients repeat it more often than a turn takes
+    return;  // clients repeat the command several times per turn
   }
   end_scan(now);
   scan_.emplace(Scan{starter, command,
@@ -78,7 +78,7 @@ void Scanner::scan(TimePoint now, const Peer& starter, const AutoTransmit& comma
                      now});
 }
 
-/// Played back, a ping that has begun is sent all the same: it will not be fed again.
+/// In playback a ping that has begun is still sent, because it will not be fed again.
 void Scanner::end_scan(TimePoint now) {
   scan_.reset();
   if (work_ && work_->form.scan && !(config_.plays_back && ping_)) {
@@ -107,7 +107,7 @@ void Scanner::feed(const std::optional<RecordedPing>& ping) {
   fed_ = form ? std::optional(FedPing{*ping, *form}) : std::nullopt;
 }
 
-// ---- Where it looks
+// ---- Angle
 
 nanoseconds Scanner::scaled(nanoseconds time) const {
   return nanoseconds{static_cast<nanoseconds::rep>(static_cast<double>(time.count()) * config_.time_scale)};
@@ -129,7 +129,7 @@ void Scanner::place(int angle) {
   turn_end_ = TimePoint::min();
 }
 
-/// Evenly, the short way. Returns how long that takes.
+/// Starts a turn the short way at constant speed and returns its duration.
 nanoseconds Scanner::turn_to(int angle, TimePoint begin) {
   from_ = position(begin);
   way_ = shortest_turn(from_, angle);
@@ -139,9 +139,9 @@ nanoseconds Scanner::turn_to(int angle, TimePoint begin) {
   return time;
 }
 
-// ---- Its work
+// ---- Work
 
-/// Commands before the scan that came after them: a command ends the scan that came before it.
+/// Queued commands come before the scan, because a command ends an earlier scan.
 std::optional<Scanner::Work> Scanner::next_work() {
   if (!queue_.empty()) {
     const Command next = queue_.front();
@@ -167,7 +167,7 @@ void Scanner::begin_work() {
   settings_ = work_->form.settings;
   work_->there_at = std::max(work_->wanted, busy_until_);
   if (work_->transmit && config_.plays_back) {
-    return;  // the head looks where the recorded one did
+    return;  // the recorded ping sets the angle
   }
   const nanoseconds turn = turn_to(settings_.angle, work_->there_at);
   const nanoseconds listen = listening_time(settings_.number_of_samples, settings_.sample_period);
@@ -176,7 +176,7 @@ void Scanner::begin_work() {
   work_->period = std::max(scaled(listen + config_.ping_overhead + delay) + turn, listen);
 }
 
-/// @param end when the head is free for more, by its pace
+/// @param end when the head is free again by its timing
 void Scanner::end_work(TimePoint end) {
   busy_until_ = end;
   if (work_->form.scan && scan_) {
@@ -212,7 +212,7 @@ std::optional<TimePoint> Scanner::ping_possible() const {
   }
   const TimePoint possible = std::max(work_->wanted, free_since_);
   if (config_.waits_for_permission) {
-    return possible;  // whoever grants a ping has kept the pace in the time that rules
+    return possible;  // the granter observes the ping rate in simulated time
   }
   const TimePoint due = std::max(possible, work_->there_at);
   return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
@@ -242,7 +242,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   ping.number = job.number = next_ping_number_++;
   ping.transmit_time = job.transmit_time = ping.send_due = transmit_time;
   if (!config_.waits_for_permission) {
-    // Played back no faster than the echoes came; the recording says how much slower.
+    // In playback a ping is sent when its echoes have arrived; its due time sets the rate.
     ping.send_due += scaled(job.listening_time + (fed ? nanoseconds{0} : config_.ping_overhead));
   }
   ping.settings = {.bins = job.bins(),
@@ -257,7 +257,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   ++counters_.pings_started;
 }
 
-/// The settings are the recorded ones. Mode and scan are those of the client, which it wants to see again.
+/// Uses the recorded settings, but the client's mode and scan, because clients expect them back.
 PingJob Scanner::repeat(const FedPing& fed) {
   PingJob job = make_job(fed.ping, fed.form, config_);
   job.differences = differences(work_->form, job, fed.form);
@@ -277,7 +277,7 @@ std::optional<PingJob> Scanner::take_job() {
   return job;
 }
 
-/// True when it answers the ping that is acquired.
+/// Marks the job as answered; true if it belongs to the acquired ping.
 bool Scanner::answered(TimePoint now, std::uint64_t number) {
   if (unanswered_ != number) {
     ++counters_.stale_images;

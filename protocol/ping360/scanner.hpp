@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When and where a head pings, and what it sends for it. Source: docs/protocols/ping360.md 3.2, 3.3, 3.7.
+// Times and angles of a head's pings, and its answers. Source: docs/protocols/ping360.md 3.2, 3.3, 3.7.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,32 @@ namespace sonard::ping360 {
 
 /// The part of a Device that turns and pings.
 ///
-/// Its *work* is the command that is being done or, once there is none, the next ping of the scan: the head
-/// turns to where the work is to be done, pings there, and sends. There is one work at a time. A ping is
-/// *acquired* from its transmission on, when its job goes out.
+/// Its *work* is the current command or, if there is no command, the next ping of the scan: the head turns to
+/// the angle, pings there and sends. There is one work at a time. A ping is *acquired* from its transmission
+/// on, when its job is issued.
 class Scanner {
  public:
-  /// A message for the client that has asked for it.
+  /// A message for the client that requested it.
   struct Answer {
     Peer to;
     std::vector<std::uint8_t> frame;
   };
 
-  /// At angle 0, with the settings of a head at boot. `config` and `counters` outlive the scanner.
+  /// Starts at angle 0 with the settings of a head at boot. `config` and `counters` must outlive the scanner.
   Scanner(const DeviceConfig& config, DeviceCounters& counters);
 
-  /// Forgets everything but the job that is still to be answered, and stands as at boot.
+  /// Restores the state at boot; keeps only the unanswered job.
   void restart(TimePoint now);
-  /// Both take commands within their limits (limits.hpp).
-  /// Ends the scan. Queues the command, unless it repeats the last unanswered command of this client: then
-  /// one answer serves both (3.2).
+  // command() and scan() require commands within their limits (limits.hpp).
+  /// Ends the scan and queues the command. If it repeats the last unanswered command of this client, it is
+  /// not queued: one answer serves both (3.2).
   void command(TimePoint now, const Peer& asker, const Transducer& command);
-  /// Starts a scan. If this client's running scan has the same command, that scan goes on (3.3).
+  /// Starts a scan. If this client's running scan has an equal command, that scan continues (3.3).
   void scan(TimePoint now, const Peer& starter, const AutoTransmit& command);
   void end_scan(TimePoint now);
-  /// Drops all that is to be done.
+  /// Drops all work, queued commands and the scan.
   void stop(TimePoint now);
-  /// Drops what this client has asked for.
+  /// Drops the work, commands and scan of this client.
   void forget(TimePoint now, const Peer& client);
 
   void on_image(TimePoint now, const PingImage& image);
@@ -51,24 +51,24 @@ class Scanner {
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
   void grant() { granted_ = true; }
-  /// Nothing, too, where `ping` does not say how it travelled.
+  /// Sets the next recorded ping; a ping without a valid `wire` counts as nullopt.
   void feed(const std::optional<RecordedPing>& ping);
 
   /// Appends the messages due at `now` to `out`, from the device `id`.
   void advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out);
   std::optional<TimePoint> next_deadline() const;
   std::optional<PingJob> take_job();
-  /// The ping that has left since the last call; advance() sends one at most.
+  /// The ping that was sent since the last call; advance() sends at most one.
   std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
   /// See Actions::cancelled.
   std::optional<std::uint64_t> cancelled() const { return ping_ ? std::nullopt : unanswered_; }
 
-  /// The last ping, with its own settings and angle; before the first one and after a mere move how the head
-  /// stands, without samples. Valid until the next call of another function.
+  /// The last ping with its settings and angle. Before the first ping and after a move without a ping: the
+  /// current settings and angle without samples. Valid until the next call of another function.
   DeviceData state(TimePoint now) const;
-  /// The last ping of the scan that goes on, without data before the first; nullopt: there is no scan.
+  /// The last ping of the running scan, without data before the first ping; nullopt if there is no scan.
   std::optional<AutoDeviceData> scan_state(TimePoint now) const;
-  /// Who has begun the scan that goes on, and how.
+  /// The client that started the running scan, and its command.
   std::optional<std::pair<Peer, AutoTransmit>> running_scan() const;
 
  private:
@@ -86,11 +86,11 @@ class Scanner {
   };
   struct Work {
     Peer asker;
-    PingForm asked;  ///< by the client
-    PingForm form;   ///< of the answer: as asked, or as recorded
+    PingForm asked;  ///< requested by the client
+    PingForm form;   ///< of the answer: as requested, or as recorded
     bool transmit = true;
-    TimePoint wanted{};                 ///< not before this
-    TimePoint there_at{};               ///< when the head has turned to it
+    TimePoint wanted{};                 ///< earliest time
+    TimePoint there_at{};               ///< when the head has turned to the angle
     std::chrono::nanoseconds period{};  ///< from the last ping to this one
   };
   struct Ping {
@@ -127,19 +127,19 @@ class Scanner {
   const DeviceConfig& config_;
   DeviceCounters& counters_;
 
-  // Where it looks: it turns evenly from `from_` by `way_`.
+  // Angle: the head turns at constant speed from `from_` by `way_`.
   int from_ = 0;
   int way_ = 0;
   TimePoint turn_begin_{};
   TimePoint turn_end_{};
 
-  // What it was told.
+  // Commands.
   std::deque<Command> queue_;
   std::optional<Scan> scan_;
   std::optional<FedPing> fed_;
 
-  // What it does.
-  DeviceData settings_;       ///< of its present or last work
+  // Work.
+  DeviceData settings_;       ///< of the current or last work
   DeviceData last_settings_;  ///< of the last ping
   std::vector<std::uint8_t> last_samples_;
   std::optional<Work> work_;
@@ -148,12 +148,12 @@ class Scanner {
   std::uint64_t next_ping_number_ = 0;
   std::optional<PingRecord> record_;         ///< not yet taken
   std::optional<PingJob> job_;               ///< not yet taken
-  std::optional<std::uint64_t> unanswered_;  ///< number of the job taken and not yet answered
-  TimePoint busy_until_{};                   ///< with the last work, by the pace of the head
+  std::optional<std::uint64_t> unanswered_;  ///< number of the job that is taken but not yet answered
+  TimePoint busy_until_{};                   ///< end of the last work by the timing of the head
   TimePoint free_since_{};                   ///< when the last job was answered
 };
 
-/// Whether two messages are from one client.
+/// True if two messages are from one client.
 inline bool same_client(const Peer& a, const Peer& b) {
   return a.channel == b.channel && a.remote == b.remote;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a client has set, in words for the log.
+// A client's settings as text for the log.
 #pragma once
 
 #include <set>
@@ -13,14 +13,14 @@
 
 namespace sonard::ping360 {
 
-/// Of a ping of this form: how far it reaches, how it is sounded and amplified, how the head scans. The angle
-/// is left out: it changes from ping to ping.
+/// Settings of a ping: range, sampling, pulse, gain and scan. Without the angle, which changes from ping to
+/// ping.
 std::vector<Setting> settings_of(const PingJob& job, const PingForm& form);
 
 /// "0 to 399 gradians, step 1"
 std::string scan_text(const AutoTransmit& scan);
 
-/// What in commands is most likely not what the client means. Each is said once.
+/// Messages about values that are probably mistakes of the client, each only once.
 class SettingsWarnings {
  public:
   void refused(const OutOfRange& field, std::vector<Notice>& notices);

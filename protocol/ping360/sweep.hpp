@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a scan pings, one angle after another. Source: docs/protocols/ping360.md 3.3.
+// Angles of the pings of a scan. Source: docs/protocols/ping360.md 3.3.
 #pragma once
 
 namespace sonard::ping360 {
 
-/// A sector runs clockwise from its start, across 0 if need be. More than half a turn is scanned one way, and
-/// begun again at the start; less back and forth, without doubling the ends. The scan stares where start and
-/// stop are one.
+/// A sector runs clockwise from its start, possibly across 0. A sector of more than half a turn is scanned
+/// one way and then restarts; a smaller one back and forth, with one ping at each end. The scan stays at the
+/// start if start and stop are equal.
 class Sweep {
  public:
   /// @param start, stop gradians, 0..399
   /// @param step gradians, > 0
-  /// @param to_stop a sector that is scanned back and forth ends at `stop`, which a whole step may not reach
+  /// @param to_stop end a back-and-forth scan at `stop`, even if whole steps do not reach it
   Sweep(int start, int stop, int step, bool to_stop);
 
   int angle() const;  ///< gradians, 0..399
-  /// It begins again at the start, and does not come back.
+  /// True if the scan restarts at the start instead of going back.
   bool one_way() const { return one_way_; }
   void advance();
 

@@ -12,19 +12,19 @@ namespace {
 
 constexpr double most_samples = 1200.0;
 
-/// Units of the sample period in the way there and back, shared among `samples`. A whole number of them does
-/// not become one less by rounding.
+/// Sample period in wire units: the two-way travel time divided by `samples`, rounded down. The term 1e-9
+/// keeps whole results from becoming one less by rounding errors.
 int units_per_sample(double range_m, double samples, double sound_speed_mps) {
   return static_cast<int>(2.0 * range_m / (samples * sample_time_s(1) * sound_speed_mps) + 1e-9);
 }
 
-/// As many as there may be, but no finer than a head samples.
+/// The maximum number of samples, limited by the shortest sample period of a head.
 int usual_samples(double range_m, double sound_speed_mps) {
   const double finest = 2.0 * range_m / (sample_time_s(least_sample_period) * sound_speed_mps);
   return static_cast<int>(std::min(most_samples, finest));
 }
 
-/// Longer for a longer range, and of two and a half samples at least.
+/// Pulse length: longer for a longer range, at least 2.5 samples.
 std::uint16_t usual_pulse_us(double range_m, int sample_period, double sound_speed_mps) {
   const double sample_us = 1e6 * sample_time_s(sample_period);
   const double wanted_us = std::max(std::round(8000.0 * range_m / sound_speed_mps), 2.5 * sample_us);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scan by which known clients cover a range (docs/protocols/ping360.md 2.3).
+// The scan with which known clients cover a range (docs/protocols/ping360.md 2.3).
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace sonard::ping360 {
 
-/// All round from `ahead`, in single steps, with the sampling and the pulse that clients choose for `range_m`
-/// at the speed of sound that they assume. Without `samples` there are as many as there may be.
-/// @return nullopt: no head samples so finely, or so coarsely
+/// A full-circle scan from `ahead` in single steps, with the sampling and pulse that clients choose for
+/// `range_m` at their assumed speed of sound. Without `samples` it has the maximum number of samples.
+/// @return nullopt if the sample period would be out of range
 std::optional<AutoTransmit> usual_scan(double range_m, std::optional<int> samples, double sound_speed_mps,
                                        int ahead);
 
