@@ -12,7 +12,8 @@ namespace {
 
 using Kind = PoseError::Kind;
 
-/// The library writes a line to stderr for each name that is not UTF-8; a peer could fill a disk with that.
+/// Protobuf prints a line to stderr for each name that is not UTF-8. With these lines a peer could fill a
+/// disk.
 void keep_library_quiet() {
   [[maybe_unused]] static const auto before = google::protobuf::SetLogHandler(nullptr);
 }
@@ -21,7 +22,7 @@ Vec3 read(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-/// Checks a pose of a message and turns it into our axes.
+/// Checks a pose of a message and converts it to enu_flu.
 Result<Transform, PoseError> read(const Pose& message, Axes axes, std::string_view field) {
   Transform transform;
   const TransformFault fault = pose::read(message, transform);
@@ -43,7 +44,7 @@ Result<Velocity, PoseError> read(const Twist& message, Axes axes) {
   return axes == Axes::ned_frd ? flu_from_frd(twist) : twist;
 }
 
-/// Fills `sample.bodies`. @return the first error.
+/// Fills `sample.bodies`. @return the first error, or nullopt.
 std::optional<PoseError> read_bodies(const PoseUpdate& update, Axes axes, PoseSample& sample) {
   std::unordered_set<std::string_view> names;
   for (const BodyPose& body : update.bodies()) {
@@ -68,8 +69,8 @@ void write(const Vec3& v, Vector3& message) {
   message.set_z(v.z);
 }
 
-/// Value and length of the varint at the front of a buffer. length 0: not complete; -1: longer than any
-/// length prefix that we accept.
+/// Value and length of the varint at the front of a buffer. length 0: incomplete; -1: longer than any
+/// accepted length prefix.
 struct LengthPrefix {
   std::size_t value = 0;
   std::ptrdiff_t length = 0;

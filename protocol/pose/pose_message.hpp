@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transforms in messages that hold a sonard.pose.Pose. For codecs only: it brings in the generated code.
+// Conversion between Transform and sonard.pose.Pose. For codecs only, because it includes the generated code.
 #pragma once
 
 #include "protocol/pose/pose.pb.h"
@@ -8,7 +8,7 @@
 namespace sonard::pose {
 
 void write(const Transform& transform, Pose& message);
-/// Checked and scaled as normalize() does; on a fault `transform` is no rotation.
+/// Reads and checks a transform with normalize(). After a fault `transform` is invalid.
 TransformFault read(const Pose& message, Transform& transform);
 
 }  // namespace sonard::pose

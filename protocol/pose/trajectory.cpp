@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Takes the part of `text` before `end` (one of its characters) off its front.
+/// Removes and returns the front of `text` up to one of the characters in `end`, which is removed too.
 std::string_view take_until(std::string_view& text, std::string_view end) {
   const std::size_t length = text.find_first_of(end);
   const std::string_view part = text.substr(0, length);
@@ -196,7 +196,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file, Axes
 Trajectory load_trajectory(const std::filesystem::path& file, Axes axes) {
   std::ifstream stream{file, std::ios::binary};
   std::ostringstream text;
-  // An empty file sets failbit on `text`; only the file itself tells whether it could be read.
+  // An empty file sets failbit on `text`, so only the state of `stream` shows whether the file could be read.
   const std::error_code why = std::filesystem::is_directory(file)
                                   ? std::make_error_code(std::errc::is_a_directory)
                                   : std::error_code(errno, std::generic_category());
@@ -215,7 +215,7 @@ PoseSample play(const Trajectory& trajectory, const Playback& playback, std::chr
   const Velocity twist{playback.speed * state.twist.linear_mps, playback.speed * state.twist.angular_radps};
   PoseSample sample;
   sample.T_world_vehicle = state.T_world_vehicle;
-  // Two points a moment apart are a jump, not a motion to be carried on.
+  // A higher speed is a jump between two points, not a motion to extrapolate.
   if (norm(twist.linear_mps) <= max_speed && norm(twist.angular_radps) <= max_speed) {
     sample.twist = twist;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recorded motion: the text of a trajectory file, and playing it. docs/poses.md describes the two formats.
+// Recorded motion: parser for trajectory files, and playback. docs/poses.md describes the two formats.
 #pragma once
 
 #include <chrono>
@@ -25,24 +25,24 @@ struct TrajectoryPoint {
   Transform T_world_vehicle;
 };
 
-/// Where the vehicle is at an instant of a trajectory, and how it moves.
+/// Pose and twist of the vehicle at one time of a trajectory.
 struct TrajectoryState {
   Transform T_world_vehicle;
-  Velocity twist;  ///< in the vehicle's axes; zero from the last point on, and before the first
+  Velocity twist;  ///< in the vehicle's axes; zero before the first point and from the last point on
 };
 
-/// One or more points in strictly rising time.
+/// One or more points with strictly increasing times.
 class Trajectory {
  public:
-  /// `points` is not empty and in strictly rising time.
+  /// `points` must not be empty and must have strictly increasing times.
   explicit Trajectory(std::vector<TrajectoryPoint> points);
 
   std::int64_t start_ns() const { return points_.front().time_ns; }
   std::int64_t end_ns() const { return points_.back().time_ns; }
   const std::vector<TrajectoryPoint>& points() const { return points_; }
 
-  /// Between points, position goes on a straight line and orientation on the shortest arc; before the first
-  /// and after the last point the vehicle rests there.
+  /// Interpolates between points: position on a straight line, orientation on the shortest arc. Before the
+  /// first and after the last point the vehicle rests at that point.
   TrajectoryState at(std::int64_t time_ns) const;
 
  private:
@@ -50,26 +50,26 @@ class Trajectory {
 };
 
 /// Reads CSV (first line `t,x,y,z,qx,qy,qz,qw`) or TUM (`t x y z qx qy qz qw`); `#` starts a comment line.
-/// Time in seconds, positions in metres, in the axes of `axes`. `file` names the text in errors.
-/// @throws TrajectoryError for anything else: a bad number, a number too many or too few, NaN, no rotation,
-/// time that does not rise, no point at all.
+/// Times in seconds, positions in metres, in `axes`. Errors contain the name `file`.
+/// @throws TrajectoryError for any other text: a bad number, a wrong number of columns, NaN, an invalid
+/// quaternion, times that do not increase, or no points
 Trajectory parse_trajectory(std::string_view text, const std::string& file, Axes axes = Axes::enu_flu);
 /// Reads a trajectory from a file.
-/// @throws TrajectoryError also when the file cannot be read.
+/// @throws TrajectoryError also if the file cannot be read
 Trajectory load_trajectory(const std::filesystem::path& file, Axes axes = Axes::enu_flu);
 
-/// How a trajectory is played.
+/// Playback settings of a trajectory.
 struct Playback {
   double speed = 1.0;        ///< > 0; 2: twice as fast as recorded
-  bool loop = false;         ///< after the end from the start again, by a jump
+  bool loop = false;         ///< jump from the end to the start and continue
   std::int64_t from_ns = 0;  ///< starts this long after the first point, >= 0
 };
 
-/// True when `elapsed` is past the end, which never happens in a loop.
+/// True if playback has reached the end after `elapsed`; never in a loop.
 bool finished(const Trajectory& trajectory, const Playback& playback, std::chrono::nanoseconds elapsed);
 
-/// What a publisher says after playing for `elapsed` (>= 0), with twist (that of the playback, so it grows
-/// with the speed). `time_ns` is left for the caller, whose clock it is.
+/// The sample after playing for `elapsed` (>= 0). Its twist is scaled by the playback speed, and missing if
+/// it exceeds max_speed. The caller sets `time_ns` from its own clock.
 PoseSample play(const Trajectory& trajectory, const Playback& playback, std::chrono::nanoseconds elapsed);
 
 }  // namespace sonard::pose

@@ -50,7 +50,7 @@ Vec3 rotate(const Quat& q, const Vec3& v) {
 
 Quat from_rotation_vector(const Vec3& v) {
   const double angle_rad = norm(v);
-  // sin(a/2)/a, by its series where the quotient loses digits.
+  // sin(a/2)/a; for small angles by its series, because the quotient loses digits.
   const double scale =
       angle_rad < 1e-4 ? 0.5 - angle_rad * angle_rad / 48.0 : std::sin(0.5 * angle_rad) / angle_rad;
   return {std::cos(0.5 * angle_rad), scale * v.x, scale * v.y, scale * v.z};
@@ -82,7 +82,8 @@ Transform advance(const Transform& T_world_body, const Velocity& twist, double s
   const double angle_rad = norm(turn);
   const double angle2 = angle_rad * angle_rad;
   // Exponential map of SE(3): the body turns while it moves, so its path is the integral of exp(s turn) step
-  // over s in [0, 1] = step + a turn x step + b turn x (turn x step). Series where the quotients lose digits.
+  // over s in [0, 1] = step + a turn x step + b turn x (turn x step). Small angles use the series, because
+  // the quotients lose digits.
   const bool small = angle_rad < 1e-3;
   const double a = small ? 0.5 - angle2 / 24.0 : (1.0 - std::cos(angle_rad)) / angle2;
   const double b =
@@ -120,7 +121,7 @@ TransformFault normalize(Transform& transform) {
   if (!std::isfinite(q.w) || !is_finite({q.x, q.y, q.z})) {
     return TransformFault::orientation_not_finite;
   }
-  const double length = norm(q);  // 0 or infinite when the squares leave the range of double
+  const double length = norm(q);  // 0 or infinite if the squares leave the range of double
   if (length < min_quaternion_norm || length > max_quaternion_norm) {
     return TransformFault::orientation_norm;
   }
