@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checksum of MAVLink frames (MAVLink guide, "Packet Serialization": CRC-16/MCRF4XX, which the guide
-// names after X.25).
+// The checksum of MAVLink frames (MAVLink guide, "Packet Serialization"): CRC-16/MCRF4XX, which the guide
+// calls X.25.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@
 
 namespace sonard::mavlink {
 
-/// Checksum of `bytes` followed by `seed`, which stands for the definition of the message: two programs that
-/// lay out a message differently do not accept each other's.
+/// Checksum of `bytes` followed by `seed`. The seed depends on the definition of the message, so that
+/// programs with different definitions reject each other's messages.
 std::uint16_t checksum(std::span<const std::uint8_t> bytes, std::uint8_t seed);
 
 }  // namespace sonard::mavlink

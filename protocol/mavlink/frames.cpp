@@ -16,11 +16,11 @@ bool is_magic(std::uint8_t byte) {
   return byte == magic_1 || byte == magic_2;
 }
 
-/// What could be a frame, by its header alone, with all of its bytes there.
+/// A possible frame: its header is plausible, and all of its bytes are there.
 struct Candidate {
   Frame frame;
   std::uint8_t incompatible_flags = 0;
-  std::span<const std::uint8_t> checked;  ///< what the checksum covers: all between magic and checksum
+  std::span<const std::uint8_t> checked;  ///< covered by the checksum: all between magic and checksum
   std::uint16_t checksum = 0;
   std::size_t size = 0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which messages are known: number, checksum seed and length of each, from the definitions in minimal.xml
-// (HEARTBEAT) and common.xml (the others) of the MAVLink project.
+// The known messages with id, checksum seed and length, from the definitions in minimal.xml (HEARTBEAT) and
+// common.xml (the others) of the MAVLink project.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ enum class MessageId : std::uint32_t {
 struct MessageKind {
   MessageId id;
   std::uint8_t seed;      ///< CRC_EXTRA
-  std::size_t base_size;  ///< payload without extension fields: as long as version 1 sends it
+  std::size_t base_size;  ///< size of the payload without extension fields, as in version 1
 };
 
 inline constexpr std::array<MessageKind, 6> message_kinds{{
@@ -33,7 +33,7 @@ inline constexpr std::array<MessageKind, 6> message_kinds{{
     {MessageId::odometry, 91, 230},
 }};
 
-/// nullptr for a number that is not known.
+/// The kind of a message id; nullptr if it is unknown.
 constexpr const MessageKind* kind_of(std::uint32_t id) {
   for (const MessageKind& kind : message_kinds) {
     if (static_cast<std::uint32_t>(kind.id) == id) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages that say where a vehicle is, as they are defined in common.xml of the MAVLink project. Fields
-// keep their names and frames; docs/frames-and-units.md says what becomes of them.
+// The messages about a vehicle's pose, as defined in common.xml of the MAVLink project. Fields keep their
+// names and frames; docs/frames-and-units.md describes the conversion.
 #pragma once
 
 #include <array>
@@ -13,16 +13,16 @@
 
 namespace sonard::mavlink {
 
-/// MAV_FRAME, as far as an odometry has to do with it.
+/// The values of MAV_FRAME for odometry.
 enum class MavFrame : std::uint8_t {
-  local_ned = 1,   ///< north, east, down from a point of the earth
-  body_ned = 8,    ///< for velocities: the axes of the vehicle (an older word for body_frd)
+  local_ned = 1,   ///< north, east, down from a fixed point
+  body_ned = 8,    ///< for velocities: the axes of the vehicle (older name of body_frd)
   body_frd = 12,   ///< forward, right, down: the axes of the vehicle
-  local_frd = 20,  ///< level, fixed to the earth, x in any direction: where the vehicle began, for example
+  local_frd = 20,  ///< level, fixed to the earth, x in any direction, for example the initial heading
 };
 
-/// ATTITUDE (30). From NED to the vehicle by yaw, then pitch, then roll. Radians, and radians per second
-/// about the vehicle's own axes (forward, right, down).
+/// ATTITUDE (30). Rotates NED to the vehicle by yaw, then pitch, then roll. Radians, and radians per second
+/// about the vehicle's axes (forward, right, down).
 struct Attitude {
   std::uint32_t time_boot_ms = 0;
   float roll = 0.0F;
@@ -35,8 +35,8 @@ struct Attitude {
   bool operator==(const Attitude&) const = default;
 };
 
-/// ATTITUDE_QUATERNION (31). Takes coordinates in FRD to NED; q1 is the real part. The extension
-/// repr_offset_q, which is about displays, is not read.
+/// ATTITUDE_QUATERNION (31). Maps FRD coordinates to NED; q1 is the real part. The extension repr_offset_q,
+/// which is for displays, is not read.
 struct AttitudeQuaternion {
   std::uint32_t time_boot_ms = 0;
   float q1 = 1.0F;
@@ -63,7 +63,7 @@ struct LocalPositionNed {
   bool operator==(const LocalPositionNed&) const = default;
 };
 
-/// GLOBAL_POSITION_INT (33), without relative_alt and hdg, which the attitude says better.
+/// GLOBAL_POSITION_INT (33), without relative_alt and without hdg, because the attitude is more accurate.
 struct GlobalPositionInt {
   std::uint32_t time_boot_ms = 0;
   std::int32_t lat = 0;  ///< 1e-7 degrees
@@ -76,9 +76,9 @@ struct GlobalPositionInt {
   bool operator==(const GlobalPositionInt&) const = default;
 };
 
-/// ODOMETRY (331), without its covariances and extensions. `q` (w, x, y, z) takes coordinates in the vehicle
-/// to `frame_id`; velocities are in the axes of `child_frame_id`, turn rates about those of the vehicle. What
-/// is not known is NaN.
+/// ODOMETRY (331), without covariances and extensions. `q` (w, x, y, z) maps vehicle coordinates to
+/// `frame_id`. Velocities are in the axes of `child_frame_id`, turn rates about the axes of the vehicle.
+/// Unknown values are NaN.
 struct Odometry {
   std::uint64_t time_usec = 0;  ///< since boot, or Unix time
   float x = 0.0F;
@@ -97,13 +97,12 @@ struct Odometry {
   bool operator==(const Odometry&) const = default;
 };
 
-/// monostate: a message that says nothing about a pose.
+/// monostate: a message without information about a pose.
 using Message =
     std::variant<std::monostate, Attitude, AttitudeQuaternion, LocalPositionNed, GlobalPositionInt, Odometry>;
 
-/// Decodes a frame from FrameReader. Zeros that version 2 cut off are put back; bytes beyond the fields
-/// that are read (extensions) are ignored. An error only for a frame of version 1 that is shorter than its
-/// message.
+/// Decodes a frame from FrameReader. Restores the zeros that version 2 cuts off and ignores extension fields.
+/// Returns an error only if a frame of version 1 is shorter than its message.
 Result<Message, WireError> decode(const Frame& frame);
 
 }  // namespace sonard::mavlink
