@@ -25,7 +25,7 @@ void write_ci_header(ByteWriter& writer, const Origin& origin, RecordType type, 
   write_fields<Layout<CiHeader>>(writer, header);
 }
 
-/// The header of a record of that type.
+/// Reads the header of a record of this type.
 CiHeader read_header_of(RecordType type, ByteReader& reader) {
   const CiHeader header = read_ci_header(reader);
   if (header.type != static_cast<std::uint8_t>(type)) {
@@ -93,7 +93,7 @@ void read_image_end(ByteReader& reader) {
 
 std::vector<std::uint8_t> encode(const ImageRecord& image, int zlib_level) {
   require_consistent(image);
-  // Stored as they are unless shorter: a reader takes data of the size of the image for pixels in any case.
+  // Raw unless compression makes them shorter: readers take data of the image's size for raw pixels.
   const auto shorter = deflate_shorter(image.pixels, zlib_level);
   const auto& data = shorter ? *shorter : image.pixels;
   const ImageHeader header{.first_line = image.first_line,
@@ -116,7 +116,7 @@ std::vector<std::uint8_t> encode(const ImageRecord& image, int zlib_level) {
     write_value(writer, bearing_rad);
   }
   write_fields<Layout<ImageRecord>>(writer, image);
-  writer.u8(0);  // no acoustic zoom: both known readers fail on one
+  writer.u8(0);  // no acoustic zoom: both known readers fail if there is one
   writer.u16le(image_end_tag);
   return record;
 }

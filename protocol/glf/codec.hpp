@@ -12,20 +12,21 @@
 
 namespace sonard::glf {
 
-inline constexpr int default_zlib_level = 1;  ///< recording is to cost little
+inline constexpr int default_zlib_level = 1;  ///< the fastest, so that recording takes little time
 
-/// Most pixels of an image that is read: 1024 beams by 16384 lines.
+/// Maximum number of pixels of an image: 1024 beams by 16384 lines.
 inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 24;
 
-/// One record with its header. Pixels are packed by zlib at `zlib_level`, 0..9, and stored as they are where
-/// that makes them no shorter.
-/// @throws std::invalid_argument where pixels are not lines * beams, bearings not beams, or the level is none
+/// Encodes one record with its header. Compresses pixels with zlib at `zlib_level`, 0..9, or stores them raw
+/// if compression does not make them shorter.
+/// @throws std::invalid_argument if the numbers of pixels or bearings do not match lines and beams, if there
+/// are more than max_pixels, or if the level is out of range
 std::vector<std::uint8_t> encode(const ImageRecord& image, int zlib_level = default_zlib_level);
 std::vector<std::uint8_t> encode(const StatusRecord& status);
 
-/// The record that `record` starts with; bytes after it do not matter, nor does the length in its header,
-/// which other programs write wrong. Offsets of errors count from the header. An image is refused when its
-/// pixels do not unpack to lines * beams bytes, when they are H.264, or when it has an acoustic zoom.
+/// Decodes the record at the front of `record`. Ignores bytes after it and the length in its header, which
+/// other programs write incorrectly. Offsets of errors count from the header. Rejects an image if its pixels
+/// do not unpack to lines * beams bytes, if they are H.264, or if it has an acoustic zoom.
 Result<ImageRecord, WireError> decode_image(std::span<const std::uint8_t> record);
 Result<StatusRecord, WireError> decode_status(std::span<const std::uint8_t> record);
 

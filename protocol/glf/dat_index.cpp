@@ -15,7 +15,7 @@ namespace {
 
 using Front = std::array<std::uint8_t, ci_header_size + image_header_size>;
 
-/// What there is of the first bytes at `offset`, copied to `front`.
+/// Copies the bytes at `offset` to `front`, fewer near the end; returns the copied part.
 std::span<const std::uint8_t> read_front(const PiecewiseBytes& dat, std::uint64_t offset, Front& front) {
   const auto bytes = std::span{front}.first(std::min<std::uint64_t>(front.size(), dat.size() - offset));
   dat.copy(offset, bytes);
@@ -36,8 +36,8 @@ bool terminator_at(const PiecewiseBytes& dat, std::uint64_t offset) {
   return bytes == dat_terminator;
 }
 
-/// Size of the image whose header `reader` has passed, by what the image itself says: other programs write
-/// something else into the header.
+/// Size of the image after the header that `reader` has passed, from the image's own fields, because other
+/// programs write a wrong length into the header.
 Result<std::uint64_t, WireError> image_size(const PiecewiseBytes& dat, std::uint64_t offset,
                                             ByteReader& reader) {
   const ImageHeader image = read_image_header(reader);
@@ -59,8 +59,8 @@ Result<std::uint64_t, WireError> image_size(const PiecewiseBytes& dat, std::uint
   return size;
 }
 
-/// True where a header starts, or the terminator ends the .dat. Two spare bytes and the length are
-/// held to what they must be, so that few other bytes pass.
+/// True if a header starts at `offset`, or the terminator ends the .dat there. Also checks two spare bytes
+/// and the length, so that few other bytes pass.
 bool goes_on_at(const PiecewiseBytes& dat, std::uint64_t offset) {
   Front front{};
   ByteReader reader{read_front(dat, offset, front)};
@@ -69,7 +69,7 @@ bool goes_on_at(const PiecewiseBytes& dat, std::uint64_t offset) {
   return terminator_at(dat, offset) || (reader.ok() && header.length >= ci_header_size && spare_is_zero);
 }
 
-/// True where a whole image or status starts that another record or the end follows.
+/// True if a whole image starts at `offset`, or a whole status that a record or the end follows.
 bool record_starts_at(const PiecewiseBytes& dat, std::uint64_t offset) {
   Front front{};
   ByteReader reader{read_front(dat, offset, front)};
@@ -86,7 +86,7 @@ bool record_starts_at(const PiecewiseBytes& dat, std::uint64_t offset) {
          (end == dat.size() || goes_on_at(dat, end));
 }
 
-/// Where the next record starts behind `offset`.
+/// Offset of the next record after `offset`.
 std::optional<std::uint64_t> next_record(const PiecewiseBytes& dat, std::uint64_t offset) {
   std::vector<std::uint8_t> window(std::size_t{1} << 16);
   for (std::uint64_t start = offset + 1; start < dat.size(); start += window.size()) {
@@ -115,7 +115,7 @@ class Indexer {
   }
 
  private:
-  /// Goes over one record; false where there is none.
+  /// Steps over one record; false if there is none.
   bool step() {
     Front front{};
     ByteReader reader{read_front(dat_, offset_, front)};
@@ -132,7 +132,7 @@ class Indexer {
                    : stop({WireErrorReason::truncated, ci_header_size, "status"});
     }
     if (const auto size = image_size(dat_, offset_, reader)) {
-      skip_to(offset_ + *size, {WireErrorReason::bad_value, 14, "type"});  // an image by all but its type
+      skip_to(offset_ + *size, {WireErrorReason::bad_value, 14, "type"});  // an image with a damaged type
       return true;
     }
     if (header.length < ci_header_size) {
@@ -151,8 +151,8 @@ class Indexer {
     if (size) {
       return take(header, *size);
     }
-    // A damaged image does not hide what comes after it, if its length leads there. One that was cut does not
-    // come this far: its length points beyond the end.
+    // A damaged image does not hide the next record, if its length leads there. The length of a cut image
+    // points beyond the end.
     if (header.length < ci_header_size || !fits(header.length) ||
         !goes_on_at(dat_, offset_ + header.length)) {
       return stop(size.error());
@@ -174,7 +174,7 @@ class Indexer {
     offset_ = next;
   }
 
-  /// True when a record follows that can be read.
+  /// Records an error; true if a readable record follows.
   bool stop(const WireError& error) {
     const auto next = on_damage_ == OnDamage::skip ? next_record(dat_, offset_) : std::nullopt;
     if (next) {

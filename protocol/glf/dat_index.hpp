@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the records of a .dat lie. Source: docs/logs.md 1.3, 1.7. No state; any thread.
+// Finds the records of a .dat. Source: docs/logs.md 1.3, 1.7. No state; any thread.
 #pragma once
 
 #include <cstdint>
@@ -24,20 +24,20 @@ struct RecordEntry {
 
 struct DatIndex {
   std::vector<RecordEntry> records;  ///< all whole images and statuses, in the order of the file
-  std::uint64_t other_records = 0;   ///< of types that this library does not know, skipped by their length
-  std::vector<Damage> damaged;  ///< parts that are no record, although records follow; offsets in the .dat
-  bool closed = false;          ///< the terminator follows the last record, and nothing follows it
-  /// Where the last record ends that was found. Cut a .dat that was not closed to this size, append
-  /// dat_terminator, and it is a log again. Keep the original where tail_size is more than one record can
-  /// be: then something in the middle is damaged, and what lies behind it would go, too (OnDamage::stop).
+  std::uint64_t other_records = 0;   ///< records of unknown types, skipped by their length
+  std::vector<Damage> damaged;       ///< unreadable parts that records follow; offsets in the .dat
+  bool closed = false;               ///< the file ends with a terminator after the last record
+  /// End of the last record. To repair an unclosed .dat, cut it to this size and append dat_terminator. Keep
+  /// the original if tail_size is larger than a record can be: then the middle of the file is damaged, and
+  /// the repair would lose the records after it (OnDamage::stop).
   std::uint64_t whole_size = 0;
-  std::uint64_t tail_size = 0;          ///< bytes from there on that are neither record nor terminator
-  std::optional<WireError> tail_error;  ///< why they are no record; offset in the .dat
+  std::uint64_t tail_size = 0;          ///< bytes from whole_size on that are neither record nor terminator
+  std::optional<WireError> tail_error;  ///< why these bytes are not a record; offset in the .dat
 };
 
-/// Reads headers only: whether the pixels of an image unpack shows when it is decoded. An image that makes no
-/// sense is skipped by its length if that leads to a record or the end. OnDamage::skip searches for the next
-/// image or status behind anything else that cannot be read.
+/// Indexes a .dat. Reads only headers; errors in packed pixels appear on decoding. Skips an invalid image by
+/// its length if a record or the end follows there. After other unreadable bytes, OnDamage::skip searches for
+/// the next image or status.
 DatIndex index_dat(const PiecewiseBytes& dat, OnDamage on_damage = OnDamage::stop);
 
 }  // namespace sonard::glf

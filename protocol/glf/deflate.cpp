@@ -10,9 +10,9 @@
 namespace sonard::glf {
 namespace {
 
-/// Deflate's best: 258 bytes by two codes of one bit each.
+/// Maximum ratio of deflate: 258 bytes from two codes of one bit each.
 constexpr std::uint64_t max_deflate_ratio = 1032;
-constexpr std::size_t zlib_step = std::size_t{1} << 30;  // its counters have 32 bits
+constexpr std::size_t zlib_step = std::size_t{1} << 30;  // zlib's counters have 32 bits
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::optional<Bytes> deflate_shorter(std::span<const std::uint8_t> bytes, int le
   if (bytes.empty()) {
     return std::nullopt;
   }
-  // No room for more than what would be shorter: zlib then says that it did not fit.
+  // The buffer has room only for a shorter result; otherwise zlib returns an error.
   Bytes packed(bytes.size() - 1);
   uLongf size = packed.size();
   if (compress2(packed.data(), &size, bytes.data(), bytes.size(), level) != Z_OK) {
@@ -47,7 +47,7 @@ std::optional<Bytes> inflate_exactly(std::span<const std::uint8_t> stream, std::
   if (inflateInit2(&state, form == DeflateForm::zlib ? MAX_WBITS : -MAX_WBITS) != Z_OK) {
     throw std::bad_alloc();
   }
-  std::uint8_t none = 0;  // zlib wants an address even where there is nothing to write
+  std::uint8_t none = 0;  // zlib requires an address even if there is nothing to write
   state.next_out = out.empty() ? &none : out.data();
   state.next_in = const_cast<Bytef*>(stream.data());  // zlib's interface is older than const
   std::size_t in_left = stream.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What logs need of zlib. No state but Crc32's; any thread.
+// The zlib functions that logs need. No state except in Crc32; any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace sonard::glf {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// CRC-32 of ZIP and zlib, over pieces in order.
+/// CRC-32 of ZIP and zlib, over consecutive parts.
 class Crc32 {
  public:
   void add(std::span<const std::uint8_t> bytes);
@@ -22,20 +22,20 @@ class Crc32 {
   std::uint32_t value_ = 0;
 };
 
-/// A zlib stream, or nullopt where that would not be shorter.
-/// @param bytes what is packed
-/// @param level 0 (nothing gets shorter) .. 9; 1 is the fastest that packs
+/// Compresses to a zlib stream; nullopt if it would not be shorter.
+/// @param bytes input
+/// @param level 0 (no compression) to 9; 1 is the fastest compression
 /// @throws std::invalid_argument for another level
 std::optional<Bytes> deflate_shorter(std::span<const std::uint8_t> bytes, int level);
 
-enum class DeflateForm : std::uint8_t { zlib, bare };  ///< with zlib's header and checksum, or as ZIP has it
+enum class DeflateForm : std::uint8_t { zlib, bare };  ///< with zlib's header and checksum, or as in ZIP
 
-/// Unpacks a stream of exactly `size` bytes; nullopt for anything else. Bytes after its end do not matter.
-/// A `size` that no stream of that many bytes unpacks to is refused before anything is allocated.
+/// Unpacks a stream to exactly `size` bytes; nullopt if it has another size or is invalid. Ignores bytes
+/// after its end. Rejects an impossible `size` before allocating memory.
 std::optional<Bytes> inflate_exactly(std::span<const std::uint8_t> stream, std::uint64_t size,
                                      DeflateForm form);
 
-/// Unpacks a bare stream as far as it can be read, `max_size` bytes at most.
+/// Unpacks a bare stream as far as possible, at most `max_size` bytes.
 Bytes inflate_front(std::span<const std::uint8_t> stream, std::uint64_t max_size);
 
 }  // namespace sonard::glf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where each field of each record lies: the one table that records are read and written by.
-// Source: docs/logs.md 1.3 to 1.5. What depends on the record itself (pixels, bearings, the field that other
-// versions of images lack) is written out in codec.cpp and headers.cpp.
+// Layout tables of all records, used for reading and writing. Source: docs/logs.md 1.3 to 1.5. codec.cpp and
+// headers.cpp handle the parts that depend on the record itself (pixels, bearings, the field that other
+// versions of images lack).
 #pragma once
 
 #include <tuple>
@@ -12,7 +12,7 @@
 
 namespace sonard::glf {
 
-/// Table of one part of a record (protocol/common/layout.hpp). Offsets from the start of the part.
+/// Table of one part of a record (protocol/common/layout.hpp). Offsets are from the start of the part.
 template <class Part>
 struct Layout;
 
@@ -30,7 +30,7 @@ struct Layout<CiHeader> : WholeLayout<ci_header_size> {
   };
 };
 
-/// Up to where versions differ.
+/// The fields before the first difference between versions.
 template <>
 struct Layout<ImageHeader> : WholeLayout<24> {
   static constexpr auto fields = std::tuple{
@@ -45,7 +45,7 @@ struct Layout<ImageHeader> : WholeLayout<24> {
   };
 };
 
-/// What follows the bearings, up to the byte that says whether the acoustic zoom is on.
+/// The fields after the bearings, before the byte for the acoustic zoom.
 template <>
 struct Layout<ImageRecord> : WholeLayout<31> {
   static constexpr auto fields = std::tuple{

@@ -29,7 +29,7 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-/// With three decimals and a point, whatever the locale; what is not finite as 0.
+/// Three decimals with a point, independent of the locale; 0 if the value is not finite.
 std::string decimal(double time_s) {
   std::array<char, 400> text{};  // the largest double has 309 digits before its point
   const auto end = std::to_chars(text.data(), text.data() + text.size(), std::isfinite(time_s) ? time_s : 0.0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The .cfg entry of a .glf: XML that says who wrote the log, when, and of which sonars.
+// The .cfg entry of a .glf: XML with the writer, the times and the sonars of the log.
 // Source: docs/logs.md 1.2. No state; any thread.
 #pragma once
 
@@ -10,10 +10,10 @@
 namespace sonard::glf {
 
 struct LogConfig {
-  std::string app_name;                   ///< of the writer, with its version; UTF-8
-  double creation_time_s = 0.0;           ///< on the log's clock (log_time.hpp), kept to the millisecond
-  double close_time_s = 0.0;              ///< the same
-  std::vector<std::uint16_t> device_ids;  ///< of the Geminis in the log
+  std::string app_name;                   ///< name and version of the writer; UTF-8
+  double creation_time_s = 0.0;           ///< on the log's clock (log_time.hpp), rounded to milliseconds
+  double close_time_s = 0.0;              ///< on the log's clock, rounded to milliseconds
+  std::vector<std::uint16_t> device_ids;  ///< IDs of the Geminis in the log
 };
 
 std::string config_xml(const LogConfig& config);

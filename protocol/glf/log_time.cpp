@@ -17,7 +17,7 @@ constexpr std::int64_t last_zip_s = 4'039'286'399;  // 2107-12-31 23:59:59
 }  // namespace
 
 double glf_time_s(std::int64_t unix_ns, std::int32_t utc_offset_s) {
-  // Whole seconds apart from the rest: a double holds neither all nanoseconds nor their sum with an offset.
+  // Converts whole seconds separately, because a double cannot hold all nanoseconds.
   const std::int64_t seconds = unix_ns / ns_per_s;
   const std::int64_t rest_ns = unix_ns % ns_per_s;
   return static_cast<double>(seconds - epoch_unix_s + utc_offset_s) + static_cast<double>(rest_ns) * 1e-9;

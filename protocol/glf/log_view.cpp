@@ -19,7 +19,7 @@ const ZipEntry* find_suffix(const std::vector<ZipEntry>& entries, std::string_vi
   return found == entries.end() ? nullptr : &*found;
 }
 
-/// Errors of a record, as errors of the .dat.
+/// Converts offsets in a record to offsets in the .dat.
 template <class Record>
 Result<Record, WireError> placed(Result<Record, WireError> decoded, const RecordEntry& entry) {
   if (decoded) {

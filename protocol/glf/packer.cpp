@@ -17,7 +17,7 @@ static_assert(layout_is_contiguous<zip::Layout<zip::Entry>>(0) &&
               layout_is_contiguous<zip::Layout<zip::CentralHeader>>(0) &&
               layout_is_contiguous<zip::Layout<zip::EndRecord>>(0));
 
-/// What ends a stream of stored blocks.
+/// The final, empty block of a stream of stored blocks.
 constexpr std::array<std::uint8_t, 5> final_block{0x01, 0x00, 0x00, 0xFF, 0xFF};
 
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
@@ -30,7 +30,7 @@ std::uint32_t crc_of(const std::string& text) {
   return crc.value();
 }
 
-/// Size of `size` bytes in stored blocks. It is never less, by which a reader knows that nothing is really
+/// Size of `size` bytes in stored blocks. It is always larger, so a reader can detect that nothing is
 /// compressed.
 std::uint32_t stored_size(std::uint32_t size) {
   const std::size_t blocks = (size + pack_block_size - 1) / pack_block_size + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that belong together but lie in pieces, as a .dat does inside a .glf.
+// One sequence of bytes in several pieces, such as the .dat in a .glf.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace sonard::glf {
 
-/// Views its pieces; does not own them. After the last append() any thread may read.
+/// Views its pieces and does not own them. After the last append() any thread may read.
 class PiecewiseBytes {
  public:
   PiecewiseBytes() = default;
@@ -24,7 +24,7 @@ class PiecewiseBytes {
       visit(piece.bytes);
     }
   }
-  /// Copies out.size() bytes from `offset` on; all of them must be there.
+  /// Copies out.size() bytes from `offset` on. Requires offset + out.size() <= size().
   void copy(std::uint64_t offset, std::span<std::uint8_t> out) const;
 
  private:
@@ -33,7 +33,7 @@ class PiecewiseBytes {
     std::span<const std::uint8_t> bytes;
   };
 
-  std::vector<Piece> pieces_;  ///< none is empty
+  std::vector<Piece> pieces_;  ///< without empty ones
   std::uint64_t size_ = 0;
 };
 

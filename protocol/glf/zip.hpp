@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The records of a ZIP archive that a .glf has, as tables for its writer and its reader.
-// Source: docs/logs.md 1.2. Only what a .glf needs: no ZIP64, no encryption, one archive to a file.
+// The ZIP records of a .glf, as tables for its writer and its reader. Source: docs/logs.md 1.2. Only the
+// parts that a .glf needs: no ZIP64, no encryption, one archive per file.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ inline constexpr std::uint32_t central_signature = 0x02014B50;
 inline constexpr std::uint32_t end_signature = 0x06054B50;
 inline constexpr std::uint16_t method_stored = 0;
 inline constexpr std::uint16_t method_deflate = 8;
-inline constexpr std::size_t block_header_size = 5;  ///< of a block that deflate stores as it is
+inline constexpr std::size_t block_header_size = 5;  ///< of a stored block of deflate
 
-/// What local header and central directory both say of an entry.
+/// The common fields of an entry in the local header and in the central directory.
 struct Entry {
   std::uint16_t version_needed = 20;
   std::uint16_t flags = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t max_comment_size = 0xFFFF;
 constexpr std::uint16_t encrypted_flag = 0x0001;
 
-/// The last place where an end record fits and its comment ends with the archive.
+/// The last end record with a comment that ends at the end of the archive.
 std::optional<zip::EndRecord> find_end_record(std::span<const std::uint8_t> archive) {
   constexpr std::size_t size = zip::Layout<zip::EndRecord>::size;
   if (archive.size() < size) {
@@ -34,7 +34,7 @@ std::optional<zip::EndRecord> find_end_record(std::span<const std::uint8_t> arch
   return std::nullopt;
 }
 
-/// Goes from the directory to where the content of the entry lies.
+/// Finds the content of an entry of the directory.
 Result<ZipEntry, WireError> located(std::span<const std::uint8_t> archive, const zip::CentralHeader& central,
                                     std::string_view name) {
   ByteReader reader{archive};
@@ -46,7 +46,7 @@ Result<ZipEntry, WireError> located(std::span<const std::uint8_t> archive, const
   }
   reader.skip(std::size_t{local.entry.name_size} + local.entry.extra_size, "entry_name");
   const std::size_t offset = reader.offset();
-  const zip::Entry& entry = central.entry;  // local sizes may be missing, these may not
+  const zip::Entry& entry = central.entry;  // sizes may be missing in the local header, but not here
   const auto data = reader.bytes(entry.compressed_size, "entry_data");
   const bool deflated = entry.method == zip::method_deflate;
   if ((entry.flags & encrypted_flag) != 0 || !(deflated || entry.method == zip::method_stored)) {
@@ -74,7 +74,7 @@ struct BlockHeader {
   bool is_stored() const { return (kind & 0x06) == 0 && (size ^ inverse) == 0xFFFF; }
 };
 
-/// nullopt where the bytes end before it does.
+/// The block header at `offset`; nullopt if the bytes end before the header does.
 std::optional<BlockHeader> block_header_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
   if (offset + zip::block_header_size > bytes.size()) {
     return std::nullopt;
@@ -87,7 +87,8 @@ std::optional<BlockHeader> block_header_at(std::span<const std::uint8_t> bytes, 
   return header;
 }
 
-/// The size of the block whose damaged header is at `offset`: one that leads to another block.
+/// The size of the block with a damaged header at `offset`: a candidate size after which another block
+/// follows.
 std::optional<std::size_t> size_of_damaged_block(std::span<const std::uint8_t> bytes, std::size_t offset,
                                                  const BlockHeader& header, std::size_t size_before) {
   for (const std::size_t size :
@@ -100,14 +101,15 @@ std::optional<std::size_t> size_of_damaged_block(std::span<const std::uint8_t> b
   return std::nullopt;
 }
 
-/// Stored blocks at the front of `bytes`, the last one as far as it goes.
+/// Stored blocks at the front of `bytes`; the last one may be cut.
 PiecewiseBytes stored_front(std::span<const std::uint8_t> bytes) {
   PiecewiseBytes pieces;
   std::size_t size = 0;
   for (std::size_t offset = 0; const auto header = block_header_at(bytes, offset);) {
     const auto found = header->is_stored() ? std::optional(std::size_t{header->size})
                                            : size_of_damaged_block(bytes, offset, *header, size);
-    // The flag for the last block may be damaged itself: it counts for an empty one, which ends our archives.
+    // The flag for the last block may itself be damaged. It counts only in an empty block, which ends our
+    // archives.
     if (!found || (*found == 0 && (header->kind & 0x01) != 0)) {
       break;
     }
@@ -139,11 +141,11 @@ bool begins_with_a_record(const DamagedDat& dat) {
 }
 
 struct Content {
-  std::span<const std::uint8_t> data;  ///< to the end of the archive where the end of the entry is not known
+  std::span<const std::uint8_t> data;  ///< to the end of the archive if the end of the entry is unknown
   bool deflated = false;
 };
 
-/// Behind a local header that names a .dat.
+/// The content after a local header with the name of a .dat.
 std::optional<Content> content_by_local_header(std::span<const std::uint8_t> archive) {
   constexpr std::size_t size = zip::Layout<zip::LocalHeader>::size;
   for (std::size_t at = 0; at + size <= archive.size(); ++at) {
@@ -165,7 +167,7 @@ std::optional<Content> content_by_local_header(std::span<const std::uint8_t> arc
   return std::nullopt;
 }
 
-/// Where the directory says that a .dat lies, whatever stands before it there.
+/// The content of a .dat at its offset in the directory, without checking its local header.
 std::optional<Content> content_by_directory(std::span<const std::uint8_t> archive) {
   const auto end = find_end_record(archive);
   ByteReader reader{archive};
@@ -250,7 +252,7 @@ std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std
     if (begins_with_a_record(dat)) {
       return dat;
     }
-    any = any ? std::move(any) : std::move(dat);  // its first byte may be damaged
+    any = any ? std::move(any) : std::move(dat);  // kept, because only its first byte may be damaged
   }
   return any;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in a ZIP archive, as far as a .glf is one. Source: docs/logs.md 1.2, 1.7. Any thread.
+// Reads the entries of a .glf, which is a ZIP archive. Source: docs/logs.md 1.2, 1.7. Any thread.
 #pragma once
 
 #include <cstddef>
@@ -17,34 +17,33 @@ namespace sonard::glf {
 
 struct ZipEntry {
   std::string_view name;               ///< views the archive, as `data` does
-  bool deflated = false;               ///< else as it is
-  std::uint32_t crc = 0;               ///< of the content
-  std::uint32_t size = 0;              ///< of the content
+  bool deflated = false;               ///< false: stored
+  std::uint32_t crc = 0;               ///< of the unpacked content
+  std::uint32_t size = 0;              ///< of the unpacked content
   std::size_t offset = 0;              ///< of `data` in the archive
-  std::span<const std::uint8_t> data;  ///< the content as the archive holds it
+  std::span<const std::uint8_t> data;  ///< the content as in the archive
 };
 
-/// All entries by the directory at the end of `archive`. Refused: an archive without one, or whose directory
-/// points to where there is no entry; entries that are encrypted or packed by another method than deflate.
+/// All entries in the directory at the end of `archive`. Returns an error if there is no directory, if it
+/// points to a missing entry, or if an entry is encrypted or compressed with another method than deflate.
 Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_t> archive);
 
-/// The pieces of an entry that holds its content as it is: stored, or deflated in stored blocks. nullopt for
-/// one that has to be unpacked.
+/// The pieces of an uncompressed entry: stored, or deflated in stored blocks. nullopt if it must be unpacked.
 std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry);
 
-/// What can be read of the first .dat in an archive that is damaged or has no end.
+/// The readable part of the first .dat in an archive that is damaged or has no end.
 struct DamagedDat {
-  PiecewiseBytes pieces;               ///< of an entry that holds its content as it is
-  std::vector<std::uint8_t> unpacked;  ///< what came out of a compressed entry before it broke
+  PiecewiseBytes pieces;               ///< of an uncompressed entry
+  std::vector<std::uint8_t> unpacked;  ///< of a compressed entry, up to the damage
 };
 
-/// Finds the .dat by its local header, or else by the directory. Steps over damaged headers of stored blocks.
-/// nullopt when there is neither.
+/// Finds the .dat by its local header, or else by the directory. Skips damaged headers of stored blocks.
+/// nullopt if neither leads to a .dat.
 /// @param archive the whole file
-/// @param max_size most bytes to unpack
+/// @param max_size maximum bytes to unpack
 std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size);
 
-/// Unpacks an entry of at most `max_size` bytes and holds it to its CRC.
+/// Unpacks an entry of at most `max_size` bytes and checks its CRC.
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size);
 
 }  // namespace sonard::glf
