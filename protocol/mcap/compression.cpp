@@ -19,7 +19,7 @@ std::optional<std::vector<std::uint8_t>> decompress_zstd(std::span<const std::ui
   if (size > largest_unpacked_chunk) {
     return std::nullopt;
   }
-  // A frame that says another size is not unpacked: what a broken one claims costs no memory.
+  // Check the size that the frame states first, so that a broken frame cannot cause an allocation.
   const unsigned long long said = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
   if (said == ZSTD_CONTENTSIZE_ERROR || (said != ZSTD_CONTENTSIZE_UNKNOWN && said != size)) {
     return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chunks of MCAP files that are compressed with Zstandard.
+// Zstandard compression for chunks of MCAP files.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,15 @@
 
 namespace sonard::mcap {
 
-/// As a chunk spells it; an empty text: it is not compressed.
+/// The name in a chunk; an empty name means no compression.
 inline constexpr std::string_view zstd_name = "zstd";
-/// No chunk that is read may hold more: writers make them of a few megabytes.
+/// Limit for chunks that are read. Writers make chunks of a few megabytes.
 inline constexpr std::uint64_t largest_unpacked_chunk = std::uint64_t{256} << 20;
 
-/// Quickly rather than much: level 1.
+/// Compresses at level 1, which is fast; empty on an error.
 std::vector<std::uint8_t> compress_zstd(std::span<const std::uint8_t> bytes);
-/// nullopt where `bytes` are not one whole frame of `size` bytes.
+/// Decompresses; nullopt if `bytes` do not unpack to `size` bytes, or if `size` exceeds
+/// largest_unpacked_chunk.
 std::optional<std::vector<std::uint8_t>> decompress_zstd(std::span<const std::uint8_t> bytes,
                                                          std::uint64_t size);
 

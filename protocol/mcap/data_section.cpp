@@ -10,7 +10,7 @@
 namespace sonard::mcap {
 namespace {
 
-/// Takes in one record of a chunk; unknown ones are skipped.
+/// Adds one record to a chunk; only notes that there are unknown records.
 std::optional<WireError> take(const Record& record, Chunk& chunk) {
   if (record.is(Opcode::schema)) {
     auto schema = read_schema(record);
@@ -37,7 +37,8 @@ std::optional<WireError> take(const Record& record, Chunk& chunk) {
   return std::nullopt;
 }
 
-/// The sizes in the front of a chunk agree with the length of its record. No other content passes by chance.
+/// True if the sizes in the front of a chunk match the length of its record. Other content does not pass by
+/// chance.
 bool looks_like_chunk(ByteView content) {
   ByteReader reader{content};
   reader.skip(8 + 8 + 8 + 4, "chunk.front");
@@ -47,7 +48,7 @@ bool looks_like_chunk(ByteView content) {
   return reader.ok() && stored_size == reader.remaining();
 }
 
-/// Channel and number of entries; nullopt when the content is not that of a message index.
+/// Channel and number of entries; nullopt if the content is not a message index.
 std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(ByteView content) {
   constexpr std::size_t entry_size = 16;
   ByteReader reader{content};
@@ -59,7 +60,7 @@ std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(ByteVi
   return std::pair{channel_id, std::uint64_t{size / entry_size}};
 }
 
-/// `fixed` bytes and `strings` strings fill the content.
+/// True if the content is exactly `fixed` bytes and `strings` strings.
 bool consists_of(ByteView content, std::size_t fixed, int strings) {
   ByteReader reader{content};
   reader.skip(fixed, "fixed");
@@ -69,7 +70,7 @@ bool consists_of(ByteView content, std::size_t fixed, int strings) {
   return reader.ok() && reader.remaining() == 0;
 }
 
-/// The content is as long as the sizes in it say, taken for a record of the data section of type `opcode`.
+/// True if the sizes in the content match its length, for a record of the data section of type `opcode`.
 bool has_form(ByteView content, Opcode opcode) {
   switch (opcode) {
     case Opcode::chunk:
@@ -93,14 +94,15 @@ bool is_consistent(const Record& record) {
   return has_form(record.content, static_cast<Opcode>(record.opcode));
 }
 
-/// A record other than a chunk by its content, whatever its type says.
+/// True if the content has the form of a record other than a chunk, whatever its type.
 bool looks_like_no_chunk(ByteView content) {
   constexpr std::array others{Opcode::message_index, Opcode::header, Opcode::schema, Opcode::channel,
                               Opcode::data_end};
   return std::ranges::any_of(others, [&](Opcode opcode) { return has_form(content, opcode); });
 }
 
-/// The unreadable record at `at` is a chunk: either its type or its length is right, as one bit is wrong.
+/// True if the unreadable record at `at` is a chunk. Assumes one wrong bit, so its type or its length is
+/// correct.
 bool was_chunk(ByteView file, std::size_t at) {
   const auto record = record_at(file, at);
   const bool named = file[at] == static_cast<std::uint8_t>(Opcode::chunk);
@@ -108,8 +110,8 @@ bool was_chunk(ByteView file, std::size_t at) {
                 : named;
 }
 
-/// Where reading may go on after a record at `from` that cannot be read: behind it if the sizes in it agree
-/// with its length, so that its length is right; else at the next consistent record.
+/// Where to continue after an unreadable record at `from`: at its end if the sizes in it match its length,
+/// else at the next consistent record.
 std::optional<std::size_t> next_readable(ByteView file, std::size_t from) {
   const auto damaged = record_at(file, from);
   if (damaged && (looks_like_chunk(damaged->content) || looks_like_no_chunk(damaged->content))) {
@@ -138,7 +140,7 @@ class Scanner {
  public:
   explicit Scanner(std::size_t start) { section_.end = start; }
 
-  /// @return false: stop here
+  /// Handles one record. @return false: stop here
   bool take(const Record& record) {
     if (record.is(Opcode::data_end) && is_consistent(record)) {
       section_.ended = true;
@@ -153,7 +155,7 @@ class Scanner {
     return true;
   }
 
-  /// @return false: stop here
+  /// Handles an open chunk. @return false: stop here
   bool take_open_chunk(std::size_t offset, ByteView records) {
     auto chunk = read_chunk_records(records);
     if (!chunk) {
@@ -167,7 +169,7 @@ class Scanner {
 
   enum class Skipped : std::uint8_t { chunk, end_of_chunk, other };
 
-  /// Goes on at `next` and lists the bytes before it as damaged.
+  /// Continues at `next` and lists the bytes before it as damaged.
   void skip_to(std::size_t next, Skipped what) {
     const WireError truncated{WireErrorReason::truncated, section_.end, "record"};
     section_.damaged.push_back({{section_.end, next - section_.end, section_.error.value_or(truncated)},
@@ -192,7 +194,7 @@ class Scanner {
     }
     if ((record.is(Opcode::schema) || record.is(Opcode::channel)) && !is_consistent(record)) {
       return WireError{WireErrorReason::bad_length, record.offset + 1,
-                       "length"};  // it would hide what follows
+                       "length"};  // a wrong length would hide the next records
     }
     if (record.is(Opcode::schema)) {
       return put(read_schema(record));
@@ -200,7 +202,7 @@ class Scanner {
     if (record.is(Opcode::channel)) {
       return put(read_channel(record));
     }
-    // An opcode of zero: a part of the disk that was never written.
+    // An opcode of zero comes from a part of the disk that was never written.
     if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
         record.is(Opcode::data_end) || record.opcode == 0 || looks_like_chunk(record.content)) {
       return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
@@ -251,7 +253,7 @@ class Scanner {
       return WireError{WireErrorReason::bad_value, record.offset, "message_index"};
     }
     const auto [channel_id, messages] = *index;
-    if (behind_damage_) {  // it is the index of a chunk that was skipped
+    if (behind_damage_) {  // this is the index of a skipped chunk
       section_.damaged.back().lost_messages[channel_id] += messages;
       return std::nullopt;
     }
@@ -303,7 +305,7 @@ Result<Chunk, WireError> read_chunk(const Record& record) {
   if (!chunk) {
     return shifted(chunk.error(), record.content_offset() + records_offset);
   }
-  if (crc == no_crc && chunk->has_unknown_records) {  // nothing else tells a later version from damage
+  if (crc == no_crc && chunk->has_unknown_records) {  // without a CRC, unknown records count as damage
     return WireError{WireErrorReason::bad_value, record.content_offset() + records_offset, "chunk.records"};
   }
   chunk->storage = std::move(storage);
@@ -391,7 +393,7 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
                      "header"};
   }
   if (is_header && on_damage == OnDamage::skip) {
-    is_header = is_consistent(*record);  // its length may be damaged
+    is_header = is_consistent(*record);  // the length of the header may be damaged
   }
   Scanner scanner{is_header ? record->end() : magic.size()};
   while (true) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Going through the data section of an MCAP file, record by record.
+// Scans the data section of an MCAP file, record by record.
 #pragma once
 
 #include <cstdint>
@@ -14,71 +14,70 @@
 
 namespace sonard::mcap {
 
-/// By channel, in the order of the chunk.
+/// Index entries by channel, in the order of the chunk.
 using MessageIndexes = std::map<std::uint16_t, std::vector<IndexEntry>>;
 
-/// A chunk record taken apart: sizes and CRC are right and every record in it is whole and readable.
+/// The contents of a chunk record with correct sizes and CRC, in which every record is whole and readable.
 struct Chunk {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
   std::vector<Message> messages;         ///< their data view `records`
-  ByteView records;                      ///< in the file, or in `storage`
-  std::shared_ptr<const Bytes> storage;  ///< null where nothing had to be unpacked
+  ByteView records;                      ///< view of the file or of `storage`
+  std::shared_ptr<const Bytes> storage;  ///< null if the chunk is not compressed
   std::string compression;
   std::uint64_t stored_size = 0;
   MessageIndexes indexes;
-  std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 when there is no message
-  std::uint64_t end_time_ns = 0;    ///< latest log time; 0 when there is no message
+  std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 if there is no message
+  std::uint64_t end_time_ns = 0;    ///< latest log time; 0 if there is no message
   std::uint64_t records_size = 0;
-  bool has_unknown_records = false;  ///< of types that do not belong into a chunk
+  bool has_unknown_records = false;  ///< it has records of types that do not belong into a chunk
 };
 
-/// Bytes of a chunk before its records, but for the name of the compression.
+/// Bytes of a chunk before its records, without the name of the compression.
 inline constexpr std::size_t chunk_start_size = record_prefix_size + 8 + 8 + 8 + 4 + 4 + 8;
-/// Checksum field of an open chunk, which may still grow and whose length field may be out of date.
+/// Checksum of an open chunk, which may still grow and may have an outdated length.
 inline constexpr std::uint32_t no_crc = 0;
 
-/// Requires record.is(Opcode::chunk). One that is compressed otherwise than with Zstandard is an error.
+/// Reads a chunk. Requires record.is(Opcode::chunk). Any compression other than Zstandard is an error.
 Result<Chunk, WireError> read_chunk(const Record& record);
 
 /// Reads the records in a chunk. Offsets in errors are relative to `records`.
 Result<Chunk, WireError> read_chunk_records(ByteView records);
 
-/// The whole records of the open chunk that begins at `offset`, however long it says that it is; nullopt when
-/// none begins there, or it has none.
+/// The whole records of the open chunk at `offset`, whatever its stated length; nullopt if there is no open
+/// chunk or if it has no whole record.
 std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset);
 
-/// Schemas and channels that are new, and the number of messages.
+/// Adds new schemas and channels and the number of messages to `summary`.
 void add_contents(const Chunk& chunk, Summary& summary);
 
-/// A part of the data section that cannot be read.
+/// An unreadable part of the data section.
 struct DamagedChunk : Damage {
-  /// By channel, from the message indexes behind the chunk; empty when these cannot be read either.
+  /// By channel, from the message indexes after the chunk; empty if these are unreadable, too.
   std::map<std::uint16_t, std::uint64_t> lost_messages;
   bool holds_messages = true;  ///< false: a header, schema, channel or index, so no message is lost
 };
 
-/// What a scan of a file finds.
+/// Result of a scan of a file.
 struct DataSection {
   Summary summary;
-  std::size_t end = 0;  ///< where the whole records end: of DataEnd, or of the first that is not whole
-  bool ended = false;   ///< DataEnd stands at `end`
-  std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 when there is no chunk
-  MessageIndexes last_indexes;     ///< what the last chunk's message indexes are
-  bool last_chunk_open = false;    ///< it has no CRC
-  /// Why it went no further, when neither DataEnd nor the end of the bytes stopped it. What follows is not
-  /// lost to a reader that knows better.
+  std::size_t end = 0;  ///< end of the whole records: offset of DataEnd or of the first unreadable record
+  bool ended = false;   ///< there is a DataEnd at `end`
+  std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 if there is no chunk
+  MessageIndexes last_indexes;     ///< message indexes of the last chunk
+  bool last_chunk_open = false;    ///< the last chunk has no CRC
+  /// Why the scan stopped before DataEnd or the end of the bytes. Other readers may be able to read what
+  /// follows.
   std::optional<WireError> error;
   std::vector<DamagedChunk> damaged;  ///< parts that were skipped (OnDamage::skip)
 };
 
-/// Reads all of it, from the magic on. An error when not even magic and header are whole, or are no MCAP
-/// file's. A message outside of a chunk ends the whole part, as a record that cannot be read does.
-/// OnDamage::skip goes on with the next record or chunk that is consistent, and lists what it skipped.
+/// Scans the data section from the magic on. Returns an error if magic or header are incomplete or not MCAP.
+/// A message outside a chunk or an unreadable record stops the scan. OnDamage::skip continues with the next
+/// consistent record or chunk, and lists the skipped parts.
 Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_damage = OnDamage::stop);
 
-/// Number of messages by channel, by the message indexes that `index` names; those that cannot be read are
-/// left out.
+/// Number of messages by channel, from the message indexes in `index`, without unreadable ones.
 std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const ChunkIndex& index);
 
 }  // namespace sonard::mcap

@@ -36,7 +36,7 @@ std::optional<MessagePlace> MessageCursor::place() const {
   return MessagePlace{last_.chunk_offset, last_.position, last_.message.data.size()};
 }
 
-/// Opens chunks until none that is closed can hold an earlier message than those at hand.
+/// Opens chunks until no further chunk can hold an earlier message than the pending ones.
 void MessageCursor::open_due_chunks() {
   while (next_chunk_ < chunks_.size() &&
          (due_.empty() || chunks_[next_chunk_].start_time_ns <= due_.top().message.log_time_ns)) {
@@ -47,7 +47,7 @@ void MessageCursor::open_due_chunks() {
   }
 }
 
-/// @return why the chunk cannot be read
+/// Reads a chunk. @return an error if it is unreadable
 std::optional<WireError> MessageCursor::open(const ChunkIndex& index) {
   const auto offset = static_cast<std::size_t>(index.offset);
   const auto record = record_at(file_, offset);
@@ -61,7 +61,7 @@ std::optional<WireError> MessageCursor::open(const ChunkIndex& index) {
   if (!chunk) {
     return chunk.error();
   }
-  // What a message before the stated start would do to the order is worse than not reading on.
+  // A message before the stated start would break the order of messages, so reject the chunk.
   if (chunk->start_time_ns < index.start_time_ns) {
     return WireError{WireErrorReason::bad_value, offset, "chunk_index.message_start_time"};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads MCAP files: what is in one, and its messages in the order of their log times.
+// Reads MCAP files: their summary, and their messages in the order of log times.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@
 
 namespace sonard::mcap {
 
-/// A message in a compressed chunk.
+/// Position of a message in a compressed chunk.
 struct MessagePlace {
-  std::uint64_t chunk_offset = 0;  ///< in the file
-  std::size_t offset = 0;          ///< of its data in the records of the chunk
+  std::uint64_t chunk_offset = 0;  ///< of the chunk in the file
+  std::size_t offset = 0;          ///< of the message data in the records of the chunk
   std::size_t size = 0;
 };
 
-/// Goes through the messages of a file, earliest log time first, those of equal times in the order of the
-/// file. Takes a chunk apart when the first of its messages is due, and checks its CRC then. A chunk that
-/// cannot be read costs its own messages and no others. Views the file.
+/// Iterates over the messages of a file by log time; messages with equal times in the order of the file.
+/// Reads a chunk and checks its CRC when its first message is due. An unreadable chunk loses only its own
+/// messages. Views the file.
 class MessageCursor {
  public:
-  /// nullopt at the end. What is in it is valid until the next call.
+  /// The next message; nullopt at the end. Its data are valid until the next call.
   std::optional<Message> next();
-  /// Where the message that came last is in its chunk; nullopt: its data are a view of the file, which stays.
+  /// Position of the last message in its chunk; nullopt if its data view the file and so stay valid.
   std::optional<MessagePlace> place() const;
-  /// Chunks that could not be read so far.
+  /// Unreadable chunks so far.
   const std::vector<DamagedChunk>& damaged() const { return damaged_; }
 
  private:
@@ -54,33 +54,33 @@ class MessageCursor {
   std::size_t next_chunk_ = 0;
   std::set<std::uint16_t> channels_;  ///< empty: all
   std::priority_queue<Due, std::vector<Due>, Later> due_;
-  Due last_;  ///< what next() gave
+  Due last_;  ///< returned by next()
   std::vector<DamagedChunk> damaged_;
 };
 
-/// A file in memory, or mapped into it. A file that was finished is read by its summary. A file without a
-/// readable summary is scanned once, and damaged parts of it are skipped. Chunks may be compressed with
-/// Zstandard; attachments, metadata and unknown records are skipped. Views the file; threads may share it.
+/// A file in memory or mapped into memory. Uses the summary of a finished file. Scans a file without a
+/// readable summary once and skips its damaged parts. Chunks may be compressed with Zstandard; attachments,
+/// metadata and unknown records are skipped. Views the file; threads may share it.
 class Reader {
  public:
-  /// An error when it does not begin as an MCAP file.
+  /// Opens a file; an error if it does not begin as an MCAP file.
   static Result<Reader, WireError> open(ByteView file);
 
   const Summary& summary() const { return summary_; }
-  /// The writer finished the file.
+  /// True if the writer finished the file.
   bool finished() const { return finished_; }
-  /// The writer finished the file, and the summary at its end cannot be read.
+  /// True if the writer finished the file, but the summary at its end is unreadable.
   bool lacks_summary() const { return lacks_summary_; }
-  /// Why the scan ended before the file did.
+  /// Why the scan ended before the end of the file; nullopt if it did not.
   const std::optional<WireError>& stopped_by() const { return stopped_by_; }
-  /// Bytes at the end of a file that was not finished: a record that was being written, or that is damaged.
+  /// Bytes at the end of an unfinished file: an incomplete or damaged record.
   std::size_t tail_size() const { return tail_size_; }
-  /// Parts that the scan skipped. A file that has a summary is not scanned: MessageCursor::damaged().
+  /// Parts that the scan skipped. A file with a summary is not scanned; use MessageCursor::damaged().
   const std::vector<DamagedChunk>& damaged() const { return damaged_; }
 
-  /// @param channels only their messages; empty: all
+  /// @param channels return only messages of these channels; empty: all
   MessageCursor messages(std::set<std::uint16_t> channels = {}) const;
-  /// Unpacks the chunk once more. nullopt when that cannot be read.
+  /// Data of a message; unpacks its chunk again. nullopt if the chunk is unreadable.
   std::optional<Bytes> data_at(const MessagePlace& place) const;
 
  private:

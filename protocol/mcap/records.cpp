@@ -25,7 +25,7 @@ void write_string(ByteWriter& writer, std::string_view text) {
   write_sized(writer, as_bytes(text));
 }
 
-/// A map is its length in bytes and then its entries.
+/// Writes a map: its length in bytes, then its entries.
 void write_map(ByteWriter& writer, const std::map<std::string, std::string>& map) {
   Bytes entries;
   ByteWriter entry_writer{entries};
@@ -36,7 +36,8 @@ void write_map(ByteWriter& writer, const std::map<std::string, std::string>& map
   write_sized(writer, entries);
 }
 
-/// `read` gets the reader at the front of the content; bytes behind what it reads are of a later version.
+/// Calls `read` with a reader at the front of the content. Ignores further bytes, which belong to later
+/// versions.
 template <class Value, class Read>
 Result<Value, WireError> read_content(const Record& record, Read read) {
   ByteReader reader{record.content};
@@ -51,7 +52,7 @@ Result<Value, WireError> read_content(const Record& record, Read read) {
 }  // namespace
 
 std::uint32_t crc32(ByteView bytes, std::uint32_t before) {
-  // zlib takes a null pointer as a request to start anew.
+  // With a null pointer zlib would start a new checksum.
   return bytes.empty() ? before : static_cast<std::uint32_t>(::crc32_z(before, bytes.data(), bytes.size()));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of MCAP files, as far as sonard writes and reads them: bytes <-> values.
+// The records of MCAP files that sonard writes and reads: bytes <-> values.
 // Source: the MCAP specification, mcap.dev/spec, section numbers by record name. A file is
 //   magic, Header, data section (here: chunks, each followed by its message indexes), DataEnd, summary,
 //   Footer, magic
@@ -44,17 +44,17 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// What the messages of a channel look like inside.
+/// Format of the messages of a channel.
 struct Schema {
   std::uint16_t id = 0;  ///< unique in a file, not 0
   std::string name;      ///< for "protobuf" the full name of the message
-  std::string encoding;  ///< "protobuf": `data` is a serialised FileDescriptorSet with all that it imports
+  std::string encoding;  ///< "protobuf": `data` is a serialised FileDescriptorSet with all imported files
   Bytes data;
 
   bool operator==(const Schema&) const = default;
 };
 
-/// A stream of messages of one kind.
+/// A stream of messages with one schema.
 struct Channel {
   std::uint16_t id = 0;  ///< unique in a file
   std::uint16_t schema_id = 0;
@@ -68,12 +68,12 @@ struct Channel {
 struct Message {
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;         ///< counts the messages of a channel
-  std::uint64_t log_time_ns = 0;      ///< when it was recorded
-  std::uint64_t publish_time_ns = 0;  ///< when what it says was true
+  std::uint64_t log_time_ns = 0;      ///< time of recording
+  std::uint64_t publish_time_ns = 0;  ///< time for which the content is valid
   ByteView data;                      ///< not owned
 };
 
-/// Where a message lies in the records of its chunk.
+/// Position of a message in the records of its chunk.
 struct IndexEntry {
   std::uint64_t log_time_ns = 0;
   std::uint64_t offset = 0;
@@ -81,17 +81,17 @@ struct IndexEntry {
   bool operator==(const IndexEntry&) const = default;
 };
 
-/// Where a chunk lies in the file, and the message indexes behind it.
+/// Position of a chunk in the file, and of the message indexes after it.
 struct ChunkIndex {
-  std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 when the chunk has no message
-  std::uint64_t end_time_ns = 0;    ///< latest log time; 0 when the chunk has no message
+  std::uint64_t start_time_ns = 0;  ///< earliest log time; 0 if the chunk has no message
+  std::uint64_t end_time_ns = 0;    ///< latest log time; 0 if the chunk has no message
   std::uint64_t offset = 0;         ///< of the chunk record in the file
-  std::uint64_t length = 0;         ///< of the chunk record, prefix included
+  std::uint64_t length = 0;         ///< of the chunk record, with its prefix
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< by channel, in the file
-  std::uint64_t message_index_length = 0;                        ///< of all of them together
-  std::uint64_t records_size = 0;                                ///< when they are unpacked
-  std::uint64_t stored_size = 0;                                 ///< as they are in the file
-  std::string compression{};                                     ///< empty: none
+  std::uint64_t message_index_length = 0;                        ///< total length of all message indexes
+  std::uint64_t records_size = 0;                                ///< size of the unpacked records
+  std::uint64_t stored_size = 0;                                 ///< size of the records in the file
+  std::string compression{};                                     ///< empty: not compressed
 
   bool operator==(const ChunkIndex&) const = default;
 };
@@ -103,10 +103,10 @@ struct Footer {
 };
 inline constexpr std::size_t footer_record_size = record_prefix_size + 20;
 
-/// CRC32 as in zip and PNG, of `bytes` behind others whose CRC is `before`.
+/// CRC32 as in ZIP and PNG, of `bytes` after others with the CRC `before`.
 std::uint32_t crc32(ByteView bytes, std::uint32_t before = 0);
 
-// ---- Writing: each appends one whole record.
+// ---- Writing: each function appends one whole record.
 
 void append_header(Bytes& out, std::string_view profile, std::string_view library);
 void append(Bytes& out, const Schema& schema);
@@ -115,7 +115,7 @@ void append(Bytes& out, const Message& message);
 void append(Bytes& out, const ChunkIndex& index);
 void append_message_index(Bytes& out, std::uint16_t channel_id, std::span<const IndexEntry> entries);
 
-/// Writes opcode and a length that is filled in when the object goes.
+/// Writes an opcode, and its destructor fills in the length of the record.
 class RecordScope {
  public:
   RecordScope(Bytes& out, Opcode opcode);
@@ -128,11 +128,12 @@ class RecordScope {
   std::size_t content_start_;
 };
 
-// ---- Reading. Offsets in errors are those of the file or chunk records that `bytes` is.
+// ---- Reading. Offsets in errors are relative to the bytes of record_at(): the file or the records of a
+// chunk.
 
 struct Record {
-  std::uint8_t opcode = 0;  ///< may be none of Opcode
-  std::size_t offset = 0;   ///< of the opcode in the bytes it was found in
+  std::uint8_t opcode = 0;  ///< Opcode or another value
+  std::size_t offset = 0;   ///< of the opcode in the bytes of record_at()
   ByteView content;
 
   bool is(Opcode wanted) const { return opcode == static_cast<std::uint8_t>(wanted); }
@@ -140,7 +141,7 @@ struct Record {
   std::size_t end() const { return content_offset() + content.size(); }
 };
 
-/// The record at `offset`; nothing when the bytes end before it does.
+/// The record at `offset`; nullopt if the bytes end before the record does.
 std::optional<Record> record_at(ByteView bytes, std::size_t offset);
 
 /// True if `file` begins with the magic of MCAP. One damaged byte in it is tolerated if a header record
@@ -153,10 +154,10 @@ Result<Message, WireError> read_message(const Record& record);
 Result<ChunkIndex, WireError> read_chunk_index(const Record& record);
 Result<Footer, WireError> read_footer(const Record& record);
 
-/// `error` of a part that starts at `base`, as an error of the whole.
+/// `error` with `base` added to its offset, to convert it from a part to the whole.
 WireError shifted(WireError error, std::size_t base);
 
-/// Text behind its length in 32 bits.
+/// Reads a text after its length in 32 bits.
 std::string read_string(ByteReader& reader, std::string_view field);
 
 }  // namespace sonard::mcap

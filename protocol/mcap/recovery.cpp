@@ -6,7 +6,7 @@
 namespace sonard::mcap {
 namespace {
 
-/// Brings back the message indexes of the last chunk where some are missing.
+/// Restores the message indexes of the last chunk if some are missing.
 void complete_last_indexes(const DataSection& section, Recovery& recovery) {
   if (recovery.summary.chunks.empty()) {
     return;
@@ -20,7 +20,7 @@ void complete_last_indexes(const DataSection& section, Recovery& recovery) {
   append_message_indexes(recovery.end, recovery.keep_size, section.last_indexes, last);
 }
 
-/// Closes the chunk that was growing.
+/// Closes the open chunk.
 void close_last_chunk(ByteView file, const DataSection& section, Recovery& recovery) {
   ChunkIndex& last = recovery.summary.chunks.back();
   const ByteView records = file.subspan(static_cast<std::size_t>(last.offset) + chunk_start_size,
@@ -46,7 +46,7 @@ Result<Recovery, WireError> recover(ByteView file) {
     return section.error();
   }
   if (section->error && section->error->field == "chunk.compression") {
-    return *section->error;  // it is not broken, but none of ours
+    return *section->error;  // not damaged, but not written by sonard
   }
   recovery.keep_size = section->end;
   recovery.lost_size = section->ended ? 0 : file.size() - section->end;

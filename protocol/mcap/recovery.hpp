@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finishing an MCAP file whose writer was killed.
+// Repairs an MCAP file whose writer was killed.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,18 @@
 
 namespace sonard::mcap {
 
-/// How to make a file whole: truncate it to `keep_size`, append `end`. Until the caller does, nothing
-/// changes.
+/// How to make a file whole: truncate it to `keep_size`, append `end`. The caller must do this.
 struct Recovery {
   std::uint64_t keep_size = 0;
-  Bytes end;                    ///< empty when the file is whole as it is
-  std::uint64_t lost_size = 0;  ///< bytes of the data section that go: a record that was being written
-  Summary summary;              ///< of the file when it is whole
+  Bytes end;                    ///< empty if the file is whole already
+  std::uint64_t lost_size = 0;  ///< bytes of the data section that are lost: an incomplete record
+  Summary summary;              ///< of the repaired file
 };
 
-/// Looks at all of `file`. Keeps everything up to the last whole chunk whose CRC is right, or to the last
-/// whole record of a chunk that was growing, which is closed; message indexes that are missing behind the
-/// last chunk are written again. An error when not even magic and header are whole, for then there is nothing
-/// in it to keep, and for a file with chunks compressed in another way, which sonard did not write.
+/// Scans `file` and keeps everything up to the last whole chunk with a correct CRC, or up to the last whole
+/// record of an open chunk, which it closes. Restores missing message indexes after the last chunk. Returns
+/// an error if magic and header are not whole, because then there is nothing to keep. Also returns an error
+/// for other compressions, because sonard did not write such a file.
 Result<Recovery, WireError> recover(ByteView file);
 
 }  // namespace sonard::mcap

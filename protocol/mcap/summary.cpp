@@ -26,7 +26,7 @@ void append_statistics(Bytes& out, const Summary& summary) {
   }
 }
 
-/// Statistics say no more than chunks do, but for the counts.
+/// Reads only the counts from the statistics, because the chunk indexes contain the rest.
 Result<std::map<std::uint16_t, std::uint64_t>, WireError> read_message_counts(const Record& record) {
   constexpr std::size_t before_counts = 8 + 2 + 4 * 4 + 2 * 8;
   ByteReader reader{record.content};
@@ -43,7 +43,7 @@ Result<std::map<std::uint16_t, std::uint64_t>, WireError> read_message_counts(co
   return counts;
 }
 
-/// Each group of the summary and the records that lead to it.
+/// Writes the groups of the summary, and collects their summary offset records.
 class GroupWriter {
  public:
   GroupWriter(Bytes& out, std::uint64_t file_offset) : out_(out), file_offset_(file_offset) {}
@@ -77,7 +77,7 @@ void append_all(Bytes& out, const std::vector<Value>& values) {
   }
 }
 
-/// Takes in one record of the summary section; those that it does not know say nothing it needs.
+/// Adds one record of the summary section; ignores other records.
 std::optional<WireError> take(const Record& record, Summary& summary) {
   const auto put = [](auto result, auto&& use) -> std::optional<WireError> {
     if (!result) {
@@ -102,7 +102,7 @@ std::optional<WireError> take(const Record& record, Summary& summary) {
   return std::nullopt;
 }
 
-/// Chunks lie behind each other: what overlaps could have a reader go through the same bytes for ever.
+/// Checks that chunks follow each other. With overlapping chunks a reader could read equal bytes for ever.
 std::optional<WireError> check_chunks(const Summary& summary, std::uint64_t data_section_limit) {
   std::uint64_t end = 0;
   for (const ChunkIndex& chunk : summary.chunks) {
@@ -150,7 +150,7 @@ std::uint64_t Summary::message_count() const {
 }
 
 std::uint64_t Summary::start_time_ns() const {
-  // A chunk that brings channels but no message has no times of its own.
+  // A chunk with channels but without messages has no times.
   const auto has_messages = [](const ChunkIndex& chunk) { return chunk.end_time_ns != 0; };
   std::uint64_t start = 0;
   bool found = false;

@@ -11,7 +11,7 @@
 namespace sonard::mcap {
 namespace {
 
-/// Ids of schemas start from 1: 0 says that there is none (Channel).
+/// Ids start from 1, because schema id 0 in a Channel means that it has no schema.
 template <class Value>
 std::uint16_t next_id(const std::vector<Value>& values) {
   assert(values.size() < 65'535);
@@ -71,7 +71,7 @@ void Writer::flush() {
   put_chunk_start(no_crc);
 }
 
-/// Into what waits to be taken where it begins there; else it is to be written over.
+/// Writes the front of the open chunk into pending_ if the chunk begins there, else into rewrite_.
 void Writer::put_chunk_start(std::uint32_t crc) {
   ChunkIndex chunk;
   chunk.start_time_ns = start_time_ns_;
@@ -113,7 +113,7 @@ void Writer::end_chunk() {
   flushed_size_ = 0;
 }
 
-/// Schemas and channels of the chunk that was closed.
+/// Repeats the schemas and channels of the closed chunk.
 void Writer::repeat_definitions(Bytes& out) {
   for (; repeated_schemas_ < summary_.schemas.size(); ++repeated_schemas_) {
     append(out, summary_.schemas[repeated_schemas_]);
@@ -123,7 +123,7 @@ void Writer::repeat_definitions(Bytes& out) {
   }
 }
 
-/// The whole record, compressed where that makes it shorter.
+/// The whole record of the chunk, compressed if that makes it shorter.
 Bytes Writer::closed_chunk(ChunkIndex& chunk) const {
   chunk.records_size = chunk.stored_size = records_.size();
   ByteView stored = records_;
@@ -142,13 +142,13 @@ Bytes Writer::closed_chunk(ChunkIndex& chunk) const {
   return record;
 }
 
-/// In place of the open chunk, which is in the file, or waits to be taken, or both.
+/// Replaces the open chunk, parts of which may be in the file and in pending_.
 void Writer::put_closed_chunk(const Bytes& record) {
   if (*open_at_ >= taken_size_) {
     pending_.resize(static_cast<std::size_t>(*open_at_ - taken_size_));
     pending_.insert(pending_.end(), record.begin(), record.end());
   } else if (record.size() == chunk_start_size + records_.size()) {
-    rewrite_.assign(record.begin(), record.begin() + chunk_start_size);  // the records are there, or wait
+    rewrite_.assign(record.begin(), record.begin() + chunk_start_size);  // the records do not change
     rewrite_offset_ = *open_at_;
   } else {
     const auto in_file = static_cast<std::size_t>(taken_size_ - *open_at_);
