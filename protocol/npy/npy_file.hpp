@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays as NumPy keeps them: format 1.0 of numpy.lib.format. No state; any thread.
+// NumPy array files: format 1.0 of numpy.lib.format. No state; any thread.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace sonard::npy {
 
-/// A table of unsigned samples, row after row: `u8`, or `u16` where that is not empty.
+/// A table of unsigned samples, row after row: in `u16` if it is not empty, else in `u8`.
 struct Table {
   int rows = 0;
   int columns = 0;
@@ -21,17 +21,17 @@ struct Table {
   bool operator==(const Table&) const = default;
 };
 
-/// What stands before the samples: magic, version, length of the header, and a Python literal padded so that
+/// The bytes before the samples: magic, version, length of the header, and a Python literal padded so that
 /// the samples begin at a multiple of 64.
 /// @param dtype "|u1" or "<u2"
-/// @param rows, columns of the samples that follow, row by row
+/// @param rows, columns shape of the samples that follow, row by row
 std::string header(std::string_view dtype, int rows, int columns);
 
-/// The whole file. Requires rows * columns samples.
+/// Encodes the whole file. Requires rows * columns samples.
 std::string encode(const Table& table);
 
-/// Parses any file of one sample or more in C order.
-/// @return what is wrong with another file: "is no NumPy file of format 1.0"
+/// Parses a file with a table of at least one sample in C order.
+/// @return the table, or what is wrong with the file: "is no NumPy file of format 1.0"
 Result<Table, std::string> parse(std::string_view file);
 
 }  // namespace sonard::npy
