@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::uint32_t byte_order_magic = 0x1A2B3C4D;
 constexpr std::size_t block_overhead = 12;  // type, and the length twice
-constexpr std::uint8_t nanoseconds = 9;     // a power of ten
+constexpr std::uint8_t nanoseconds = 9;     // resolution 10^-9 s
 
 namespace options {
 constexpr std::uint16_t end = 0;
 constexpr std::uint16_t application = 4;  // of a section
 constexpr std::uint16_t name = 2;         // of an interface
-constexpr std::uint16_t resolution = 9;   // of an interface's times
+constexpr std::uint16_t resolution = 9;   // of the times of an interface
 }  // namespace options
 
 ByteView as_bytes(std::string_view text) {
@@ -83,7 +83,7 @@ bool is_registered(std::uint32_t type) {
          (type >= 0x201 && type <= 0x221) || type == 0xBAD || type == 0x40000BAD || type == 0x0A0D0D0A;
 }
 
-/// The body is exactly that of a packet block, so only the type can be wrong.
+/// True if the body is exactly the body of a packet block, so that only the type can be wrong.
 bool holds_packet(const Block& block) {
   constexpr std::size_t front = 20;
   const auto packet = read_packet(block);
@@ -91,10 +91,10 @@ bool holds_packet(const Block& block) {
          block.body.size() == front + packet->bytes.size() + padding(packet->bytes.size());
 }
 
-/// Tells damaged blocks by their content, where their lengths are right.
+/// Detects damaged blocks with correct lengths by their content.
 class BlockCheck {
  public:
-  /// Expects all blocks of a file, in their order.
+  /// Checks one block. Call for all blocks of a file, in order.
   std::optional<WireError> error_in(const Block& block) {
     switch (static_cast<BlockType>(block.type)) {
       case BlockType::section_header:
@@ -130,10 +130,10 @@ class BlockCheck {
                : std::nullopt;
   }
 
-  bool ours_ = false;  ///< sonard wrote the section: it has no other types of blocks, and no other packets
+  bool ours_ = false;  ///< sonard wrote the section, so it has only BlockType blocks and IPv4 packets
 };
 
-/// Where the next block of a known type starts behind `offset`. Blocks lie on multiples of four bytes.
+/// Offset of the next block of a known type after `offset`. Blocks begin at multiples of four bytes.
 std::optional<std::size_t> next_block(ByteView file, std::size_t offset) {
   for (std::size_t at = (offset / 4 + 1) * 4; at < file.size(); at += 4) {
     const auto block = block_at(file, at);
@@ -152,7 +152,7 @@ Writer::Writer(std::string_view application) {
   writer.u32le(byte_order_magic);
   writer.u16le(1);  // version
   writer.u16le(0);
-  writer.u64le(UINT64_MAX);  // length of the section: not said
+  writer.u64le(UINT64_MAX);  // length of the section: not specified
   write_option(writer, options::application, as_bytes(application));
   write_option(writer, options::end, {});
   append_block(pending_, BlockType::section_header, body);
@@ -163,7 +163,7 @@ std::uint32_t Writer::add_interface(std::string_view name) {
   ByteWriter writer{body};
   writer.u16le(link_type_raw);
   writer.u16le(0);
-  writer.u32le(0);  // no limit to the size of a packet
+  writer.u32le(0);  // no limit on the size of a packet
   write_option(writer, options::name, as_bytes(name));
   write_option(writer, options::resolution, std::span{&nanoseconds, 1});
   write_option(writer, options::end, {});

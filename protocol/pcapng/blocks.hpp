@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Capture files of the form pcapng, which Wireshark and tcpdump read: IPv4 packets with their times.
-// Source: draft-ietf-opsawg-pcapng, sections 3 and 4; link type 101 (IPv4 or IPv6 without more) by the list
-// of link-layer header types of tcpdump.org. One section, little-endian, times in nanoseconds.
+// Capture files in pcapng format, for Wireshark and tcpdump: IPv4 packets with times.
+// Source: draft-ietf-opsawg-pcapng, sections 3 and 4; link type 101 (raw IPv4 or IPv6) from the list of
+// link-layer header types of tcpdump.org. One section, little-endian, times in nanoseconds.
 #pragma once
 
 #include <cstddef>
@@ -20,25 +20,24 @@
 namespace sonard::pcapng {
 
 inline constexpr std::uint16_t link_type_raw = 101;
-inline constexpr std::size_t max_packet_size = 65'535;  ///< an IPv4 packet
+inline constexpr std::size_t max_packet_size = 65'535;  ///< limit of an IPv4 packet
 
-/// Writes blocks to append to a file. A file is good after every whole block, so a killed program loses only
-/// the one that was being written. Not thread-safe.
+/// Makes blocks to append to a file. A file is valid after every whole block, so a killed program loses only
+/// the block in progress. Not thread-safe.
 class Writer {
  public:
-  /// @param application who writes, for those who look into a file: "sonard 0.1.0"
+  /// @param application name of the writing program, for readers of the file: "sonard 0.1.0"
   explicit Writer(std::string_view application);
 
-  /// @param name for example that of a head. @return the number of the interface. Names of 65535 bytes at
-  /// most.
+  /// @param name for example the name of a head, at most 65535 bytes. @return the number of the interface
   std::uint32_t add_interface(std::string_view name);
 
-  /// @param interface one that was added
-  /// @param time_ns since the Unix epoch
-  /// @param packet of at most max_packet_size bytes
+  /// @param interface number of an added interface
+  /// @param time_ns nanoseconds since the Unix epoch
+  /// @param packet at most max_packet_size bytes
   void add_packet(std::uint32_t interface, std::uint64_t time_ns, ByteView packet);
 
-  /// The blocks to append to the file since the last call: whole ones, perhaps none.
+  /// The whole blocks since the last call, to append to the file; may be empty.
   Bytes take();
 
  private:
@@ -53,40 +52,41 @@ enum class BlockType : std::uint32_t {
 };
 
 struct Block {
-  std::uint32_t type = 0;  ///< may be none of BlockType
+  std::uint32_t type = 0;  ///< BlockType or another value
   std::size_t offset = 0;
   ByteView body;  ///< without type and lengths
 
   std::size_t end() const { return offset + body.size() + 12; }
 };
 
-/// The block at `offset`. @return nothing when the bytes end before it does; an error when its two lengths
-/// disagree or can be no block's. Little-endian only.
+/// The block at `offset`. @return nullopt if the bytes end before the block does; an error if its two lengths
+/// differ or are invalid. Little-endian only.
 Result<std::optional<Block>, WireError> block_at(ByteView bytes, std::size_t offset);
 
-/// A packet as add_packet() took it.
+/// A packet as given to add_packet().
 struct Packet {
   std::uint32_t interface = 0;
   std::uint64_t time_ns = 0;
   ByteView bytes;  ///< not owned
 };
-/// Requires a block of type enhanced_packet.
+/// Reads a packet from a block, which must have type enhanced_packet.
 Result<Packet, WireError> read_packet(const Block& block);
 
 /// Calls `take` for each readable block. A block with two equal lengths is damaged if its type is not
 /// registered, or if sonard wrote the section and never writes such a block. After a block with wrong
 /// lengths, reading continues at the next block that has a known type and two equal lengths.
-/// @return the parts that cannot be read; an error when no block of the file can be
+/// @return the unreadable parts; an error if no block is readable
 Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
                                                       const std::function<void(const Block&)>& take);
 
-/// What is whole at the front of a file: truncate to `keep_size`, and it is good, and may be appended to.
+/// The whole blocks at the front of a file. Truncate it to `keep_size` to make it valid; then blocks may be
+/// appended.
 struct Recovery {
   std::size_t keep_size = 0;
   std::uint64_t packets = 0;
   std::uint32_t interfaces = 0;
 };
-/// An error when the file does not begin with a section that sonard may have written.
+/// Finds the whole part of a file; an error if the file does not begin with a section as sonard writes it.
 Result<Recovery, WireError> recover(ByteView file);
 
 }  // namespace sonard::pcapng

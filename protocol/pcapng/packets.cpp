@@ -21,7 +21,7 @@ constexpr std::uint8_t push = 0x08;
 constexpr std::uint8_t ack = 0x10;
 }  // namespace tcp_flags
 
-/// Network byte order.
+/// Appends in network byte order.
 void write_be(Bytes& out, std::uint64_t value, std::size_t width) {
   for (std::size_t i = width; i-- > 0;) {
     out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
@@ -33,7 +33,7 @@ void store_be16(Bytes& bytes, std::size_t offset, std::uint16_t value) {
   bytes[offset + 1] = static_cast<std::uint8_t>(value);
 }
 
-/// Sum of 16-bit words, an odd byte at the end filled up with zero (RFC 1071), not folded yet.
+/// Sum of 16-bit words, not folded; an odd byte at the end is padded with zero (RFC 1071).
 std::uint64_t sum_words(ByteView bytes) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -49,13 +49,13 @@ std::uint16_t folded_complement(std::uint64_t sum) {
   return static_cast<std::uint16_t>(~sum);
 }
 
-/// An IPv4 header with its checksum; `size` bytes follow it.
+/// An IPv4 header with its checksum, for `size` bytes after it.
 Bytes ip_header(const Endpoint& from, const Endpoint& to, std::uint8_t protocol, std::size_t size) {
   Bytes packet;
   packet.reserve(ip_header_size + size);
   write_be(packet, 0x4500, 2);  // version 4, 5 words of header
   write_be(packet, ip_header_size + size, 2);
-  write_be(packet, 0, 2);       // identification: none is needed without fragments (RFC 6864)
+  write_be(packet, 0, 2);       // identification: not needed without fragments (RFC 6864)
   write_be(packet, 0x4000, 2);  // do not fragment
   write_be(packet, 64, 1);      // time to live
   write_be(packet, protocol, 1);
@@ -66,7 +66,7 @@ Bytes ip_header(const Endpoint& from, const Endpoint& to, std::uint8_t protocol,
   return packet;
 }
 
-/// The checksum of UDP and TCP: of what follows the IPv4 header, and of addresses, protocol and length.
+/// The checksum of UDP and TCP: over the bytes after the IPv4 header, addresses, protocol and length.
 std::uint16_t transport_checksum(ByteView packet, std::uint8_t protocol,
                                  std::size_t header_size = ip_header_size) {
   return folded_complement(sum_words(packet.subspan(12, 8)) + protocol + packet.size() - header_size +
@@ -104,7 +104,7 @@ bool has_right_checksums(ByteView packet) {
   if (header_size < ip_header_size || size < header_size || size > packet.size()) {
     return false;
   }
-  // A sum over bytes that hold their own checksum is zero.
+  // The sum over bytes with their own checksum is zero.
   if (folded_complement(sum_words(packet.first(header_size))) != 0) {
     return false;
   }
@@ -126,7 +126,7 @@ Bytes udp_packet(const Endpoint& from, const Endpoint& to, ByteView payload) {
   write_be(packet, 0, 2);  // checksum
   packet.insert(packet.end(), payload.begin(), payload.end());
   const std::uint16_t checksum = transport_checksum(packet, protocol_udp);
-  // Zero would say that there is none (RFC 768).
+  // Zero would mean that there is no checksum (RFC 768).
   store_be16(packet, ip_header_size + 6, checksum == 0 ? std::uint16_t{0xFFFF} : checksum);
   return packet;
 }

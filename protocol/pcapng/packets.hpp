@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// IPv4 packets around what was said on a socket or a serial line, so that a capture of it looks as if it had
-// been taken from a cable. Headers and checksums as RFC 791, RFC 768 and RFC 9293 say; no options, no
-// fragments.
+// Wraps bytes of a socket or serial line in IPv4 packets, so that a capture looks as if taken from a cable.
+// Headers and checksums follow RFC 791, RFC 768 and RFC 9293; no options, no fragments.
 #pragma once
 
 #include <cstddef>
@@ -21,33 +20,33 @@ struct Endpoint {
   bool operator==(const Endpoint&) const = default;
 };
 
-/// The most that one UDP datagram over IPv4 carries.
+/// Maximum payload of a UDP datagram over IPv4.
 inline constexpr std::size_t max_udp_payload = 65'507;
 
-/// One datagram as an IPv4 packet. Requires a payload of at most max_udp_payload: no more arrives in one.
+/// One datagram as an IPv4 packet. Requires a payload of at most max_udp_payload bytes.
 Bytes udp_packet(const Endpoint& from, const Endpoint& to, ByteView payload);
 
-/// True unless the IPv4 packet is cut or one of its checksums is wrong: of its header (RFC 791), or of UDP or
-/// TCP inside. A UDP checksum of 0 is none (RFC 768). Packets of other kinds are not checked.
+/// False if the IPv4 packet is cut or if a checksum is wrong: of its header (RFC 791), or of the UDP or TCP
+/// inside. A UDP checksum of 0 means that there is no checksum (RFC 768). Other packets are not checked.
 bool has_right_checksums(ByteView packet);
 
-/// Bytes that passed both ways between two ends, as segments of one TCP connection from its first packet to
-/// its last. What was said on the socket is known, not what went over the cable: sequence numbers begin at 0,
-/// nothing is sent twice, every segment acknowledges all that came before it, and long pieces become segments
-/// of 1460 bytes. A reader of the capture, Wireshark say, puts the same stream together from them.
+/// Converts the bytes between two ends to packets of one complete TCP connection. Only the bytes on the
+/// socket are known, not the packets on the cable. So sequence numbers begin at 0, nothing is sent twice,
+/// every segment acknowledges all bytes before it, and long parts become segments of 1460 bytes. Readers such
+/// as Wireshark reassemble an equal stream.
 ///
-/// A serial line or pseudo terminal is written down as such a connection too, between two addresses that RFC
-/// 5737 keeps for documentation. The link type that Wireshark has for private use would need a setting in
-/// every Wireshark, and would not put frames together that were read in pieces.
+/// Serial lines and pseudo terminals are also recorded as TCP connections, between two documentation
+/// addresses of RFC 5737. A link type for private use would need a setting in every Wireshark, and Wireshark
+/// would not reassemble frames that were read in parts.
 class TcpConversation {
  public:
   TcpConversation(const Endpoint& client, const Endpoint& server);
 
-  /// The three packets that begin it.
+  /// The three packets that begin the connection.
   std::vector<Bytes> open();
   std::vector<Bytes> from_client(ByteView bytes);
   std::vector<Bytes> from_server(ByteView bytes);
-  /// The three packets that end it, the client first.
+  /// The three packets that end the connection, the client's first.
   std::vector<Bytes> close();
 
  private:
@@ -62,8 +61,8 @@ class TcpConversation {
   Side server_;
 };
 
-/// The ends of a serial line (192.0.2.2 and 192.0.2.1). Port 4001 is where device servers commonly offer one,
-/// and where the dissector of the Micron looks.
+/// The ends of a serial line (192.0.2.2 and 192.0.2.1). Port 4001 is common for serial device servers, and
+/// the dissector of the Micron uses it.
 inline constexpr Endpoint serial_client{0xC0'00'02'02, 49'152};
 inline constexpr Endpoint serial_head{0xC0'00'02'01, 4001};
 
