@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boost.Process, first version, whose header has moved in Boost 1.86.
+// Boost.Process v1. Its header moved in Boost 1.86.
 #pragma once
 
 #if __has_include(<boost/process/v1.hpp>)

@@ -39,7 +39,7 @@ namespace {
 
 namespace asio = boost::asio;
 
-constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes: a multibeam head writes some 5 MB a second
+constexpr std::uintmax_t least_space = 1'000'000'000;  // bytes; a multibeam head writes about 5 MB/s
 
 class Check {
  public:
@@ -86,7 +86,7 @@ class Check {
   const LoadedConfig& loaded_;
   DaemonConfig config_;
   std::optional<pose::Trajectory> trajectory_;
-  std::string trajectory_trouble_;  ///< why it cannot be read
+  std::string trajectory_trouble_;  ///< why it cannot be read; empty if it can
   CheckReport report_;
 };
 
@@ -106,7 +106,7 @@ std::string material_names(const render::World& world) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// ", scale 0.001" where a mesh of the body was scaled.
+/// ", scale 0.001" if a mesh of the body was scaled, else "".
 std::string scale_text(const render::Body& body) {
   for (const render::BodyPart& part : body.parts) {
     const glm::dvec3& s = part.scale;
@@ -118,8 +118,8 @@ std::string scale_text(const render::Body& body) {
   return "";
 }
 
-/// The extents of the mesh files of a body, along its axes. The parts of one file stand in one place.
-/// @param wanted which parts count
+/// Extents of a body's mesh files along its axes, in metres. The parts of one file share one place.
+/// @param wanted selects the parts that count
 template <typename Wanted>
 std::vector<glm::dvec3> mesh_sizes(const render::Body& body, const Wanted& wanted) {
   render::World meshes;
@@ -152,8 +152,8 @@ bool is_made_small(const render::BodyPart& part) {
   return glm::all(glm::lessThan(glm::abs(part.scale), glm::dvec3(0.1)));
 }
 
-/// What the extent of mesh files says of their unit; "" if nothing is odd. A metre is the unit of SDF. A
-/// seabed or a pipeline of kilometres is usual: its height is far less than its length.
+/// A hint that mesh files have the wrong unit (SDF uses metres); "" if their extents look right. A seabed or
+/// a pipeline of kilometres is usual: its height is far less than its length.
 std::string unit_hint(const render::Body& body) {
   constexpr double large_m = 2000.0;
   constexpr double small_m = 0.005;
@@ -170,13 +170,14 @@ std::string unit_hint(const render::Body& body) {
   return std::ranges::any_of(mesh_sizes(body, is_made_small), is_tiny) ? "is its mesh scaled twice?" : "";
 }
 
-/// "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete", of the first bodies.
+/// Adds lines such as "body     pier: 4.0 x 4.0 x 20.0 m at (10.0, 0.0, -10.0), concrete" for the first
+/// bodies.
 void Check::list_bodies(const render::World& world) {
   constexpr std::size_t most = 50;
   const std::vector<BodyBox> boxes = boxes_of(world);
   for (std::size_t i = 0; i < std::min(most, world.bodies.size()); ++i) {
     const render::Body& body = world.bodies[i];
-    // To the micrometre: turned bodies are off by the last digit, which reads as 2e-16.
+    // Rounded to the micrometre: rotated bodies are off in the last digit and would print as 2e-16.
     const auto rounded = [](const glm::dvec3& length_m) { return 1e-6 * glm::round(1e6 * length_m); };
     const glm::dvec3 size = rounded(boxes[i].max_m - boxes[i].min_m);
     const glm::dvec3 middle = rounded(body.T_world_body * (0.5 * (boxes[i].min_m + boxes[i].max_m)));
@@ -197,7 +198,7 @@ void Check::list_bodies(const render::World& world) {
   }
 }
 
-/// Before the world, which is looked at from where it begins. What is wrong with it is said among the poses.
+/// Runs before the world is loaded, because it gives the start pose. check_poses() reports its errors.
 void Check::load_trajectory() {
   const std::optional<TrajectoryInput>& input = config_.poses.trajectory;
   if (!input) {
@@ -210,7 +211,7 @@ void Check::load_trajectory() {
   }
 }
 
-/// Where the vehicle begins, and the key that says so; nullopt where poses alone will tell.
+/// Start pose of the vehicle and the key that sets it; nullopt if only live poses give it.
 std::optional<std::pair<const char*, render::Pose>> Check::start() const {
   if (config_.poses.T_world_vehicle_initial) {
     return std::pair{"poses.initial", *config_.poses.T_world_vehicle_initial};
@@ -221,7 +222,7 @@ std::optional<std::pair<const char*, render::Pose>> Check::start() const {
   return std::nullopt;
 }
 
-/// What the heads would see where the vehicle begins, and what a ping takes here.
+/// Reports each head's view from the start pose, and the time that a ping takes there.
 void Check::check_start(const render::World& world) {
   if (config_.engine == render::EngineKind::gpu) {
     for (const HeadConfig& head : config_.heads) {
@@ -305,7 +306,7 @@ void Check::check_world() {
     try {
       check_start(world);
     } catch (const render::RequestError&) {
-      // The sampling, of which check_head() tells.
+      // Bad sampling; check_head() reports it.
     }
     if (!config_.vehicle_model.empty()) {
       report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
@@ -332,7 +333,7 @@ void Check::check_recording() {
                                         recording.pcapng ? " pcapng" : ""));
 }
 
-/// Writes into the folder, or into the nearest one above it that there is, and leaves nothing behind.
+/// Writes a temporary file into the folder, or into its nearest existing parent.
 void Check::try_folder(const std::filesystem::path& folder, const std::string& key) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -394,7 +395,7 @@ void Check::check_poses() {
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));
 }
 
-/// The end of a head's line.
+/// The end of a head's line in the summary.
 std::string rest_text(const HeadConfig& head) {
   const render::SonarSettings& acoustics = head.acoustics;
   return fmt::format("mode {}, absorption {:.1f} dB/km{}{}",
@@ -418,7 +419,7 @@ void Check::check_head(std::size_t index) {
   }
 }
 
-/// As the daemon does it: sockets, pseudo terminals and their links.
+/// Connects as the daemon does: sockets, pseudo terminals and their links.
 void Check::try_connecting(std::size_t head) {
   try {
     asio::io_context io;

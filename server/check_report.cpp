@@ -39,7 +39,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(0, last == std::string_view::npos ? 0 : last + 1));
 }
 
-/// A line that begins with blanks goes on with the area of the one before.
+/// A line that begins with blanks belongs to the area of the line before it.
 Json findings_json(const std::vector<std::string>& summary) {
   Json list = Json::array();
   std::string area;

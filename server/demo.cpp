@@ -34,8 +34,8 @@ namespace {
 namespace asio = boost::asio;
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds longest_start{120};  // of the daemon
-constexpr std::chrono::seconds longest_end{5};      // of each program that was asked to end
+constexpr std::chrono::seconds longest_start{120};  // until the daemon is ready
+constexpr std::chrono::seconds longest_end{5};      // of each program after SIGTERM
 
 constexpr const char* list_file = "demo/list.yaml";  // in the folder of configurations
 
@@ -43,7 +43,7 @@ fs::path folder_of_programs() {
   return fs::canonical("/proc/self/exe").parent_path();
 }
 
-/// Where the configurations lie. @throws std::runtime_error
+/// Folder of the configurations. @throws std::runtime_error
 fs::path folder_of_configurations() {
   const fs::path programs = folder_of_programs();
   for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
@@ -56,7 +56,7 @@ fs::path folder_of_configurations() {
                   programs.string(), list_file));
 }
 
-/// A program that runs, and its lines.
+/// A running program and its output lines.
 class Part {
  public:
   /// @param take is called with each line
@@ -117,7 +117,7 @@ class Part {
   process::child child_;
 };
 
-/// A template with what a line "summary key=value ..." says put in for each {key}.
+/// Replaces each {key} of a template by its value in a line "summary key=value ...".
 std::string filled_in(std::string text, const std::string& summary) {
   std::istringstream words(summary);
   for (std::string word; words >> word;) {
@@ -197,7 +197,7 @@ class Demo {
         }));
   }
 
-  /// Until `done`, a signal, or the end of a program. @return whether it is done
+  /// Waits until `done`, a signal, or the end of a program. @return true if done
   template <typename Done>
   bool wait(Done done, std::chrono::steady_clock::duration longest) {
     const auto end = std::chrono::steady_clock::now() + longest;
@@ -210,7 +210,7 @@ class Demo {
     return done();
   }
 
-  /// Ends all, the client first, so that it can say goodbye.
+  /// Ends all programs, the client first, so that it can close its connection. @return exit code
   int finish() {
     const Part* const fallen = first_that_ended();
     for (std::size_t i = parts_.size(); i-- > 0;) {
@@ -252,7 +252,7 @@ class Demo {
         io_.run_one_for(std::chrono::milliseconds(100));
       }
     }
-    io_.poll();  // its last lines
+    io_.poll();  // reads its last lines
   }
 
   DemoOptions options_;
@@ -263,7 +263,7 @@ class Demo {
   bool interrupted_ = false;
   bool ready_ = false;
   std::string summary_;
-  std::vector<std::unique_ptr<Part>> parts_;  ///< in the order of their start
+  std::vector<std::unique_ptr<Part>> parts_;  ///< in start order
 };
 
 }  // namespace

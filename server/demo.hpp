@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard demo`: the daemon, poses and a client at once, to see at once what sonard does.
+// `sonard demo`: starts the daemon, poses and a client, to show what sonard does.
 #pragma once
 
 #include <chrono>
@@ -12,18 +12,19 @@ namespace sonard::server {
 
 struct DemoOptions {
   std::string name;                          ///< one of demo_names(); empty: the first
-  std::filesystem::path out;                 ///< pictures and the programs' lines go there; empty: nowhere
+  std::filesystem::path out;                 ///< folder of pictures and the programs' output; empty: none are
+                                             ///< written
   std::optional<std::chrono::seconds> time;  ///< nullopt: until SIGINT or SIGTERM
 };
 
-/// The entries of configs/demo/list.yaml, in their order.
+/// The entries of configs/demo/list.yaml, in file order.
 std::vector<std::string> demo_names();
 
-/// Starts `sonard run` with the configuration of the demo and, when it is ready, `posecast` and `sonarview`
-/// that lie beside this program; prints where to look, and the client's lines. What it needs is looked for in
-/// ../share/sonard/configs of the program, as installed, then in the source tree it was built in.
-/// @return exit_clean; exit_config for a demo that there is not; exit_internal, with the last lines of the
-/// program that ended by itself
+/// Starts `sonard run` with the configuration of the demo. When it is ready, starts `posecast` and
+/// `sonarview` from the folder of this program. Prints where to look, and the client's lines. Configurations
+/// come from ../share/sonard/configs beside the program (installed), else from the source tree of its build.
+/// @return exit_clean; exit_config for an unknown demo; exit_internal if a program ended by itself (its last
+/// lines are printed)
 int run_demo(const DemoOptions& options);
 
 }  // namespace sonard::server

@@ -27,7 +27,7 @@ double seconds(std::chrono::nanoseconds time) {
   return 1e-9 * static_cast<double>(time.count());
 }
 
-/// Roll, pitch and yaw as the configuration has them: about fixed x, y, z, positive pitch is nose down.
+/// Roll, pitch and yaw as in the configuration: about fixed x, y, z; positive pitch is nose down.
 std::string angles_text(const pose::Quat& q) {
   constexpr double degrees = 180.0 / std::numbers::pi;
   const double sine = std::fmin(1.0, std::fmax(-1.0, 2 * (q.w * q.y - q.x * q.z)));
@@ -59,7 +59,7 @@ void print_newest(const pose::PoseSample& sample) {
   print_names("bodies  ", names_of(sample.bodies));
 }
 
-/// Why an input has given no pose.
+/// The likely reason why an input has given no pose.
 std::string likely_cause(const PoseSource& source) {
   const PoseSourceCounters& counters = source.counters();
   if (counters.bad_value > 0) {
@@ -78,7 +78,7 @@ std::string likely_cause(const PoseSource& source) {
   return "nothing arrived: " + source.silence_hint();
 }
 
-/// What looks wrong about the place of each head by a pose that arrived.
+/// Prints each head's view from a received pose, and findings about it.
 void print_places(const DaemonConfig& config, const render::World& world, const pose::PoseSample& sample) {
   std::vector<PosedBody> moved;
   for (const pose::NamedTransform& body : sample.bodies) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard check --listen`: what arrives on the pose inputs of a configuration.
+// `sonard check --listen`: reports what the pose inputs of a configuration receive.
 #pragma once
 
 #include <chrono>
@@ -9,13 +9,13 @@
 
 namespace sonard::server {
 
-/// Opens the live pose inputs, listens, and prints for each of them who sends, how often, what it names, and
-/// where the vehicle was last, with what looks wrong about the stream and, by a ping of each head rendered
-/// from there on the CPU, about the place; of an input that gives no pose, what may be the cause. Complaints
-/// of the inputs go to the log.
+/// Opens the live pose inputs and listens. For each input it prints the senders, their rate, the names they
+/// send, and the last pose of the vehicle, with findings about the stream. It renders a ping of each head
+/// from that pose on the CPU and prints findings about the place. If an input gives no pose, it prints the
+/// likely cause. Warnings of the inputs go to the log.
 /// @param config with the vehicle filled in (resolve_mounts())
-/// @return exit_clean when a pose of the vehicle came on any of them; exit_config when none did, or no input
-/// is live; exit_network when one cannot be opened
+/// @return exit_clean if any input gave a pose of the vehicle; exit_config if no input did or none is live;
+/// exit_network if an input cannot be opened
 int listen_to_poses(const DaemonConfig& config, const render::World& world,
                     std::chrono::nanoseconds duration);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program: command line, log, and the one place where exceptions become exit codes.
+// The program: command line and log; the one place that maps exceptions to exit codes.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -60,8 +60,8 @@ constexpr const char* exit_code_help =
 
 struct CommandLine {
   std::filesystem::path config;
-  std::string log_level;   ///< empty: as the configuration says
-  std::string log_format;  ///< the same
+  std::string log_level;   ///< empty: from the configuration
+  std::string log_format;  ///< empty: from the configuration
   bool json = false;       ///< of check and selftest
   bool no_network = false;
   double listen_s = 0.0;  ///< 0: check does not listen
@@ -90,15 +90,15 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
   return spdlog::level::err;
 }
 
-/// One line per event on stderr, UTC.
+/// Logs one line per event to stderr, in UTC.
 void start_log() {
   auto logger = std::make_shared<spdlog::logger>("sonard", std::make_shared<StderrSink>());
   spdlog::set_default_logger(std::move(logger));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
 }
 
-/// Problems go out bare, so that editors can jump to the place they name; among lines of JSON they are one,
-/// too.
+/// Prints a problem without a log prefix, so that editors can jump to the place it names. In JSON mode it is
+/// a JSON line like the others.
 bool logs_json = false;
 void print_error(const std::string& line) {
   if (logs_json) {
@@ -116,7 +116,7 @@ void set_log(const std::string& level, const std::string& format) {
   }
 }
 
-/// All that a StartError says, with the places of its key.
+/// Prints all lines of a StartError, with the place of its key.
 void print_start_error(const LoadedConfig& loaded, const StartError& error) {
   print_error(loaded.problem_with(error.key, error.what()));
   for (const std::string& line : error.more) {
@@ -124,7 +124,7 @@ void print_start_error(const LoadedConfig& loaded, const StartError& error) {
   }
 }
 
-/// Loads CONFIG, and logs as it says from then on.
+/// Loads CONFIG and sets up the log as configured.
 /// @param text of CONFIG
 LoadedConfig load_and_log(const CommandLine& arguments, const std::string& text) {
   if (!arguments.log_format.empty()) {
@@ -204,7 +204,7 @@ int exit_code_of(const ConfigError& error) {
   return error.only_of_network() ? exit_network : exit_config;
 }
 
-/// @throws ConfigError, unless it goes out as JSON
+/// @throws ConfigError, unless it is printed as JSON
 int check(const CommandLine& arguments) {
   const auto json_goes_out = [](const std::string& json) { fmt::print("{}\n", json); };
   try {
@@ -219,7 +219,7 @@ int check(const CommandLine& arguments) {
     }
     print_report(arguments.config, report);
     if (code == exit_clean && arguments.listen_s > 0.0) {
-      spdlog::set_level(spdlog::level::warn);  // who sends what is in the report
+      spdlog::set_level(spdlog::level::warn);  // the report already shows the senders
       return listen_to_poses(report.config, *report.world,
                              std::chrono::nanoseconds(std::llround(1e9 * arguments.listen_s)));
     }
@@ -246,7 +246,7 @@ int render_offline(const OfflineArguments& arguments) {
   }
 }
 
-/// The command, with what it throws turned into its exit code.
+/// Runs a command and maps its exceptions to exit codes.
 template <typename Command>
 int guarded(const Command& command) {
   try {
@@ -268,7 +268,7 @@ int guarded(const Command& command) {
   } catch (const OutputError& error) {
     print_error(error.what());
     return exit_output;
-  } catch (const CLI::ValidationError& error) {  // of an option whose meaning depends on the configuration
+  } catch (const CLI::ValidationError& error) {  // from an option whose meaning depends on the configuration
     print_error(error.what());
     return exit_usage;
   } catch (const LogError& error) {
@@ -287,7 +287,7 @@ int guarded(const Command& command) {
   }
 }
 
-/// For the help, which must not fail where the program was copied alone.
+/// For --help, which must work even if only the program was copied.
 std::string names_of_demos() {
   try {
     return fmt::format("NAME is one of: {}", fmt::join(demo_names(), ", "));

@@ -26,11 +26,11 @@
 namespace sonard::server {
 namespace {
 
-// Numbers of the descriptors that hold the texts.
+// Environment variables with the numbers of the descriptors that hold the texts.
 constexpr const char* text_variable = "SONARD_CONFIG_FD";
 constexpr const char* fallback_variable = "SONARD_FALLBACK_CONFIG_FD";
 
-/// A text in memory, which programs that this one starts inherit.
+/// A text in memory; child processes and the next program of this process inherit it.
 class InheritableText {
  public:
   explicit InheritableText(const std::string& text) : fd_(memfd_create("sonard-config", 0)) {
@@ -56,7 +56,8 @@ class InheritableText {
   int fd_;
 };
 
-/// The text that a variable names; nullopt without it. The variable is removed, and the descriptor closed.
+/// The text of the descriptor that a variable names; nullopt if it is not set. Removes the variable and
+/// closes the descriptor.
 std::optional<std::string> take_text(const char* variable) {
   const char* const number = std::getenv(variable);
   if (number == nullptr) {
@@ -78,15 +79,15 @@ std::optional<std::string> take_text(const char* variable) {
   return text;
 }
 
-/// `sonard check --no-network` of a text. Its lines go to the log.
-/// @return its first line; nullopt: it found nothing
+/// Runs `sonard check --no-network` on a configuration text. Its lines go to the log as warnings.
+/// @return nullopt if the check passed; else its first line, or its exit code if it printed nothing
 std::optional<std::string> checked_apart(const std::filesystem::path& file, const std::string& text,
                                          const std::stop_token& stop) {
   const InheritableText handed_on(text);
   process::environment environment = boost::this_process::environment();
   environment[text_variable] = handed_on.number();
   process::ipstream problems;
-  process::group group;  // with the processes that read its meshes
+  process::group group;  // includes the processes that read its meshes
   process::child check("/proc/self/exe", "check", "--no-network", file.string(), environment, group,
                        process::std_in<process::null, process::std_out> process::null,
                        process::std_err > problems);
@@ -105,15 +106,15 @@ std::optional<std::string> checked_apart(const std::filesystem::path& file, cons
   return first.value_or(fmt::format("the check ended with {}", check.exit_code()));
 }
 
-/// Whether a socket of a running daemon is in the way of another; then it is free when the daemon begins
-/// anew.
+/// True if a socket of the running daemon conflicts with another. It is free once the daemon restarts.
 bool holds(const PlannedSocket& held, const PlannedSocket& wanted) {
   return held.transport == wanted.transport && held.endpoint.port == wanted.endpoint.port &&
          (held.endpoint.address == wanted.endpoint.address || held.endpoint.address == 0 ||
           wanted.endpoint.address == 0);
 }
 
-/// What a configuration needs and another does not hold.
+/// The first socket or recording folder that `wanted` needs, `in_use` does not hold, and cannot be had;
+/// nullopt if there is no such problem.
 std::optional<std::string> missing(const LoadedConfig& wanted, const DaemonConfig& in_use) {
   const std::vector<PlannedSocket> held = planned_sockets(in_use);
   for (const PlannedSocket& socket : planned_sockets(wanted.config)) {
@@ -136,7 +137,7 @@ std::optional<std::string> missing(const LoadedConfig& wanted, const DaemonConfi
   return std::nullopt;
 }
 
-/// Replaces the process. Returns only if an order to end has come.
+/// Replaces the process. Returns only if SIGINT or SIGTERM has arrived.
 void begin_anew_with(const std::string& text, const std::string* fallback, char** argv) {
   const InheritableText handed_on(text);
   setenv(text_variable, handed_on.number().c_str(), 1);
@@ -144,8 +145,8 @@ void begin_anew_with(const std::string& text, const std::string* fallback, char*
   if (fallback != nullptr) {
     setenv(fallback_variable, way_back.emplace(*fallback).number().c_str(), 1);
   }
-  std::signal(SIGHUP, SIG_IGN);  // until the new program has its handler
-  hold_orders_to_end();          // the new program obeys those that come from here on
+  std::signal(SIGHUP, SIG_IGN);  // until the new program has set its handler
+  hold_orders_to_end();          // later signals go to the new program
   if (!ordered_to_end()) {
     ::execv("/proc/self/exe", argv);
     throw std::system_error(errno, std::generic_category(), "cannot begin anew");

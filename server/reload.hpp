@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SIGHUP: the configuration is read again, and the daemon begins anew with the bytes that were checked.
+// SIGHUP: reads the configuration again and restarts the daemon with the checked bytes.
 #pragma once
 
 #include <filesystem>
@@ -11,28 +11,28 @@
 
 namespace sonard::server {
 
-/// Configurations that the program before this one in the same process, or the parent, has handed on.
+/// Configurations handed on by the parent, or by the previous program in the same process.
 struct InheritedConfig {
-  std::optional<std::string> text;      ///< stands for the file
-  std::optional<std::string> fallback;  ///< what was in use before; the way back if `text` cannot be served
+  std::optional<std::string> text;      ///< used instead of the file
+  std::optional<std::string> fallback;  ///< the previous one, for use if `text` cannot be served
 };
 
-/// Called once, before anything else is opened.
+/// Reads and removes the inherited configurations. Call it once, before anything else is opened.
 InheritedConfig inherit_config();
 
 class Reload {
  public:
-  /// @param text of the configuration in use, which outlives this
+  /// @param text of the configuration in use; `in_use` must outlive this object
   Reload(const DaemonConfig& in_use, std::string text);
 
-  /// Reads the file once and checks these bytes: `sonard check --no-network` in a separate process, then
-  /// the ports and the recording folder that the configuration in use does not hold. Blocks for as long as
-  /// the world takes to load, or until a stop is requested. Any one thread.
-  /// @return why the daemon cannot begin anew; nullopt: it can
+  /// Reads the file once and checks these bytes. First `sonard check --no-network` runs in a separate
+  /// process, then the ports and the recording folder are tried that the configuration in use does not hold.
+  /// Blocks until the world is loaded or a stop is requested. Can be called on any one thread.
+  /// @return why the daemon cannot restart; nullopt if it can
   std::optional<std::string> check(const std::stop_token& stop);
 
-  /// Replaces the process by a new one with the same command line and the bytes that were checked. Returns
-  /// only if an order to end has come meanwhile. @throws std::system_error
+  /// Replaces the process by a new one with the same command line and the checked bytes. Returns only if
+  /// SIGINT or SIGTERM arrived meanwhile. @throws std::system_error
   void begin_anew(char** argv) const;
 
  private:
@@ -41,7 +41,7 @@ class Reload {
   std::string checked_;
 };
 
-/// Begins anew with the configuration that was in use before. As Reload::begin_anew().
+/// Restarts with the previous configuration, like Reload::begin_anew().
 void go_back_to(const std::string& fallback, char** argv);
 
 }  // namespace sonard::server

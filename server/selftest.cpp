@@ -29,19 +29,19 @@ constexpr const char* what_to_install =
     "(groups\n"
     "         video and render). In a container: docs/gpu.md.\n";
 
-/// What `selftest` found out, which goes out as text or as JSON.
+/// Results of `selftest`, printed as text or JSON.
 struct Report {
   struct Engine {
     render::EngineKind kind = render::EngineKind::cpu;
     render::SelfTestResult result;
-    std::string problem;  ///< why it cannot be had; empty: it can
+    std::string problem;  ///< why it is unavailable; empty: it is available
   };
   std::vector<render::GlDevice> devices;
   std::optional<render::GlDeviceChoice> taken;
-  std::string device_problem;  ///< why no device is taken
+  std::string device_problem;  ///< why no device is chosen
   std::vector<Engine> engines;
   std::optional<render::EngineTrial> trial;
-  std::string problem;  ///< why it failed; empty: it passed
+  std::string problem;  ///< why the test failed; empty: it passed
 };
 
 void look_at_devices(Report& report, const std::string& wanted) {
@@ -59,7 +59,7 @@ void test(Report& report, render::RendererOptions options, render::EngineKind en
   report.engines.push_back({engine, render::run_self_test(options), ""});
 }
 
-/// @throws render::RendererError, with what was found until then in the report
+/// @throws render::RendererError; `report` then holds the results so far
 void run_tests(Report& report, const render::RendererOptions& options) {
   using render::EngineKind;
   if (options.engine != EngineKind::cpu) {

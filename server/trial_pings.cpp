@@ -24,9 +24,9 @@ render::RendererOptions cpu_options(const DaemonConfig& config) {
   return options;
 }
 
-constexpr int bearings = 12;  // of a head that scans
+constexpr int bearings = 12;  // of a scanning head
 
-/// The vehicle's own model, if it has one, where the vehicle is.
+/// The vehicle's own model at the vehicle's pose; empty if it has none.
 std::vector<PosedBody> own_model(const DaemonConfig& config, const render::Pose& T_world_vehicle) {
   return config.vehicle_model.empty() ? std::vector<PosedBody>{}
                                       : std::vector<PosedBody>{{config.vehicle_model, T_world_vehicle}};
@@ -45,16 +45,16 @@ void TrialPings::move_bodies(const std::vector<PosedBody>& moved) {
 
 double TrialPings::cost_ms(std::size_t head, render::Pose T_world_vehicle) {
   constexpr int most = 3;
-  constexpr double long_ms = 2000.0;  // one such ping is enough to wait for
+  constexpr double long_ms = 2000.0;  // one ping that takes longer is enough
   double least_ms = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most && (i == 0 || least_ms < long_ms); ++i) {
-    T_world_vehicle.position_m.x += 1e-3;  // a world that stands still is not looked at again
+    T_world_vehicle.position_m.x += 1e-3;  // a small step, because an unchanged world is not traced again
     move_bodies(own_model(config_, T_world_vehicle));
     const ProcessorTime before = processor_time();
     renderer_.render_ping(usual_ping(config_.heads[head], T_world_vehicle), static_cast<int>(head));
     const ProcessorTime after = processor_time();
-    // This thread has a part in all the work. If other threads were held up it did more, and if it was held
-    // up, they did.
+    // This thread takes part in all the work. If other threads were held up, it did more; if it was held up,
+    // they did more.
     const auto share = (after.process - before.process) / render::usable_cores();
     const std::chrono::duration<double, std::milli> cost = std::max(after.thread - before.thread, share);
     least_ms = std::min(least_ms, cost.count());

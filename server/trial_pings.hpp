@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the heads of a configuration see from a pose of the vehicle, before anybody is served.
+// Views of a configuration's heads from a pose of the vehicle, rendered before serving.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,23 @@ class TrialPings {
   /// @param config with its mounts resolved (resolve_mounts()); outlives this object, as does the world
   TrialPings(const DaemonConfig& config, const render::World& world);
 
-  /// Renders one ping of a head; of one that scans one ahead, and one every 30 degrees. The first of a head
-  /// also builds what the next ones use.
-  /// @param moved bodies that are not where the world has them; the vehicle's own model moves by itself
-  /// @return what looks wrong there; empty: nothing does
-  /// @throws render::RequestError when the sampling cannot be had
+  /// Renders one ping of a head. A scanning head renders one ping ahead and one every 30 degrees. The first
+  /// ping of a head also builds caches for the next ones.
+  /// @param moved bodies that are not at their pose in the world; the vehicle's own model moves by itself
+  /// @return findings about the place; empty if nothing looks wrong
+  /// @throws render::RequestError if the sampling is not possible
   std::vector<Finding> ping(std::size_t head, const render::Pose& T_world_vehicle,
                             std::vector<PosedBody> moved = {});
 
-  /// Where the head looks, and what it would see of the bed: "forward and 20 degrees down; the bed below
-  /// ('seabed') is seen from 6.1 to 40 m". Renders nothing.
-  /// @param T_world_vehicle nullopt: not known, and nothing is said of the bed
+  /// Direction of the head and its view of the bed: "forward and 20 degrees down; the bed below ('seabed') is
+  /// seen from 6.1 to 40 m". Renders nothing.
+  /// @param T_world_vehicle nullopt: not known, and the text omits the bed
   std::string view(std::size_t head, const std::optional<render::Pose>& T_world_vehicle,
                    const std::vector<PosedBody>& moved = {}) const;
 
-  /// What a ping of a head takes here with the machine to itself, in milliseconds: the least of three, in
-  /// processor time, because other programs lengthen the time by the clock. Call ping() for the head first.
-  /// @throws render::RequestError when the sampling cannot be had
+  /// Time of a ping of a head on an idle machine, in milliseconds: the least of three, as processor time,
+  /// because other programs lengthen the wall time. Call ping() for the head first.
+  /// @throws render::RequestError if the sampling is not possible
   double cost_ms(std::size_t head, render::Pose T_world_vehicle);
 
  private:

@@ -24,7 +24,7 @@ boost::system::error_code bind_error(const Endpoint& endpoint) {
   boost::system::error_code error;
   socket.open(Protocol::v4(), error);
   if constexpr (std::is_same_v<Protocol, asio::ip::tcp>) {
-    // Like the listener: connections of an earlier run that still linger are no obstacle.
+    // As for the listener: lingering connections of an earlier run are no obstacle.
     if (!error) {
       socket.set_option(asio::socket_base::reuse_address(true), error);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a socket can be bound.
+// Tests whether a socket can be bound.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace sonard::server {
 
-/// Binds the socket for a moment. @return why it cannot be bound; nullopt: it can
+/// Binds the socket for a moment. @return why it cannot be bound; nullopt if it can
 std::optional<std::string> obstacle_to_binding(const PlannedSocket& planned);
 
 }  // namespace sonard::server
