@@ -69,9 +69,9 @@ std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig
   }
 }
 
-constexpr unsigned threads_of_opengl = 6;  // of Mesa, beside one for each core
+constexpr unsigned threads_of_opengl = 6;  // Mesa's, in addition to one per core
 
-// By stream; null for a head that keeps nothing.
+// By stream; null for a head that dumps nothing.
 std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>& heads) {
   std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
   for (std::size_t i = 0; i < heads.size(); ++i) {
@@ -87,7 +87,7 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>&
   return dumps;
 }
 
-// Null when nothing is recorded.
+// Null if nothing is recorded.
 std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
   if (!config.recording) {
     return nullptr;
@@ -99,7 +99,7 @@ std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
   }
 }
 
-// Null when no page is served.
+// Null if no page is served.
 std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
   if (!config.web) {
     return nullptr;
@@ -111,23 +111,23 @@ std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
   }
 }
 
-// Everything that serves. Threads: main constructs it, waits in run() and owns its end; the I/O thread runs
-// `io_`, and with it pose inputs, history and heads; each RenderService has a render thread. Scanning heads
-// have one of their own: a line of theirs takes less than a millisecond, and is not to wait for a fan that
-// takes a hundred.
+// Runs everything that serves. Threads: main constructs it, waits in run() and ends it. The I/O thread runs
+// `io_` with pose inputs, history and heads. Each RenderService has a render thread. Scanning heads have
+// their own RenderService: a line takes less than a millisecond and must not wait for a fan that takes a
+// hundred.
 //
-// Shutdown, in the order of run(): main is told to end by a signal or by end(). It posts stop_io(), which
-// closes every socket and cancels every timer; joins the render threads, which finish the pings they are
-// working on; then gives up the work guard, so that `io_` runs out of work, and joins the I/O thread. Only
-// then is anything destroyed, on main, in the reverse order of the members.
+// Shutdown, in the order of run(): a signal or end() wakes main, which stops the page. It posts stop_io(),
+// which closes every socket and cancels every timer. It joins the render threads, which finish their current
+// pings. It drops the work guard, so that `io_` runs out of work, and joins the I/O thread. It stops the
+// recorder. Only then are the members destroyed, on main, in reverse order.
 class Daemon {
  public:
   Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
          Playback* playback, ReloadCheck may_begin_anew);
 
-  /// Serves until it shall end. Returns the exit code.
+  /// Serves until a signal or end(). Returns the exit code.
   int run();
-  /// False: the recorder's thread still waits for the disk.
+  /// False if the recorder's thread still waits for the disk.
   bool all_written() const { return all_written_; }
 
  private:
@@ -156,9 +156,9 @@ class Daemon {
   void end(int exit_code);
 
   SteadyClock clock_;
-  asio::io_context lifetime_;                          // of main: signals, and the request to end
+  asio::io_context lifetime_;                          // of main: signals and end()
   asio::posix::stream_descriptor signals_{lifetime_};  // see catch_signals()
-  std::uint8_t signal_ = 0;                            // read last
+  std::uint8_t signal_ = 0;                            // the last signal read
   int exit_code_ = exit_clean;                         // of main
   asio::io_context io_;
   Playback* playback_;  // may be null
@@ -168,21 +168,21 @@ class Daemon {
   PoseIntake intake_;
   std::unique_ptr<PoseInputs> inputs_;
   std::vector<std::unique_ptr<PingDump>> dumps_;
-  std::unique_ptr<Recorder> recorder_;                           // null when nothing is recorded
-  std::unique_ptr<WebServer> page_;                              // null when none is served
-  std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null where no head needs it
+  std::unique_ptr<Recorder> recorder_;                           // null if nothing is recorded
+  std::unique_ptr<WebServer> page_;                              // null if no page is served
+  std::unique_ptr<RenderService> fan_renderer_, beam_renderer_;  // null if no head needs it
   std::vector<std::unique_ptr<Head>> heads_;
   asio::steady_timer stream_timer_{io_}, address_timer_{io_};
   std::vector<PlannedSocket> other_sockets_;  // of poses and page
-  OwnAddresses other_addresses_;              // of these
+  OwnAddresses other_addresses_;              // of other_sockets_
   PeerLog address_log_;
-  bool io_stopped_ = false;     // of the I/O thread: no timer is set again
-  std::set<std::string> told_;  // codes of findings on poses that were logged, by input
+  bool io_stopped_ = false;     // of the I/O thread: timers are not set again
+  std::set<std::string> told_;  // codes of pose findings already logged, by input
   std::filesystem::path recorded_into_;
   std::string ready_line_;
   bool checking_ = false, check_again_ = false;  // of main
   bool all_written_ = true;
-  std::jthread check_;  // last: it uses lifetime_
+  std::jthread check_;  // last member: it uses lifetime_
 };
 
 Daemon::Daemon(const DaemonConfig& config, const render::World& world, const RendererFactory& make_renderer,
@@ -246,7 +246,7 @@ void Daemon::say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads,
   }
 }
 
-// Of the renderers in use: the GPU may be lost to one of them alone.
+// Engines of the renderers in use: one renderer may lose the GPU, the other keep it.
 std::string Daemon::engine_text() const {
   const std::string fans = fan_renderer_ ? fan_renderer_->renderer_description() : "";
   const std::string beams = beam_renderer_ ? beam_renderer_->renderer_description() : fans;
@@ -262,7 +262,7 @@ std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const Dae
                      : nullptr;
 }
 
-// From where the vehicle is, if that is known yet.
+// Renders from the vehicle's pose, or from the origin if no pose is known yet.
 void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
   const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
   const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
@@ -298,7 +298,7 @@ void Daemon::start_page(const DaemonConfig& config, const render::World& world) 
   spdlog::info("page: {}", page_->address());
 }
 
-// On the I/O thread.
+// Called on the I/O thread.
 DaemonStatus Daemon::status() const {
   DaemonStatus status;
   status.at = clock_.now();
@@ -352,8 +352,8 @@ void Daemon::poses_changed() {
   }
 }
 
-// Every two seconds; a finding is logged when it is new. A timer that has run out may call once more after
-// stop_io() has cancelled it.
+// Runs every two seconds and logs new findings. An expired timer may call it once more after stop_io() has
+// cancelled it.
 void Daemon::look_at_streams() {
   if (io_stopped_) {
     return;
@@ -377,7 +377,7 @@ void Daemon::look_at_streams() {
   });
 }
 
-// Every second: a lease may bring another address, a cable be pulled.
+// Runs every second: a DHCP lease may change an address, or a cable may be unplugged.
 void Daemon::look_at_addresses() {
   if (io_stopped_) {
     return;
@@ -431,7 +431,7 @@ int Daemon::run() {
   });
 
   lifetime_.run();
-  check_ = {};  // ends it, if it is under way
+  check_ = {};  // ends a running check
   tell_service_manager(exit_code_ == begins_anew ? "RELOADING=1" : "STOPPING=1");
 
   if (page_) {
@@ -496,7 +496,7 @@ void Daemon::checked(const std::optional<std::string>& problem) {
   }
 }
 
-// Checks now and then: a replay may end a little late. For its timer the same holds.
+// Polls, so a replay may end up to 0.1 s late. Its timer too may call it once more after stop_io().
 void Daemon::end_when_played() {
   if (playback_ == nullptr || io_stopped_) {
     return;
@@ -518,7 +518,7 @@ void Daemon::run_io() {
   try {
     io_.run();
   } catch (const std::exception& error) {
-    // No handler throws: bytes from outside cannot make one, so this is a defect, or something has run out.
+    // Handlers do not throw on bytes from outside, so this is a defect or an exhausted resource.
     const std::optional<std::string> sentence = exhausted(error);
     spdlog::critical("the I/O thread failed: {}", sentence.value_or(error.what()));
     end(sentence ? exit_exhausted : exit_internal);
@@ -537,7 +537,7 @@ void Daemon::stop_io() {
   }
 }
 
-// Callable from any thread.
+// Can be called from any thread.
 void Daemon::end(int exit_code) {
   asio::post(lifetime_, [this, exit_code] {
     exit_code_ = exit_code;
@@ -643,7 +643,7 @@ int serve(const DaemonConfig& config, const render::World& world, const Renderer
   const bool all_written = daemon->all_written();
   daemon.reset();
   if (!all_written && code != begins_anew) {
-    std::_Exit(code);  // a thread still waits for the disk, and uses what exit() destroys
+    std::_Exit(code);  // a thread still waits for the disk and uses objects that exit() destroys
   }
   return code;
 }

@@ -21,7 +21,7 @@
 namespace sonard::server {
 namespace {
 
-/// " (this process may have 15: ulimit -n)"; empty without such a limit.
+/// " (this process may have 15: ulimit -n)"; empty if there is no such limit.
 std::string limit_text(__rlimit_resource resource, rlim_t unit, std::string_view counted,
                        std::string_view command) {
   rlimit limit{};
@@ -52,13 +52,13 @@ std::optional<std::string> sentence_for(const std::error_code& code, std::string
   if (code == std::errc::too_many_files_open_in_system) {
     return fmt::format("out of file descriptors (of this machine: fs.file-max): {}", what);
   }
-  if (code == std::errc::resource_unavailable_try_again) {  // of a thread or process that cannot be started
+  if (code == std::errc::resource_unavailable_try_again) {  // a thread or process could not be started
     return out_of_threads();
   }
   return std::nullopt;
 }
 
-/// A library that starts threads throws in words, as that below Embree does.
+/// Embree's thread library throws exceptions that carry the error only in their text.
 bool tells_of_no_thread(const std::exception& error) {
   return std::string_view(error.what())
       .ends_with(std::make_error_code(std::errc::resource_unavailable_try_again).message());

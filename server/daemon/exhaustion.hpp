@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Descriptors, threads or memory have run out: a limit of the process or its machine, and no defect.
+// Errors of exhausted descriptors, threads or memory: a limit of the process or machine, not a defect.
 #pragma once
 
 #include <exception>
@@ -8,15 +8,15 @@
 
 namespace sonard::server {
 
-/// What has run out, in a sentence that names the limit; nullopt: the error is another one. Any thread.
+/// A sentence that names the exhausted resource and its limit; nullopt for other errors. Any thread.
 std::optional<std::string> exhausted(const std::exception& error);
 
-/// Starts so many threads at once and ends them: a library that waits for threads it could not start (Mesa
-/// does) hangs without a word. @throws std::system_error, which is exhausted()
+/// Starts `count` threads at once and ends them. Mesa hangs without a message if it cannot start its threads.
+/// @throws std::system_error, for which exhausted() returns a sentence
 void make_sure_of_threads(unsigned count);
 
-/// From here on an exception that nobody catches ends the process with that sentence and exit_exhausted,
-/// where something has run out: in a thread of a library, say. Any other aborts, as before.
+/// From now on, an uncaught exception in any thread ends the process: if a resource is exhausted, with that
+/// sentence and exit_exhausted. Any other exception aborts.
 void end_by_sentence_when_exhausted();
 
 }  // namespace sonard::server

@@ -20,10 +20,10 @@
 namespace sonard::server {
 namespace {
 
-// What the handler reads, which may do little and wait for nothing.
+// Read by the signal handler, which must not block.
 std::atomic<int> write_end{-1};
 std::atomic<std::int64_t> grace_ns{0};
-std::atomic<std::int64_t> deadly_from_ns{0};  // 0: there was no order to end yet
+std::atomic<std::int64_t> deadly_from_ns{0};  // 0: no SIGINT or SIGTERM yet
 static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 std::int64_t monotonic_ns() {
@@ -46,7 +46,7 @@ extern "C" void on_signal(int signal) {
   }
   const auto number = static_cast<std::uint8_t>(signal);
   if (passed_on && ::write(write_end, &number, 1) != 1) {
-    // Full: there are enough bytes to read.
+    // The pipe is full: enough bytes wait to be read.
   }
   errno = error;
 }
@@ -56,7 +56,7 @@ extern "C" void on_signal(int signal) {
 void open_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) < 0 && errno == EBADF) {
-      // The lowest number that is free, and that is this one.
+      // Takes the lowest free number, which is this one.
       static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_RDONLY : O_WRONLY));
     }
   }
@@ -102,12 +102,12 @@ void tell_service_manager(std::string_view line) {
   }
   std::memcpy(address.sun_path, path, length);
   if (path[0] == '@') {
-    address.sun_path[0] = '\0';  // the abstract namespace
+    address.sun_path[0] = '\0';  // abstract namespace
   }
   const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket >= 0) {
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length);
-    // A manager that does not listen finds out by its own time-out.
+    // Errors are ignored: the manager then notices by its own time-out.
     static_cast<void>(::sendto(socket, line.data(), line.size(), MSG_NOSIGNAL,
                                reinterpret_cast<const sockaddr*>(&address), size));
     ::close(socket);

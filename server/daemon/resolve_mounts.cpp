@@ -10,7 +10,7 @@
 namespace sonard::server {
 namespace {
 
-/// By its path, or by the end of it. All of them: "".
+/// Sonars whose path is or ends with the name; all sonars for "".
 std::vector<const render::WorldSonar*> sonars_named(const render::World& world, const std::string& name) {
   std::vector<const render::WorldSonar*> found;
   for (const render::WorldSonar& sonar : world.sonars) {
