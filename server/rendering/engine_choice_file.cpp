@@ -56,7 +56,7 @@ std::vector<Line> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// Names and times of change of what lies in a folder, in order; empty where there is no such folder.
+/// Sorted names and modification times of a folder's entries; empty if the folder does not exist.
 std::string listing(const char* folder, const std::string& start) {
   std::vector<std::string> names;
   std::error_code ignored;
@@ -121,7 +121,7 @@ void EngineChoiceFile::keep(const std::string& situation, const KeptChoice& choi
   }
   std::error_code ignored;
   fs::create_directories(file_.parent_path(), ignored);
-  // Another daemon sees the old file or the new one, never a half.
+  // Other daemons must never see half a file.
   fs::path fresh = file_;
   fresh += fmt::format(".{}", ::getpid());
   std::ofstream stream(fresh, std::ios::trunc);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::size_t most_unknown_bodies = 16;
 
-/// Whether the kernel may refuse memory to this process. Elsewhere a request always succeeds, and proves
+/// True if the kernel may refuse memory to this process. Otherwise a request always succeeds and proves
 /// nothing.
 bool memory_is_limited() {
   static const bool strict = [] {
@@ -38,8 +38,8 @@ bool memory_is_limited() {
   return strict || (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY);
 }
 
-/// Room for what becomes of a ping on other threads, which cannot give it up half done: its messages, records
-/// and pictures.
+/// Tests for room for a ping's messages, records and pictures on other threads, which cannot give up a ping
+/// half done.
 /// @throws std::bad_alloc
 void make_sure_of_room(const render::PingSamples& samples) {
   if (!memory_is_limited()) {
@@ -48,7 +48,7 @@ void make_sure_of_room(const render::PingSamples& samples) {
   constexpr std::size_t at_least_bytes = 4 << 20;
   constexpr std::size_t copies = 12;
   const std::size_t bytes = at_least_bytes + copies * (samples.u8.size() + 2 * samples.u16.size());
-  void* volatile room = std::malloc(bytes);  // volatile: so that it is really asked for
+  void* volatile room = std::malloc(bytes);  // volatile: so that the allocation is not optimised away
   if (room == nullptr) {
     throw std::bad_alloc();
   }
@@ -65,14 +65,14 @@ struct RenderService::Impl {
   struct Entry {
     std::shared_ptr<const RenderJob> job;  ///< null: a warm-up
     Done done;
-    std::optional<WarmUp> warm_up{};  ///< set: this is no ping, and has no `done`
+    std::optional<WarmUp> warm_up{};  ///< set: a warm-up, without `done`
   };
 
-  // Constant once the constructor has returned.
+  // Constant after the constructor.
   RenderServiceHooks hooks;
   std::size_t capacity = 0;
 
-  // Shared, under the mutex.
+  // Shared; guarded by the mutex.
   std::mutex mutex;
   std::string description;
   std::condition_variable wake;
@@ -145,7 +145,8 @@ void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
 }
 
 bool RenderService::withdraw(int stream) {
-  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: the callback owns things of others
+  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: its callback owns objects of other
+                                         // classes
   const std::lock_guard lock(impl_->mutex);
   const auto entry = std::find_if(
       impl_->queue.begin(), impl_->queue.end(),
@@ -177,7 +178,7 @@ void RenderService::Impl::describe(const PingRenderer& renderer) {
 }
 
 void RenderService::Impl::close_queue() {
-  std::deque<Entry> forgotten;  // destroyed outside the lock: the callbacks own things of others
+  std::deque<Entry> forgotten;  // destroyed outside the lock: the callbacks own objects of other classes
   {
     const std::lock_guard lock(mutex);
     stopping = true;
@@ -196,7 +197,7 @@ void RenderService::Impl::run(const RendererFactory& make_renderer, std::promise
     ready.set_exception(std::current_exception());
     return;
   }
-  ready.set_value();  // from here on make_renderer may be gone
+  ready.set_value();  // make_renderer may be destroyed from here on
 
   try {
     serve(*renderer);
@@ -228,7 +229,7 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
     if (result.error.empty() && hooks.observe) {
       hooks.observe(*entry->job, result.samples);
     }
-    // std::function wants copyable captures, so the samples travel behind a pointer.
+    // std::function needs copyable captures, so a pointer holds the samples.
     auto shared = std::make_shared<RenderResult>(std::move(result));
     hooks.post([done = std::move(entry->done), shared] { done(std::move(*shared)); });
   }
@@ -244,7 +245,7 @@ void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
   }
 }
 
-/// This one and those that wait behind it while all bodies stay where they are; none if it is alone.
+/// This ping and the waiting pings that move no body; empty if this ping is the only one.
 std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob& first) {
   std::vector<std::shared_ptr<const RenderJob>> waiting;
   {
@@ -266,7 +267,7 @@ std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob&
   return pings;
 }
 
-/// @param next what next_pings() said
+/// @param next from next_pings()
 RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job,
                                          const std::vector<render::StreamPing>& next) {
   RenderResult result;
@@ -280,7 +281,7 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {
     result.error = error.what();
-  } catch (const std::bad_alloc&) {  // one client's wish does not end the others
+  } catch (const std::bad_alloc&) {  // a too large request must not end other clients
     result.samples = {};
     renderer.forget(job.stream);
     result.error = "memory has run out for this ping; a shorter range or fewer bins take less";
@@ -290,7 +291,7 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
 
 void RenderService::Impl::move_bodies(PingRenderer& renderer, const RenderJob& job) {
   for (const PosedBody& body : job.bodies) {
-    // Names come from the network: a publisher that invents new ones for ever fills neither memory nor log.
+    // Names come from the network: invented names must not fill memory or log.
     if (!renderer.set_body_pose(body.name, body.T_world_body) &&
         unknown_bodies.size() < most_unknown_bodies && unknown_bodies.insert(body.name).second) {
       spdlog::warn("the pose stream moves body '{}', which the world does not have", body.name);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The render thread: owns the renderer and its GL context, takes jobs from the I/O thread, hands results
-// back.
+// The render thread: owns the renderer and its GL context, takes jobs from the I/O thread, returns results.
 #pragma once
 
 #include <cstddef>
@@ -17,32 +16,31 @@
 
 namespace sonard::server {
 
-/// The renderer's interface to the service, so that tests can replace it. All calls come from the
-/// render thread.
+/// The renderer's interface to the service, so that tests can replace it. All calls come from the render
+/// thread.
 class PingRenderer {
  public:
   virtual ~PingRenderer() = default;
   /// The engine in use, one line.
   virtual std::string description() const = 0;
-  /// @return false when the world has no such body.
+  /// @return false if the world has no such body
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
-  /// @throws render::RequestError (this ping cannot be made), render::RendererError (none can);
-  /// std::bad_alloc, and the stream is to be forgotten
+  /// @throws render::RequestError (this ping is impossible), render::RendererError (all pings are);
+  /// std::bad_alloc (call forget() for the stream)
   virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
-  /// Gives back what is kept of this stream; its next ping is as its first one.
+  /// Frees all caches of this stream; its next ping is rendered like its first.
   virtual void forget(int /*stream*/) {}
-  /// Prepares what pings like these need: the engine, trees, shaders, memory. Called once, before the first
-  /// ping.
+  /// Prepares the engine, trees, shaders and memory for such pings. Called once, before the first ping.
   /// @throws as render_ping()
   virtual void warm_up(const std::vector<render::StreamPing>& /*first_pings*/) {}
-  /// These are rendered next, one by one; they move no body. What they have in common may begin.
+  /// Announces the pings that are rendered next, one by one; they move no body. Common work may start.
   /// @throws render::RendererError
   virtual void begin_pings(const std::vector<render::StreamPing>& /*pings*/) {}
   /// Statistics of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
 
-/// Makes the renderer; called once, on the render thread, where a GL context must be born.
+/// Makes the renderer; called once, on the render thread, because a GL context belongs to its thread.
 using RendererFactory = std::function<std::unique_ptr<PingRenderer>()>;
 
 /// One ping to render.
@@ -56,8 +54,8 @@ struct RenderJob {
 };
 
 struct RenderResult {
-  render::PingSamples samples;  ///< empty when `error` is not
-  std::string error;            ///< why this ping cannot be made; the service continues
+  render::PingSamples samples;  ///< empty if `error` is set
+  std::string error;            ///< why this ping cannot be rendered; the service continues
   render::PingStatistics statistics;
 };
 
@@ -66,43 +64,43 @@ using Post = std::function<void(std::function<void()>)>;
 
 struct RenderServiceHooks {
   Post post;  ///< to the I/O thread
-  /// Called once, on the I/O thread, when the renderer fails for good. Nothing is rendered after that: a
-  /// daemon that continued would serve zeros.
+  /// Called once, on the I/O thread, if the renderer fails permanently. Nothing is rendered after that, and
+  /// the daemon must not go on serving zeros.
   std::function<void(const std::string& what)> on_failure;
-  /// Optional; sees each rendered ping on the render thread before it is handed back.
+  /// Optional; called with each rendered ping on the render thread, before the result is returned.
   std::function<void(const RenderJob&, const render::PingSamples&)> observe;
 };
 
-/// Owns the render thread. Every member function may be called from any thread; stop() and the destructor
-/// from one at a time.
+/// Owns the render thread. All member functions are thread-safe, but stop() and the destructor must not run
+/// at the same time.
 ///
-/// Jobs wait in a queue of `stream_count` places: each head has at most one job outstanding, so it cannot
-/// overflow. Shutdown: stop() forgets the waiting jobs, lets the ping being rendered finish, and joins.
-/// Results already posted may still arrive after stop(); the submitter must tolerate that.
+/// Jobs wait in a queue of `stream_count` places. Each head has at most one job outstanding, so the queue
+/// cannot overflow. Shutdown: stop() drops the waiting jobs, lets the current ping finish, and joins. Results
+/// already posted may still arrive after stop(); the submitter must accept that.
 class RenderService {
  public:
   using Done = std::function<void(RenderResult)>;
 
   /// Returns when the renderer is made.
-  /// @throws whatever the factory threw
+  /// @throws any exception of the factory
   RenderService(const RendererFactory& make_renderer, int stream_count, RenderServiceHooks hooks);
   ~RenderService();
   RenderService(const RenderService&) = delete;
   RenderService& operator=(const RenderService&) = delete;
 
-  /// PingRenderer::warm_up(); returns when it is done.
-  /// @throws whatever that threw; std::future_error when the service is stopped before
+  /// Runs PingRenderer::warm_up(); returns when it is done.
+  /// @throws any exception of warm_up(); std::future_error if the service is stopped first
   void warm_up(std::vector<render::StreamPing> first_pings);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
-  /// @throws std::logic_error when the queue is full: more than one job per stream was submitted
+  /// @throws std::logic_error if the queue is full: more than one job per stream was submitted
   void submit(RenderJob job, Done done);
-  /// Forgets the waiting job of a stream; its `done` is never called. @return false when none is waiting: it
-  /// has begun, and is answered as usual.
+  /// Drops the waiting job of a stream; its `done` is never called. @return false if no job is waiting: it
+  /// has begun and is answered as usual
   bool withdraw(int stream);
-  /// Ends the render thread after the ping it is working on. Harmless when called again.
+  /// Ends the render thread after its current ping. Can be called again.
   void stop();
 
-  /// PingRenderer::description() as of the newest ping: a GPU may have been lost since the start.
+  /// PingRenderer::description() as of the newest ping: the GPU may have been lost since the start.
   std::string renderer_description() const;
 
  private:

@@ -42,7 +42,7 @@ class WorldRenderer final : public PingRenderer {
       return;
     }
     for (const render::StreamPing& ping : first_pings) {
-      // The receiver, which keeps speckle from ping to ping, needs no warming.
+      // The receiver keeps speckle from ping to ping and needs no warm-up.
       renderer_.render_echo(ping.request, ping.stream);
     }
   }
@@ -52,7 +52,7 @@ class WorldRenderer final : public PingRenderer {
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
-  /// Unless an earlier start has. @return whether pings were rendered
+  /// Measures both engines, unless an earlier start has. @return true if pings were rendered
   bool measure_engines(const std::vector<render::StreamPing>& first_pings) {
     const std::string situation = situation_of(options_, world_, first_pings);
     if (const std::optional<KeptChoice> kept = choices_.find(situation); kept && take(*kept)) {
@@ -60,14 +60,14 @@ class WorldRenderer final : public PingRenderer {
     }
     const render::EngineTrial trial = render::choose_engine_at_start(renderer_, first_pings, options_.gpu);
     spdlog::info("engine auto: {}", describe(trial));
-    // A GPU that cannot be had is looked for again: that takes no time, and a driver may come.
+    // A GPU that is unavailable is looked for again: that takes no time, and a driver may be installed.
     if (!trial.gpu.empty()) {
       choices_.keep(situation, {trial.taken, describe(trial)});
     }
     return trial.software_gl.empty();
   }
 
-  /// @return false where that engine cannot be had any more
+  /// @return false if that engine is no longer available
   bool take(const KeptChoice& kept) {
     try {
       renderer_.use_engine(kept.taken);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the render thread renders with: a world and an engine.
+// Renderer of the render thread: a world and an engine.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,9 @@
 
 namespace sonard::server {
 
-/// For RenderService; the world outlives the factory. What it makes measures, under `auto`, both engines when
-/// it is warmed up, and keeps in `choices` which was faster, for the next start (EngineChoiceFile; empty: it
-/// measures each time). The self-test comes first: an engine that draws nothing must not get as far as a
-/// socket.
+/// A factory for RenderService; the world outlives it. It runs the self-test first, so that a broken engine
+/// never serves a socket. With `engine: auto`, the renderer measures both engines in warm_up(). It keeps the
+/// faster one in the file `choices` for the next start (EngineChoiceFile; empty: measures at each start).
 RendererFactory world_renderer_factory(const render::World& world, render::RendererOptions options,
                                        std::filesystem::path choices);
 
