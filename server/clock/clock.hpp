@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place where the daemon reads time.
+// The only place where the daemon reads time.
 #pragma once
 
 #include <time.h>
@@ -8,12 +8,11 @@
 
 namespace sonard::server {
 
-/// Nanoseconds on the clock of this process; only differences matter, and it never goes backwards. Everything
-/// in the daemon that has a time (arrival of a pose, deadline of a head, transmit time of a ping) has it
-/// here.
+/// Nanoseconds on the monotonic clock of this process; only differences matter. All times in the daemon use
+/// it: arrival of a pose, deadline of a head, transmit time of a ping.
 using TimePoint = std::chrono::nanoseconds;
 
-/// Tells the time. Components take a Clock, so a test can step time by hand. Callable from any thread.
+/// Source of time. Components take a Clock, so that a test can step time. Can be called from any thread.
 class Clock {
  public:
   virtual ~Clock() = default;
@@ -26,8 +25,7 @@ class SteadyClock final : public Clock {
   TimePoint now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
 };
 
-/// What to add to a time of SteadyClock to have nanoseconds since the Unix epoch, as of now: the wall clock
-/// may be set meanwhile.
+/// Offset from SteadyClock to nanoseconds since the Unix epoch, as of now: the wall clock may be set later.
 inline std::chrono::nanoseconds unix_time_offset() {
   const TimePoint before = std::chrono::steady_clock::now().time_since_epoch();
   const auto wall = std::chrono::system_clock::now().time_since_epoch();
@@ -35,7 +33,7 @@ inline std::chrono::nanoseconds unix_time_offset() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(wall) - (before + (after - before) / 2);
 }
 
-/// Processor time that was used so far; it stands still while a thread waits, or others have the core.
+/// Processor time used so far; it does not include waiting.
 struct ProcessorTime {
   std::chrono::nanoseconds thread{};   ///< by the calling thread
   std::chrono::nanoseconds process{};  ///< by all threads
