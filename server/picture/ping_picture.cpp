@@ -19,7 +19,7 @@ bool make_a_fan(const std::vector<double>& bearings_rad) {
          bearings_rad.front() > -quarter_turn_rad && bearings_rad.back() < quarter_turn_rad;
 }
 
-/// The commonest distance between neighbours.
+/// The most frequent bearing step between neighbours; 32 if there are fewer than two lines.
 int step_of(const std::map<int, picture::SweepLine>& lines) {
   std::map<int, int> counts;
   for (auto line = lines.begin(); line != lines.end() && std::next(line) != lines.end(); ++line) {

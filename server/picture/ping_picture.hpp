@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings of one head as a picture for people: a fan, or the newest turn of a scanning head.
+// Draws the pings of one head: a fan, or the newest turn of a scanning head.
 #pragma once
 
 #include <map>
@@ -12,14 +12,14 @@
 
 namespace sonard::server {
 
-/// Keeps what it takes to draw the next ping: the way from pixel to sample, and the lines of a turn. One
-/// thread at a time.
+/// Keeps data to draw the next ping: the map from pixel to sample, and the lines of a turn. One thread at a
+/// time.
 class PingPicture {
  public:
-  /// A line of a scanning head, for later pictures. Lines of another size begin anew.
+  /// Keeps a line of a scanning head for later pictures. A line of another size drops the earlier ones.
   void keep(const PingRecord& line);
-  /// A fan, or all lines that were kept, 400 pixels from the apex to the full range (CV_8UC3, BGR); empty
-  /// where beams make no fan.
+  /// Draws a fan, or all kept lines, 400 pixels from the apex to the full range (CV_8UC3, BGR). Empty if the
+  /// beams do not form a fan.
   cv::Mat draw(const PingRecord& ping);
 
  private:
