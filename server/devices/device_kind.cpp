@@ -12,8 +12,7 @@
 
 namespace sonard::server {
 
-// Looking straight up or down, a head that turns about the vertical cannot be told from one that rolls: then
-// roll is 0.
+// If the head looks straight up or down, heading and roll are not distinct: roll is then 0.
 SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m) {
   constexpr double vertical = 1e-6;
   constexpr double turn = 2 * std::numbers::pi;
@@ -32,7 +31,7 @@ SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<
   return readings;
 }
 
-// Bearings are positive to starboard, turns about z to port.
+// Bearings are positive to starboard, rotations about z to port.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad) {
   return T_world_mount * render::Pose{{0.0, 0.0, 0.0}, glm::angleAxis(-bearing_rad, glm::dvec3(0, 0, 1))};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of a kind of device to the server. Each kind has a folder beside this file.
+// The server's interface to a kind of device. Each kind has its own folder below this one.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ class io_context;
 
 namespace sonard::server {
 
-/// A device joined with its transport, as a Head runs it. Belongs to the I/O thread; constructor and
-/// destructor to the thread that owns the io_context while it does not run.
+/// A device joined with its transport, run by a Head. Belongs to the I/O thread. The thread that owns the
+/// io_context constructs and destroys it while the context does not run.
 class ConnectedDevice {
  public:
   ConnectedDevice() = default;
@@ -42,55 +42,56 @@ class ConnectedDevice {
   virtual Device& device() = 0;
   virtual Transport& transport() = 0;
 
-  /// From here on events that do not come by the transport are passed to `happen`.
+  /// From now on, events that do not come from the transport are passed to `happen`.
   virtual void start(std::function<void(Event)> /*happen*/) {}
   virtual void stop() {}
-  /// Called after each step, when its messages are sent: changes the transport where the device asks for it.
+  /// Called after each step, when its messages are sent; changes the transport if the device requests it.
   virtual void after_step() {}
 
-  /// Called now and then: a head that is named by its interface follows the address of that.
+  /// Called once a second, so that a head named by its interface can follow the interface's address.
   virtual void follow_addresses(const std::vector<InterfaceAddress>& /*now*/) {}
-  /// The addresses of this machine at which clients reach it; nullopt: those of HeadKind::sockets().
+  /// This machine's addresses at which clients reach the device; nullopt: the addresses of
+  /// HeadKind::sockets().
   virtual std::optional<std::vector<Ipv4>> own_addresses() const { return std::nullopt; }
 };
 
 class DeviceKind : public HeadKind {
  public:
-  /// A ping is one beam, at the bearing of the job; else it is a fan.
+  /// True if a ping is one beam, at the bearing of the job; false if it is a fan.
   virtual bool scanning() const = 0;
-  /// The head has sensors of attitude or depth: it is given SensorsRead.
+  /// True if the head has attitude or depth sensors: it receives SensorsRead.
   virtual bool has_sensors() const { return false; }
 
   /// Opens the sockets. @throws SocketError
   virtual std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                                    const Clock& clock) const = 0;
-  /// The keys of the head that a SocketError is about.
+  /// The configuration key that a SocketError is about.
   virtual std::string socket_key() const = 0;
 
-  /// A ping of the settings that clients usually ask for, for what is done ahead of the first ping.
+  /// A ping with the settings that clients usually request, for work before the first ping.
   virtual PingJob usual_job(const HeadConfig& head) const = 0;
   virtual render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const = 0;
 
   // ---- Logs
 
-  /// Whether .glf logs are in use for such heads.
+  /// True if .glf logs are in use for such heads.
   virtual bool writes_glf() const { return false; }
   /// See HeadToRecord::glf_status.
   virtual std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> /*message*/) const {
     return std::nullopt;
   }
-  /// The beginning of a ping in a datagram; nullopt where it is none, or one that is sent again.
+  /// The start of a ping in a datagram; nullopt for other datagrams and resent pings.
   virtual std::optional<PingSeen> ping_in(std::span<const std::uint8_t> /*datagram*/) const {
     return std::nullopt;
   }
 
   // ---- Playing logs back
 
-  /// Why such a head cannot play this log, in words; nullopt when it can.
+  /// Why such a head cannot play this log, in words; nullopt if it can.
   virtual std::optional<std::string> why_not_played(const LoggedHead& logged) const = 0;
-  /// What clients will see wrongly of a played log, one phrase each.
+  /// Errors that clients will see in a played log, one phrase each.
   virtual std::vector<std::string> played_wrongly(const LoggedHead& /*logged*/) const { return {}; }
-  /// A head at an address of loopback that plays this log.
+  /// A head at a loopback address that plays this log.
   virtual HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const = 0;
   /// The head's configuration, changed to keep the times of a log.
   virtual HeadConfig held_to_recording(HeadConfig head) const = 0;
@@ -106,22 +107,21 @@ inline const DeviceKind& kind_of(const HeadConfig& head) {
   return static_cast<const DeviceKind&>(*head.kind);
 }
 
-/// What the sensors of a head read whose mount is there.
-/// @param water_surface_z_m height of the surface; nullopt: the world has none
+/// Readings of a head's sensors if its mount has this pose.
+/// @param water_surface_z_m height of the surface in the world frame; nullopt: the world has no surface
 SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m);
 
-/// The pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, turned about its z
-/// axis.
+/// Pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, rotated about its z axis.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
 
-/// The settings of the renderer for DeviceKind::usual_job().
+/// Renderer settings of DeviceKind::usual_job().
 render::SonarSettings usual_settings(const HeadConfig& head);
-/// The ping of that, sent from where the vehicle is.
+/// The ping of DeviceKind::usual_job(), sent from the vehicle's pose.
 render::PingRequest usual_ping(const HeadConfig& head, const render::Pose& T_world_vehicle);
-/// The heads under the names of their logs, in the order of the configuration.
+/// The heads with the names that their logs use, in the order of the configuration.
 std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads);
 
-/// @throws render::RequestError where the sampling of the configuration cannot serve such pings
+/// @throws render::RequestError if the configured sampling cannot serve the head's usual ping
 void check_sampling_of(const HeadConfig& head);
 
 }  // namespace sonard::server

@@ -33,9 +33,9 @@ namespace asio = boost::asio;
 
 constexpr std::chrono::seconds report_period{10};
 constexpr std::chrono::milliseconds pause_without_memory{100};
-constexpr std::size_t most_waiting_events = 4096;  // while a transport is blocked; then messages are dropped
+constexpr std::size_t most_waiting_events = 4096;  // while a transport is blocked; more are dropped
 
-/// What a recording keeps of the job that is out: a ping goes onto the wire before the next job comes.
+/// Poses of the job in progress, for the recording: its ping goes onto the wire before the next job comes.
 struct PosesToRecord {
   std::uint64_t number = 0;
   std::shared_ptr<const PosesUsed> poses;
@@ -65,11 +65,11 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   OwnAddresses own_addresses;
   PeerLog address_log;
 
-  std::deque<Event> events;  ///< that are not taken yet
+  std::deque<Event> events;  ///< not processed yet
   std::optional<TimePoint> wake_at;
   std::optional<NextPing> next_ping;
   bool out_of_water = false;
-  SensorReadings readings;  ///< that the device has been told
+  SensorReadings readings;  ///< last sent to the device
   bool running = false;
   bool pumping = false;
 
@@ -175,7 +175,7 @@ void Head::Impl::stop() {
   log.totals(counts());
 }
 
-// Handlers hold the head weakly: one that is still queued when the head is gone does nothing.
+// Handlers hold the head weakly: a queued handler does nothing once the head is gone.
 TransportEvents Head::Impl::transport_events() {
   const std::weak_ptr<Impl> weak = weak_from_this();
   const auto happens = [weak](auto event) {
@@ -213,7 +213,7 @@ TransportEvents Head::Impl::transport_events() {
                             },
                         .passed = {},
                         .ended = {}};
-  if (recording.on()) {  // copies: they hold no reference to the head
+  if (recording.on()) {  // copies: the hooks hold no reference to the head
     hooks.passed = [to = recording](WirePassed passed) { to.wire(std::move(passed)); };
     hooks.ended = [to = recording](const WireEnds& ends) { to.stream_ended(ends); };
   }
@@ -286,8 +286,8 @@ void Head::Impl::happen(Event event) {
   pump();
 }
 
-// Takes all events that there are and sleeps until the next thing is due. What happens meanwhile is taken,
-// too.
+// Processes all queued events, including new ones that arrive meanwhile, and sleeps until the next one is
+// due.
 void Head::Impl::pump() {
   if (!running || std::exchange(pumping, true)) {
     return;
@@ -303,8 +303,8 @@ void Head::Impl::pump() {
   }
 }
 
-/// Does what may run out of memory: this head then loses what it was about to do, a ping at most, and other
-/// heads lose nothing. @return whether it was done
+/// Runs work that may run out of memory. This head then loses that work, at most one ping; other heads are
+/// not affected. @return false if the work was lost
 template <typename Work>
 bool Head::Impl::done_or_lost(const Work& work) {
   try {
@@ -315,7 +315,7 @@ bool Head::Impl::done_or_lost(const Work& work) {
   try {
     log.notice({Notice::Level::warning, "memory has run out: a ping or an answer is lost"});
   } catch (const std::bad_alloc&) {
-    // The line is lost, too.
+    // The log line is lost, too.
   }
   return false;
 }
@@ -340,9 +340,9 @@ void Head::Impl::take(TimePoint now, const Event& event) {
   }
 }
 
-// A ping that cannot be made, or is no longer wanted, is answered at once; rendering ahead, the device
-// may ask for the next one at once. Each turn moves on by a ping period or takes one of the pings that are
-// owed, so this ends.
+// Answers a ping that is impossible, or no longer wanted, at once. If the device renders ahead, it may
+// request the next ping at once. The loop ends, because each iteration advances by a ping period or takes one
+// overdue ping.
 void Head::Impl::step(TimePoint now, const Event& event) {
   std::optional<std::uint64_t> not_rendered = carry_out(now, connected->device().step(now, event));
   while (not_rendered && running) {
@@ -351,7 +351,8 @@ void Head::Impl::step(TimePoint now, const Event& event) {
   connected->after_step();
 }
 
-// The number of a job that will get no image. The device waits for the answer to its job, whatever is lost.
+// Returns the number of a job that gets no image. The device waits for an answer to its job, so the number is
+// returned whatever else is lost.
 std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions actions) {
   for (const Notice& notice : actions.notices) {
     log.notice(notice);
@@ -424,7 +425,7 @@ void Head::Impl::note_water(TimePoint now) {
   const bool out = T_world_mount && T_world_mount->position_m.z > *services.water_surface_z_m;
   if (out != out_of_water) {
     out_of_water = out;
-    // In the air no pings are made, whose pictures would tell.
+    // In air no pings are made that would show this.
     NewestPing here = newest.value_or(NewestPing{});
     if (!newest) {
       here.range_m = usual_settings(config).range.sampled_range_m();
@@ -442,18 +443,18 @@ void Head::Impl::feed(TimePoint now) {
   }
 }
 
-// By the clock of the source. True when a ping begins with the next step.
+// For pings by the clock of the pose source. True if a ping begins with the next step.
 bool Head::Impl::grant(TimePoint now) {
   return services.poses.ping_clock() != PingClock::wall && rendering.begin_ping(now, next_ping);
 }
 
 void Head::Impl::schedule(TimePoint now) {
   if (connected->transport().blocked()) {
-    timer.cancel();  // it says when it is writable again
+    timer.cancel();  // the transport reports when it is writable again
     return;
   }
   std::optional<TimePoint> deadline = wake_at;
-  // A ping that is due already waits for poses, which wake the head themselves.
+  // A ping that is already due waits for poses, and poses wake the head.
   if (services.poses.ping_clock() != PingClock::wall && next_ping && next_ping->from > now) {
     deadline = deadline ? std::min(*deadline, next_ping->from) : next_ping->from;
   }
@@ -467,7 +468,7 @@ void Head::Impl::schedule(TimePoint now) {
 
 // ---- Rendering
 
-// False when this ping cannot be made.
+// Returns false if this ping is impossible.
 bool Head::Impl::render(const PingJob& job) {
   if (job.record) {
     services.playback->started(stream, job);
@@ -484,7 +485,7 @@ bool Head::Impl::render(const PingJob& job) {
     recording.posed(poses_to_record.poses);
   }
   std::optional<render::Pose> T_world_at_end = rendering.T_world_mount(pose_time + job.listening_time);
-  if (T_world_at_end) {  // a motor rests meanwhile
+  if (T_world_at_end) {  // the motor is at rest during a ping
     T_world_at_end = T_world_transducer(*T_world_at_end, job.bearing_rad);
   }
   const render::Pose T_world_sonar = T_world_transducer(*T_world_mount, job.bearing_rad);
@@ -496,7 +497,7 @@ bool Head::Impl::render(const PingJob& job) {
                       T_world_mount,
                       settings.aperture.beam_edges_rad.front() - settings.aperture.beam_edges_rad.back(),
                       2 * settings.aperture.elevation_limit_rad()};
-  // A recorded ping goes to the recording under the number that it has there.
+  // In the recording, a replayed ping keeps its recorded number.
   rendering.submit(
       {.number = job.record.value_or(job.number),
        .pose_time = pose_time,

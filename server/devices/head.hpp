@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One head of the daemon: a device on its transport, whose pings are rendered or played back, and recorded.
+// One head of the daemon: a device on its transport. Its pings are rendered or played back, and recorded.
 #pragma once
 
 #include <chrono>
@@ -32,29 +32,29 @@ struct HeadStatus;
 struct InterfaceAddress;
 struct RenderCounters;
 
-/// What a head needs of the daemon. Everything outlives the head.
+/// Services of the daemon that a head uses. They outlive the head.
 struct HeadServices {
   boost::asio::io_context& io;
   const Clock& clock;
   RenderService& renderer;
   const PoseHistory& poses;
-  std::optional<double> water_surface_z_m;  ///< height above which a sonar is out of the water
+  std::optional<double> water_surface_z_m;  ///< height in the world frame; nullopt: there is no surface
   render::SkipSwitches skip{};              ///< for SkipRule::nobody_listening
   Playback* playback = nullptr;             ///< null: pings are rendered
   Recorder* recorder = nullptr;             ///< null: nothing is recorded
-  std::string vehicle_model{};              ///< the body that moves as the vehicle does; empty: none
-  PingViewer* viewer = nullptr;             ///< null: nobody can watch
-  const render::World* world = nullptr;     ///< where the head looks around; null: it does not
+  std::string vehicle_model{};              ///< the body that moves with the vehicle; empty: no body does
+  PingViewer* viewer = nullptr;             ///< null: no page
+  const render::World* world = nullptr;     ///< for diagnosis; null: no diagnosis
 };
 
-/// Passes events to Device::step() and carries out its actions, for every kind of device alike. While the
-/// transport is blocked events wait, so that a device does not send faster than the transport does.
+/// Passes events to Device::step() and carries out its actions, the same way for every kind of device. While
+/// the transport is blocked, events wait, so that a device does not send faster than the transport.
 ///
-/// Constructor and destructor belong to the thread that owns the io_context while it does not run; everything
-/// else to the I/O thread. At most one render job is outstanding.
+/// Belongs to the I/O thread. The thread that owns the io_context constructs and destroys it while the
+/// context does not run. At most one render job is outstanding.
 ///
-/// Shutdown: stop() closes the transport and cancels the timers. Handlers that are still queued, and an image
-/// still being rendered, find the inner state stopped or gone and do nothing.
+/// Shutdown: stop() closes the transport and cancels the timers. Queued handlers, and an image still being
+/// rendered, find the inner state stopped or gone and do nothing.
 class Head {
  public:
   /// @throws SocketError
@@ -66,12 +66,12 @@ class Head {
   void start();
   void stop();
 
-  /// PoseHistory has one more: a ping by the clock of the source may have waited for it.
+  /// Called when PoseHistory has a new pose: a ping by the clock of the source may have waited for it.
   void poses_changed();
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
-  /// Follows the address of its interface, and tells of one that is gone.
+  /// Follows the address of its interface, and logs if an address is gone.
   /// @param now interface_addresses()
   void look_at_addresses(const std::vector<InterfaceAddress>& now);
 

@@ -15,10 +15,10 @@
 namespace sonard::server {
 namespace {
 
-// All boxes of a world are looked at, and where nothing is seen also triangles.
+// Intervals: a look tests all boxes of the world and, if nothing is seen, also triangles.
 constexpr std::chrono::seconds while_seeing{5};
 constexpr std::chrono::seconds while_blind{1};
-constexpr std::chrono::seconds longest_turn{60};  // of a head that scans
+constexpr std::chrono::seconds longest_turn{60};  // of a scanning head
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
 }  // namespace
@@ -42,8 +42,8 @@ bool LastTurn::note(TimePoint now, double bearing_rad, bool seen) {
 void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
                          const std::vector<PosedBody>& bodies, bool sees_surface, double echo_over_floor) {
   const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
-  // Twice as much is wanted of an echo to stand out again: while a vehicle moves, one at the limit would make
-  // a line of the log each time that it passes it.
+  // Hysteresis: to stand out again, an echo must be twice as strong. Otherwise a moving vehicle would log a
+  // line each time that it passes the limit.
   const double least = stands_out_.value_or(true) ? least_visible_echo : 2.0 * least_visible_echo;
   bool stands_out = echo_over_floor >= least;
   if (kind_of(config_).scanning()) {

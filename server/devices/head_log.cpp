@@ -26,7 +26,7 @@ std::string counters_text(const std::vector<Counter>& counters) {
   return text;
 }
 
-/// Growth of the counters that are shown while the head runs.
+/// Growth of the counters that are logged while the head runs.
 std::string growth_text(const std::vector<Counter>& before, const std::vector<Counter>& now) {
   std::string text;
   for (std::size_t i = 0; i < now.size(); ++i) {

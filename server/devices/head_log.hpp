@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of one head in the program's log.
+// The log lines of one head.
 #pragma once
 
 #include <chrono>
@@ -20,17 +20,17 @@ struct HeadCounts {
   std::vector<Counter> transport;
 };
 
-/// Logs what is new since the last call, at level info and above, however often it is called.
+/// Logs changes since the last call, at level info and above.
 class HeadLog {
  public:
   explicit HeadLog(std::string head) : head_(std::move(head)) {}
 
   void notice(const Notice& notice);
-  /// A ping is about to be rendered.
+  /// Logs a ping that is about to be rendered.
   void ping(const PingJob& job, bool scanning, const render::Pose& T_world_sonar);
-  /// To be called every `period`; silent when nothing was done in it.
+  /// Logs rates; call it every `period`. Silent if nothing happened in the period.
   void rates(const HeadCounts& total, std::chrono::duration<double> period);
-  /// Once, at the end.
+  /// Call it once, at the end.
   void totals(const HeadCounts& total) const;
 
  private:
@@ -38,8 +38,8 @@ class HeadLog {
   void warn_of(const std::vector<Counter>& before, const std::vector<Counter>& now) const;
 
   std::string head_;
-  PeerLog notices_, setting_changes_;  // limited: a client can cause any number
-  std::vector<Setting> settings_;      ///< as they were logged last
+  PeerLog notices_, setting_changes_;  // limited: a client can cause any number of lines
+  std::vector<Setting> settings_;      ///< as last logged
   HeadCounts reported_;
 };
 

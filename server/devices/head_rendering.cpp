@@ -11,9 +11,9 @@
 namespace sonard::server {
 namespace {
 
-/// Where a hidden vehicle is: no ping reaches so far, and the renderer drops what none reaches. Always the
-/// same place, so that an unchanged scene stays one. Heads that share a renderer and hide different things
-/// each move the body for their pings.
+/// Pose of a hidden vehicle, beyond the reach of any ping, so that the renderer drops the body. It is always
+/// the same pose, so that an unchanged scene stays unchanged. Heads that share a renderer and hide different
+/// bodies each move the body for their pings.
 const render::Pose out_of_sight{{0.0, 0.0, -1e6}, {1.0, 0.0, 0.0, 0.0}};
 
 }  // namespace
@@ -108,8 +108,8 @@ void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
   job.stream = stream_;
   job.head = config_.name;
   job.transmit_us = ping.transmit_us;
-  // Where poses bring the time, pings wait for them, and the image is to depend on nothing else; a recording
-  // is played as it is.
+  // If poses bring the time, pings wait for them, and the image must depend on nothing else. A recording is
+  // played as it is.
   if (!ping_times_ && services_.playback == nullptr) {
     load_.submitted(services_.clock.now(), ping.period);
     ping.settings.sampling.preset = load_.preset();

@@ -31,11 +31,11 @@ struct StageSeconds {
   StageSeconds& operator+=(const render::PingStatistics& ping);
 };
 
-/// Counters, which only grow.
+/// Counters; they only grow.
 struct RenderCounters {
   std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
   std::uint64_t pings_rendered = 0;
-  double render_seconds = 0.0;  ///< all of them together, ghosts and bounces apart
+  double render_seconds = 0.0;  ///< all stages except multipath
   StageSeconds stages;
   render::SkipCounts skipped;  ///< of all pings
 };
@@ -43,53 +43,52 @@ struct RenderCounters {
 /// One ping of a head for the render thread.
 struct HeadPing {
   std::uint64_t number = 0;
-  TimePoint pose_time{};              ///< of the transmission, as PoseHistory takes it
-  std::uint64_t transmit_us = 0;      ///< of the clock of the head
+  TimePoint pose_time{};              ///< of the transmission, on the clock of PoseHistory
+  std::uint64_t transmit_us = 0;      ///< on the head's clock
   std::chrono::nanoseconds period{};  ///< PingJob::period
   render::Pose T_world_sonar;
   std::optional<render::Pose> T_world_sonar_at_end;  ///< when the last echo returns; nullopt: not known
   render::SonarSettings settings;
 };
 
-/// Belongs to the I/O thread, as its head does.
+/// Belongs to the I/O thread.
 class HeadRendering {
  public:
   HeadRendering(const HeadConfig& config, int stream, const HeadServices& services);
 
-  /// The time of a ping's poses, as PoseHistory takes it, that is transmitted at a time of the head's own:
-  /// this, or what PingTimes said when it was granted.
+  /// Time of the poses, on the clock of PoseHistory, of a ping transmitted at this time of the head: the time
+  /// that PingTimes granted, or else the same time.
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
-  /// With pings by the clock of the source: begins `next` if its poses are there. Returns whether it did.
+  /// For pings by the clock of the source: begins `next` if its poses have arrived. Returns true if it did.
   bool begin_ping(TimePoint now, const std::optional<NextPing>& next);
-  /// With pings by the clock of the source: no client wants pings.
+  /// For pings by the clock of the source: no client requests pings.
   void rest();
-  /// Longest time between two requests of a client that asks for one ping after the other; after that no ping
-  /// is wanted.
+  /// Longest time between two requests of a client that requests single pings. After that, the head counts as
+  /// idle.
   static constexpr std::chrono::seconds longest_pause{3};
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
-  /// Pose of the head's mount; of a future time, extrapolated by the twist of the newest pose. nullopt: there
-  /// is no pose, or only a stale one that must not be used.
+  /// Pose of the head's mount in the world; for a future time, extrapolated by the twist of the newest pose.
+  /// nullopt: there is no pose, or only a stale one that must not be used.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
 
-  /// Bodies as the poses say, and with them the model of the vehicle, unless it is hidden.
+  /// Bodies moved by the poses, including the vehicle's model unless it is hidden.
   std::vector<PosedBody> bodies_at(TimePoint time) const;
 
-  /// All poses that a log keeps of a ping transmitted at `transmit_time`.
+  /// All poses that a log stores for a ping transmitted at `transmit_time`; null if no pose is known.
   std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
   void submit(HeadPing ping, RenderService::Done done);
-  /// Counts an answer and logs an error in it, each error once. @return whether there are
-  /// samples.
+  /// Counts an answer and logs its error, once per error. @return true if there are samples
   bool take(const RenderResult& result);
-  /// SkipRule::nobody_listening: takes back a ping that waits behind those of other heads.
+  /// SkipRule::nobody_listening: withdraws a ping that waits behind pings of other heads.
   bool withdraw();
   void count_missing_pose() { ++counters_.pings_without_pose; }
 
   const RenderCounters& counters() const { return counters_; }
-  /// Of the newest ping that was rendered.
+  /// Statistics of the newest rendered ping.
   const render::PingStatistics& newest_statistics() const { return newest_; }
 
  private:
@@ -98,10 +97,10 @@ class HeadRendering {
   const HeadConfig& config_;
   int stream_;
   HeadServices services_;
-  std::optional<PingTimes> ping_times_;  ///< by the clock of the source
+  std::optional<PingTimes> ping_times_;  ///< pings by the clock of the source
   std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last
-  TimePoint last_wanted_{};              ///< on the clock of this machine
-  bool submitted_ = false;               ///< and not answered
+  TimePoint last_wanted_{};              ///< on the clock of this process
+  bool submitted_ = false;               ///< and not yet answered
   RenderLoad load_;
   RenderCounters counters_;
   render::PingStatistics newest_;
@@ -109,9 +108,9 @@ class HeadRendering {
   PeerLog errors_;
 };
 
-/// At level debug: "head=NAME skipped: rule=count ..." of every rule that has skipped something.
+/// Logs "head=NAME skipped: rule=count ..." at level debug, with every rule that has skipped something.
 void log_skipped(const std::string& head, const render::SkipCounts& skipped);
-/// Milliseconds of a mean ping between two states of the counters; 0 when there was none.
+/// Mean rendering time of a ping between two states of the counters, in milliseconds; 0 if there was no ping.
 double mean_render_ms(const RenderCounters& before, const RenderCounters& now);
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a head does, for people and their monitors.
+// Status of a head, for people and monitors.
 #pragma once
 
 #include <chrono>
@@ -18,16 +18,16 @@
 
 namespace sonard::server {
 
-/// Somebody who has sent something to a head.
+/// A client that has sent something to a head.
 struct ClientSeen {
-  Endpoint address;          ///< the default: whoever is on a line that all clients share
-  TimePoint last{};          ///< when the newest piece came
-  std::uint64_t pieces = 0;  ///< datagrams, or pieces of a stream
+  Endpoint address;          ///< default: any client of a shared serial line
+  TimePoint last{};          ///< arrival of the newest piece
+  std::uint64_t pieces = 0;  ///< datagrams, or reads of a stream
 };
 
-/// The newest ping that a head has asked for.
+/// The newest ping that a head has requested.
 struct NewestPing {
-  std::vector<Setting> settings;  ///< by the client
+  std::vector<Setting> settings;  ///< set by the client
   double range_m = 0.0;
   double bearing_rad = 0.0;                   ///< PingJob::bearing_rad
   std::optional<render::Pose> T_world_mount;  ///< nullopt: not known
@@ -35,22 +35,22 @@ struct NewestPing {
   double elevation_rad = 0.0;                 ///< of the rendered fan
 };
 
-/// One head at one moment.
+/// State of one head at one moment.
 struct HeadStatus {
   std::string name;
   std::string kind;  ///< as in the configuration
   bool scanning = false;
   std::vector<std::string> serves;  ///< Transport::descriptions()
   std::string link_faults;          ///< Transport::faults()
-  std::vector<ClientSeen> clients;  ///< of the last minute
+  std::vector<ClientSeen> clients;  ///< active in the last minute
   HeadCounts counts;
   double pings_per_s = 0.0;  ///< over the last five seconds
   std::optional<NewestPing> newest;
-  render::PingStatistics spent;  ///< on the newest ping that was rendered
-  /// From its transmission to when the newest ping went out.
+  render::PingStatistics spent;  ///< on the newest rendered ping
+  /// From transmission to sending, of the newest ping.
   std::optional<std::chrono::nanoseconds> latency;
-  std::optional<std::chrono::nanoseconds> since_last_ping;  ///< that went out; nullopt: none did
-  std::vector<Finding> findings;                            ///< what looks wrong about its place in the world
+  std::optional<std::chrono::nanoseconds> since_last_ping;  ///< since the newest was sent; nullopt: no ping
+  std::vector<Finding> findings;                            ///< about its place in the world
 };
 
 }  // namespace sonard::server

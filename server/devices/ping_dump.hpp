@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps what the renderer handed over, so that a test can compare it with what arrived.
+// Writes rendered pings to files, so that a test can compare them with received ones.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace sonard::server {
 
-/// CRC-32 (zlib's polynomial) of the samples as they lie on the wire before any run-length coding: line after
-/// line, port to starboard; 16-bit samples most significant byte first.
+/// CRC-32 (zlib's polynomial) of the samples in wire order, before any run-length coding: line after line,
+/// port to starboard; 16-bit samples most significant byte first.
 std::uint32_t samples_crc32(const render::PingSamples& samples);
 
 /// Writes each ping of one head as a NumPy file, <head>-<ping number, 8 digits>.npy, shape (lines, beams),
 /// dtype |u1 or <u2, and adds a row to <head>.csv in the same folder:
 ///
-///     number,id,transmit_us,lines,beams,crc32
+///     number,id,transmit_us,lines,beams,crc32,pose_ns
 ///
-/// `id` is the ping ID on the wire, `crc32` is samples_crc32() in hexadecimal. Used by the render thread
-/// only. A file that cannot be written is logged, once, and costs nothing else.
+/// `id` is the ping ID (number modulo 256), `crc32` is samples_crc32() in hexadecimal. Used only by the
+/// render thread. A file that cannot be written is logged once and has no other effect.
 class PingDump {
  public:
-  /// Makes the folder and truncates the CSV file.
+  /// Creates the folder and truncates the CSV file.
   /// @throws std::runtime_error naming the path
   PingDump(std::filesystem::path folder, std::string head);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a head shows its pings to people who watch.
+// Interface through which a head shows its pings to viewers.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@
 
 namespace sonard::server {
 
-/// A ping that has gone out, for people.
+/// A ping that was sent, for viewers.
 struct ShownPing {
-  int head = 0;      ///< its place in the configuration
-  TimePoint time{};  ///< when it went out, on the clock of the daemon
+  int head = 0;      ///< index in the configuration
+  TimePoint time{};  ///< when it was sent, on the clock of the daemon
   PingRecord record;
-  std::optional<render::Pose> T_world_mount;  ///< of the head when the ping was sent; nullopt: not known
+  std::optional<render::Pose> T_world_mount;  ///< at the time of transmission; nullopt: not known
 };
 
 /// Called on the I/O thread; must not wait.
@@ -27,7 +27,7 @@ class PingViewer {
   PingViewer(const PingViewer&) = delete;
   PingViewer& operator=(const PingViewer&) = delete;
 
-  /// Takes each ping that goes out, whether anybody watches or not: the next viewer begins with the newest.
+  /// Takes each sent ping, even if there is no viewer: the next viewer starts with the newest ping.
   virtual void show(std::shared_ptr<const ShownPing> ping) = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The interface of a recording that heads play back instead of rendering.
+// Interface of a recording that heads play back instead of rendering.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,19 @@
 
 namespace sonard::server {
 
-/// A recording that heads play back to clients. `stream` is the number of a head, as in HeadServices. All
-/// calls come from the I/O thread.
+/// A recording that heads play back to clients. `stream` is the number of a head, as in HeadServices. Belongs
+/// to the I/O thread.
 class Playback {
  public:
   virtual ~Playback() = default;
 
-  /// The next ping of a head at `now`; nullopt: it has no more.
+  /// The next ping of a head at `now`; nullopt: there are no more.
   virtual std::optional<RecordedPing> next_ping(int stream, TimePoint now) = 0;
-  /// A ping that next_ping() has named begins: `job.record`.
+  /// Called when a ping of next_ping() begins: `job.record`.
   virtual void started(int stream, const PingJob& job) = 0;
-  /// Reports what a head has done so far, whenever that changes.
+  /// Called with the progress of a head, whenever it changes.
   virtual void progress(int stream, TimePoint now, const PingProgress& done) = 0;
-  /// Everything is sent, and clients have had the time to ask for lost messages.
+  /// True if everything is sent and clients have had time to request lost messages.
   virtual bool finished(TimePoint now) const = 0;
 };
 

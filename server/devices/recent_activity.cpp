@@ -48,8 +48,8 @@ double RecentPings::per_s(TimePoint now) const {
   if (count < 2) {
     return 0.0;
   }
-  // What begins within the period began somewhere between two pings: one interval fewer than pings, and the
-  // time since the newest counts where it is longer than they are.
+  // The mean interval between pings of the period: one interval fewer than pings. If the time since the
+  // newest ping is longer than that, it counts instead.
   const std::chrono::duration<double> between = times_.back() - *first;
   const double interval = between.count() / static_cast<double>(count - 1);
   const std::chrono::duration<double> silence = now - times_.back();

@@ -15,9 +15,9 @@ using Preset = render::Sampling::Preset;
 
 constexpr std::chrono::seconds window_length{2};
 constexpr double too_busy = 0.9;     // share of the time
-constexpr double has_time = 0.6;     // which the slower preset would take up
-constexpr double nearly_all = 0.95;  // of the pings asked for
-constexpr int fewest_pings = 3;      // fewer say nothing of a rate
+constexpr double has_time = 0.6;     // share of the time, with the slower preset
+constexpr double nearly_all = 0.95;  // of the requested pings
+constexpr int fewest_pings = 3;      // fewer do not give a rate
 
 double seconds_of(TimePoint duration) {
   return std::chrono::duration<double>(duration).count();
@@ -36,7 +36,7 @@ std::optional<Preset> faster_than(Preset preset) {
   return std::nullopt;
 }
 
-/// At most the one that was asked for.
+/// The next slower preset, at most `asked`.
 Preset slower_than(Preset preset, Preset asked) {
   return preset == Preset::fast && asked != Preset::fast ? Preset::normal : asked;
 }

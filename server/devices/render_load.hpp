@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a head gets its images as fast as its client asks for pings, and what is done about it.
+// Tests whether a head's images arrive as fast as its client requests pings, and adapts the quality.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace sonard::server {
 
-/// Looks, every two seconds, at the share of the time in which a head waited for an image. A head that waits
-/// nearly always would ping more often if it could: where quality adapts, its preset gives way to the next
-/// faster one, and comes back when there is time for it; else the operator is warned once that fewer pings
-/// are made than were asked for. Belongs to the thread of its head.
+/// Measures, about every two seconds, the share of time in which a head waited for an image. If it waits
+/// nearly always and quality is adaptive, the preset changes to the next faster one, and back when there is
+/// time. Else the operator is warned once that fewer pings are made than requested. Belongs to the head's
+/// thread.
 class RenderLoad {
  public:
-  /// @param configured of the head. Its preset is never exceeded; Preset::grid has no faster one. The
-  /// operator is advised to give up what it has on.
+  /// @param configured of the head: its preset is the upper limit; Preset::grid has no faster one. The
+  /// warning suggests settings that can be turned off.
   RenderLoad(const render::SonarSettings& configured, bool adaptive);
 
   /// The preset of the next ping.
@@ -28,21 +28,21 @@ class RenderLoad {
 
   /// @param period PingJob::period
   void submitted(TimePoint now, std::chrono::nanoseconds period);
-  /// The image is there, or could not be made.
-  /// @return what the operator is to know
+  /// Called when the image has arrived or is impossible.
+  /// @return a message for the operator
   std::optional<Notice> answered(TimePoint now);
-  /// It was taken back before it was rendered, and says nothing of the load.
+  /// Called if the ping was withdrawn before rendering; it does not count.
   void withdrawn() { submitted_.reset(); }
 
  private:
   struct Window {
     TimePoint began{}, waited{};
-    std::chrono::nanoseconds asked{};  ///< periods of all pings
+    std::chrono::nanoseconds asked{};  ///< sum of the periods of all pings
     int pings = 0;
   };
-  /// What a window has shown.
+  /// Result of a window.
   struct Load {
-    double share = 0.0;  ///< of the time in which the head waited
+    double share = 0.0;  ///< of the time, waited for images
     double mean_ms = 0.0;
     double pings_per_s = 0.0;
     double asked_per_s = 0.0;
@@ -52,11 +52,11 @@ class RenderLoad {
 
   render::Sampling::Preset asked_, preset_;
   bool adaptive_;
-  std::string advice_;  ///< what else makes it faster
+  std::string advice_;  ///< other ways to make it faster
   bool told_ = false;
   std::optional<TimePoint> submitted_;
   std::optional<Window> window_;
-  std::array<double, 4> mean_ms_{};  ///< of a ping, by preset, of the last window that had it
+  std::array<double, 4> mean_ms_{};  ///< of a ping, by preset, from the last window that used it
 };
 
 }  // namespace sonard::server

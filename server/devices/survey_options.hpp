@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a kind of device takes the options of a survey.
+// Reads the options of a survey for a kind of device.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace sonard::server {
 
-/// For one kind of device. @throws CLI::ValidationError from all functions
+/// For one kind of device. All functions throw CLI::ValidationError.
 class OptionsOf {
  public:
-  /// @param device as messages name it: "Example 100"
+  /// @param device as named in messages: "Example 100"
   explicit OptionsOf(std::string device) : device_(std::move(device)) {}
 
   void refuse(const char* option, bool given) const {
@@ -22,7 +22,7 @@ class OptionsOf {
     }
   }
 
-  /// Leaves `setting` as it is where the user says nothing.
+  /// Leaves `setting` unchanged if the user gave no value.
   void take(const char* option, const std::optional<double>& value, double least, double most,
             double& setting) const {
     if (value && !(*value >= least && *value <= most)) {

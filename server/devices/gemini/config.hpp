@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What only a head of type `gemini_720i` has in the configuration (docs/configuration.md).
+// Configuration that only a head of type `gemini_720i` has (docs/configuration.md).
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@
 
 namespace sonard::server {
 
-/// The sonar's x axis is the acoustic axis, so a down tilt is in the mount. The bearing table of the device
-/// and its jobs fill in `aperture.beam_edges_rad` and `range` of the acoustics.
+/// The sonar's x axis is the acoustic axis, so the mount includes any down tilt. The bearing table of the
+/// device and its jobs set `aperture.beam_edges_rad` and `range` of the acoustics.
 struct GeminiConfig final : DeviceSettings {
-  /// Identity, addresses and timing. `water_sound_speed_mps` is already chosen (0: follow the ping
+  /// Identity, addresses and timing. `water_sound_speed_mps` is already resolved (0: follow the ping
   /// configuration).
   gemini::DeviceConfig device;
-  /// Whether beams point elsewhere in water of another sound speed than the head assumes, as those of a flat
-  /// array do (docs/physics.md 2.12).
+  /// True if beams are steered wrongly when the sound speed differs from the speed that the head assumes, as
+  /// in a flat array (docs/physics.md 2.12).
   bool steering_error = false;
   /// Address of the command socket: one of this machine, or 0 for all of them.
   Ipv4 bind_address = 0x7F000002;
-  std::uint16_t command_port = 52901;  ///< the head listens here and sends from here
-  /// By whose name the address and the mask are given, and followed; empty: as numbers.
+  std::uint16_t command_port = 52901;  ///< the head receives and sends on this port
+  /// Interfaces that give, and keep updating, the address and the mask; empty: given as numbers.
   std::string interface, netmask_interface;
   StatusDestination status;
-  AllowList allow;  ///< clients that are served; status packets are not affected
+  AllowList allow;  ///< clients that are served; does not affect status packets
 
   LinkConfig link;
-  /// A UDP socket whose every datagram counts as one edge of the external trigger (run mode 2).
+  /// A UDP socket on which every datagram counts as one edge of the external trigger (run mode 2).
   std::optional<Endpoint> trigger;
 };
 
@@ -40,7 +40,7 @@ inline const GeminiConfig& gemini_config(const HeadConfig& head) {
   return static_cast<const GeminiConfig&>(*head.device);
 }
 
-/// The acoustics of such a head, where nothing is configured.
+/// Default acoustics of such a head.
 render::SonarSettings gemini_acoustics();
 
 }  // namespace sonard::server

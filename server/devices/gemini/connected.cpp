@@ -52,7 +52,7 @@ class ConnectedGemini final : public ConnectedDevice {
     }
   }
 
-  // A reboot may have applied an address that the client has programmed (docs/protocols/gemini.md 3.9).
+  // A reboot may have applied an address that the client programmed (docs/protocols/gemini.md 3.9).
   void after_step() override {
     const gemini::DeviceAddresses current = device_.addresses();
     if (current == addresses_) {
@@ -67,7 +67,7 @@ class ConnectedGemini final : public ConnectedDevice {
     announce();
   }
 
-  // Not from an address that a client has programmed.
+  // Does not follow if a client has programmed another address.
   void follow_addresses(const std::vector<InterfaceAddress>& now) override {
     const auto found = followed(config_.interface, addresses_.alternate, now);
     if (found && addresses_.alternate == followed_) {
@@ -97,21 +97,22 @@ class ConnectedGemini final : public ConnectedDevice {
   void move_from(Ipv4 before) {
     try {
       transport_.rebind({addresses_.alternate, config_.command_port});
-    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is left
+    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is free
       log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before),
                  error.what());
     }
   }
 
-  /// Tells clients, by status packets, and the log what it is reached at.
+  /// Announces the head's address to clients, by status packets, and in the log.
   void announce() {
     const auto owner = owner_of(addresses_.alternate, interface_addresses());
     std::vector<Endpoint> hosts;
     for (const Ipv4 host : status_hosts(config_.status, addresses_.alternate, addresses_.netmask)) {
       hosts.push_back({host, config_.device.topside_port});
     }
-    // Where status packets come from. On a socket bound to one address the kernel knows; on one bound to all
-    // it must be told, or a limited broadcast would leave by the interface of the default route.
+    // Sets the source address of status packets. The kernel sets it on a socket bound to one address. On a
+    // socket bound to all addresses, a limited broadcast would else leave by the interface of the default
+    // route.
     const bool bound_to_all = transport_.local_endpoint().address == 0;
     transport_.set_everybody(std::move(hosts), bound_to_all && owner ? addresses_.alternate : 0);
     transport_.set_own_address(addresses_.alternate);
@@ -132,7 +133,7 @@ class ConnectedGemini final : public ConnectedDevice {
   std::unique_ptr<UdpEndpoint> trigger_;
   gemini::DeviceAddresses addresses_;
   Ipv4 followed_;  ///< of the interface
-  PeerLog log_;    // a client may program addresses and reboot as often as it likes
+  PeerLog log_;    // limited: a client can program addresses and reboot as often as it likes
 };
 
 }  // namespace

@@ -29,7 +29,7 @@ double worst_bearing_error_rad(const LoggedHead& head) {
   const std::vector<double> wire = gemini::bearings_rad();
   double worst = 0.0;
   for (std::size_t i = 0; i < std::min(wire.size(), head.bearings_rad.size()); ++i) {
-    worst = std::max(worst, std::abs(head.bearings_rad[i] + wire[i]));  // one to port, one to starboard
+    worst = std::max(worst, std::abs(head.bearings_rad[i] + wire[i]));  // opposite signs
   }
   return worst;
 }
@@ -85,7 +85,7 @@ class GeminiKind final : public DeviceKind {
                        status_text(config.status, config.device.alternate_address, config.device.netmask));
   }
 
-  // Later clients stay silent towards a head whose mask is not that of their own interface.
+  // Newer clients send nothing to a head if its mask differs from the mask of their own interface.
   std::vector<ConfigWarning> network_warnings(const HeadConfig& head) const override {
     const GeminiConfig& config = gemini_config(head);
     const gemini::DeviceConfig& device = config.device;
@@ -95,7 +95,7 @@ class GeminiKind final : public DeviceKind {
                fmt::format("{} is reported, but interface {} has {}: clients that compare them send nothing",
                            address_text(device.netmask), owner->interface, address_text(owner->netmask))}};
     }
-    // Where the head is bound to it, trying the socket has already told.
+    // If the head is bound to this address, trying the socket has already reported it.
     if (!owner && config.bind_address != device.alternate_address) {
       return {{"network.alternate_address",
                fmt::format("{} is not an address of this machine, but clients will send there",
@@ -140,7 +140,7 @@ class GeminiKind final : public DeviceKind {
       return std::nullopt;
     }
     PingSeen seen{std::string(type()), head->header.sonar_id, gemini::settings_of(*head)};
-    seen.settings.frequency_hz = 0.0;  // it does not say
+    seen.settings.frequency_hz = 0.0;  // not on the wire
     return seen;
   }
 
@@ -215,7 +215,7 @@ const DeviceKind& gemini_kind() {
   return kind;
 }
 
-// As much leaks and as much noise is seen as recordings show (docs/physics.md 2.16).
+// Leakage and noise as in recordings (docs/physics.md 2.16).
 render::SonarSettings gemini_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;
@@ -224,7 +224,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.aperture.element_phase_sd_rad = 7 * degree;
   acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
-  acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines that are sampled at 90
+  acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines sampled at 90 kHz
   acoustics.physical.tvg_log_coefficient = 40.0;
   acoustics.physical.tvg_max_db = 78.0;
   acoustics.physical.tone_rounding_m = 0.018;  // 42 kHz: a Q of 17
@@ -233,7 +233,7 @@ render::SonarSettings gemini_acoustics() {
   acoustics.physical.output_noise_db = -46.0;
   acoustics.physical.texture_nu = 15.0;
   acoustics.physical.water_clutter.density_per_m3 = 0.1;
-  // Whether transmitter and receiver share their height is not published: the pattern is taken once
+  // It is not published whether transmitter and receiver have the same height, so the pattern applies once
   // (docs/physics.md 2.5).
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
   return acoustics;

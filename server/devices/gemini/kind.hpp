@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Gemini 720i as the server knows it.
+// The kind of device of the Gemini 720i.
 #pragma once
 
 #include "server/devices/device_kind.hpp"

@@ -19,7 +19,7 @@ constexpr TextForm trigger_form{"an address and port such as 127.0.0.1:14700", e
                                 endpoint_form.schema};
 
 void read_identity(YamlSection& section, GeminiConfig& config) {
-  // 0 means "not set" and 1 is reserved for production: clients send nothing to either
+  // 0 means "not set" and 1 is reserved for production: clients send nothing to either ID
   // (docs/protocols/gemini.md 1.4).
   section.require("sonar_id", "a whole number from 2 to 65535");
   section.integer("sonar_id", config.device.sonar_id, 2, 65535,

@@ -11,15 +11,15 @@
 namespace sonard::server {
 namespace {
 
-// No beam is steered further than this: c / c_d up to 1.15 is followed, more is not found in water.
-constexpr double widest_sin = 0.9962;  // of 85 degrees
+// Limit of steering: it allows c / c_d up to 1.15, more than occurs in water.
+constexpr double widest_sin = 0.9962;  // 85 degrees
 
-// Levels were set between the pictures of 20 and 50 m (docs/physics.md 2.6): clients ask for it at 30 m.
+// Levels were set between images of 20 and 50 m (docs/physics.md 2.6): clients request this pulse at 30 m.
 constexpr double usual_pulse_s = 18 / gemini::carrier_hz;
 
 // Device bearings are positive to starboard, azimuths of the renderer to port.
-// `steering`: the ratio c / c_d of the true sound speed to that which delays are computed with. A beam meant
-// for the bearing b receives sin b * c / c_d (docs/physics.md 2.12).
+// `steering`: c / c_d, the true sound speed over the speed that the beamformer assumes. A beam meant for the
+// bearing b receives sin b * c / c_d (docs/physics.md 2.12).
 std::vector<double> beam_edges_rad(double steering) {
   std::vector<double> edges = gemini::beam_edges_sin();
   const double ratio = std::min(steering, widest_sin / std::abs(edges.front()));
@@ -43,7 +43,7 @@ render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig
   settings.range = {.count = job.native_bins,
                     .step_m = job.native_bin_m,
                     .compression_log2 = job.compression_log2,
-                    .compression_peak = false};  // a 720i averages, whatever it is asked (5)
+                    .compression_peak = false};  // a 720i always averages (docs/protocols/gemini.md 5)
   settings.sixteen_bit = job.sixteen_bit;
   settings.transmit = job.transmit;
   settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;

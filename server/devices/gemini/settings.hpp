@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows both a ping of a Gemini and the renderer's settings.
+// Maps a ping of a Gemini to the renderer's settings. Only this file uses both.
 #pragma once
 
 #include "protocol/common/ping_job.hpp"
@@ -9,9 +9,9 @@
 namespace sonard::server {
 
 /// Renderer settings of one ping.
-/// @return the acoustics of the head with the beams of a 720i (docs/protocols/gemini.md 6.5) as the water
-///   steers them, the range bins, the sample size and the length of the pulse of the job, and the gain moved
-///   by the job's. A head that only listens receives no echo.
+/// @return the acoustics of the head with the beams of a 720i (docs/protocols/gemini.md 6.5), steered by the
+/// water's sound speed, with the job's range bins, sample size and pulse length, and with the job's gain
+/// added. A head that only listens receives no echo.
 render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig& head);
 
 }  // namespace sonard::server

@@ -37,10 +37,10 @@ class GeminiSurvey final : public Survey {
   GeminiSurvey(const HeadConfig& head, const SurveyOptions& options)
       : config_(gemini_config(head)),
         asked_(client_settings(options)),
-        // What make_ping_config() makes a head can do.
+        // Every output of make_ping_config() is valid for plan_ping().
         plan_(gemini::plan_ping(gemini::make_ping_config(asked_), config_.device).value()) {}
 
-  // The head's own limit, the way of the last echo, and the datagrams on the link
+  // The longest of: the head's own limit, the way of the last echo, the datagrams on the link
   // (docs/protocols/gemini.md 8.4, 8.5).
   std::chrono::nanoseconds natural_period() const override {
     constexpr int head_and_tail = 2;

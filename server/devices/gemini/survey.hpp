@@ -9,8 +9,8 @@
 
 namespace sonard::server {
 
-/// The settings of the user go the way of a client's: through a ping configuration, and the head's plan of
-/// it. A frame is a ping, and has its number.
+/// Applies the user's settings as a client would: through a ping configuration and the head's plan of it. A
+/// frame is a ping, and has its number.
 /// @throws CLI::ValidationError
 std::unique_ptr<Survey> survey_of_gemini(const HeadConfig& head, const SurveyOptions& options);
 

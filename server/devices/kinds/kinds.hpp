@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of device that this program is built with.
+// All kinds of device in this program.
 #pragma once
 
 #include <span>
@@ -8,17 +8,17 @@
 
 namespace sonard::server {
 
-/// In the order of cmake/devices.cmake, from which the build writes this function.
+/// In the order of cmake/devices.cmake; the build writes this function.
 std::span<const DeviceKind* const> device_kinds();
 
 /// The kinds for the loader of configurations.
 std::span<const HeadKind* const> head_kinds();
 
-/// The kind of a type of head; null where there is none.
+/// The kind of a type of head; null if there is none.
 const DeviceKind* kind_of_type(std::string_view type);
 
-/// The kind of a head of a log: what the log says, or the kind whose users know such logs; null where neither
-/// tells.
+/// The kind of a head in a log: named by the log, or the kind that uses .glf and .dat logs; null if neither
+/// is known.
 const DeviceKind* kind_of_logged(std::string_view device, bool scanning, LogKind log);
 
 /// The first ping in a datagram of any kind of device.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What only a head of type `micron` has in the configuration (docs/configuration.md).
+// Configuration that only a head of type `micron` has (docs/configuration.md).
 #pragma once
 
 #include "protocol/micron/device_config.hpp"
@@ -8,13 +8,13 @@
 
 namespace sonard::server {
 
-/// The head turns about the z axis of its mount, and looks along x where it says "ahead". Its jobs fill in
-/// `range` of the acoustics.
+/// The head turns about the z axis of its mount; its "ahead" is the x axis. Its jobs set `range` of the
+/// acoustics.
 struct MicronConfig final : DeviceSettings {
   micron::DeviceConfig device;
   SerialLinkConfig serial;
-  double nominal_gain_db = 36.0;  ///< of the client's, at which the level is that of the acoustics; [0, 80]
-  double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse without length
+  double nominal_gain_db = 36.0;          ///< client's gain at which levels are as in the acoustics; [0, 80]
+  double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse of no length
 };
 
 /// The configuration of a head of this type.
@@ -22,7 +22,7 @@ inline const MicronConfig& micron_config(const HeadConfig& head) {
   return static_cast<const MicronConfig&>(*head.device);
 }
 
-/// The acoustics of such a head, where nothing is configured.
+/// Default acoustics of such a head.
 render::SonarSettings micron_acoustics();
 
 }  // namespace sonard::server

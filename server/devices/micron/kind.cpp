@@ -20,7 +20,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint16_t loopback_port = 4001;  // that of serial device servers
+constexpr std::uint16_t loopback_port = 4001;  // usual for serial device servers
 
 class ConnectedMicron final : public ConnectedDevice {
  public:
@@ -137,10 +137,9 @@ const DeviceKind& micron_kind() {
   return kind;
 }
 
-// Beam of docs/protocols/micron.md 10. Levels: a wall across the beam 5 m away comes to about 55 dB of the
-// 80 at the nominal gain, the noise under the ceiling of the TVG to 5 dB at a gain of 28 %, the ring-down to
-// 24 at 58 %, and one ping of six is hit by a burst of interference, as recordings show
-// (docs/physics.md 2.16).
+// Beam: docs/protocols/micron.md 10. Levels as in recordings (docs/physics.md 2.16): at the nominal gain, a
+// wall across the beam 5 m away is at about 55 of 80 dB. At a gain of 28 %, the noise under the ceiling of
+// the TVG is at 5 dB; at 58 %, the ring-down is at 24 dB. One ping in six has a burst of interference.
 render::SonarSettings micron_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
   render::SonarSettings acoustics;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Micron as the server knows it.
+// The kind of device of the Micron.
 #pragma once
 
 #include "server/devices/device_kind.hpp"

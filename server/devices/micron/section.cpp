@@ -112,7 +112,7 @@ MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, 
       "vehicle, [0, 90, 0] a head that scans the upright plane across the vehicle.");
   MicronConfig config;
   apply_water(section, context, micron::carrier_hz, head);
-  // What turns its times into ranges; hosts reckon with 1500 m/s (docs/protocols/micron.md 4).
+  // This sound speed turns times into ranges; hosts assume 1500 m/s (docs/protocols/micron.md 4).
   config.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;

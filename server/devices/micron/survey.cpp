@@ -60,7 +60,7 @@ micron::ScanSettings scan_settings(const SurveyOptions& options) {
   return settings;
 }
 
-/// Where a scan begins: ahead, or at the limit that it turns away from.
+/// First bearing of a scan: ahead, or the limit that it turns away from.
 int first_bearing(const micron::ScanSettings& settings) {
   if (!settings.sector) {
     return micron::bearing_ahead;
@@ -85,7 +85,8 @@ class MicronSurvey final : public Survey {
     return job;
   }
 
-  // A turn ends before it comes back to where it began; a sweep ends with the line at the other limit.
+  // A turn ends before its first bearing comes again; a sweep of a sector ends with the line at the other
+  // limit.
   std::vector<int> frames(int pings) override {
     micron::Sweep sweep(config_.device.limits_order);
     sweep.configure(command_, first_bearing(asked_));
@@ -109,7 +110,7 @@ class MicronSurvey final : public Survey {
   Sector sector() const override {
     Sector sector{-std::numbers::pi, 2.0 * std::numbers::pi, asked_.step * unit_rad};
     if (asked_.sector) {
-      // Boot down, and not told so, it looks to the other side than it says.
+      // A boot-down head that the host does not know to be inverted looks to the opposite side.
       const bool mirrored = config_.device.mounted_inverted;
       sector.left_rad =
           mirrored ? -micron::bearing_rad(asked_.sector->right) : micron::bearing_rad(asked_.sector->left);
@@ -141,7 +142,7 @@ class MicronSurvey final : public Survey {
   MicronConfig config_;
   micron::ScanSettings asked_;
   micron::HeadCommand command_;
-  std::vector<int> bearings_;  ///< of every ping that frames() has laid out, in units
+  std::vector<int> bearings_;  ///< of every ping planned by frames(), in units
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace sonard::server {
 
-/// The settings of the user go the way of a host's: through a head command, and the head's job for a line. A
-/// frame is a turn, or a sweep of the sector from one limit to the other, and of whole ones only.
+/// Applies the user's settings as a host would: through a head command and the head's job for a line. A frame
+/// is a turn, or a sweep of the sector from one limit to the other. Only whole frames count.
 /// @throws CLI::ValidationError
 std::unique_ptr<Survey> survey_of_micron(const HeadConfig& head, const SurveyOptions& options);
 

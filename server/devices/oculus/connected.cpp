@@ -41,7 +41,7 @@ class ConnectedOculus final : public ConnectedDevice {
     try {
       stream_->rebind({found->address, config_.tcp_port});
       status_->rebind({found->address, 0});
-    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is left
+    } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is free
       log_.error("head={} cannot follow {} to {}: {}", name_, found->interface, address_text(found->address),
                  error.what());
       return;
@@ -61,8 +61,8 @@ class ConnectedOculus final : public ConnectedDevice {
     static_assert(oculus::Device::stream_channel == 0 && oculus::Device::status_channel == 1);
     auto stream = std::make_unique<TcpTransport>(
         io, TcpTransportConfig{{address_, config_.tcp_port}, config_.allow}, clock);
-    // Clients of some drivers connect to where status packets come from: they leave from the address that is
-    // connected to.
+    // Some drivers connect to the source address of status packets, so these leave from the address of the
+    // TCP socket.
     auto status = std::make_unique<UdpTransport>(
         io, clock, UdpTransportConfig{.bind = {address_, 0}, .allow = {}, .link = {}});
     stream_ = stream.get();
@@ -85,8 +85,8 @@ class ConnectedOculus final : public ConnectedDevice {
   const OculusConfig config_;
   Ipv4 address_, netmask_;
   oculus::Device device_;
-  TcpTransport* stream_ = nullptr;  ///< of transport_
-  UdpTransport* status_ = nullptr;  ///< likewise
+  TcpTransport* stream_ = nullptr;  ///< owned by transport_
+  UdpTransport* status_ = nullptr;  ///< owned by transport_
   SeveralTransports transport_;
   PeerLog log_;
 };

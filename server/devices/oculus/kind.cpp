@@ -135,12 +135,12 @@ const DeviceKind& oculus_kind() {
   return kind;
 }
 
-// Levels are those of the other multibeam head at nearly the same frequency; its recordings and those of an
-// Oculus show the same noise against their echoes.
+// Levels of the other multibeam head, at nearly the same frequency: recordings of both show the same ratio of
+// noise to echoes.
 render::SonarSettings oculus_acoustics() {
   render::SonarSettings acoustics;
   acoustics.aperture.azimuth = render::Aperture::Azimuth::array;
-  acoustics.aperture.fine_beams = 1;  // its beams are narrower than they resolve
+  acoustics.aperture.fine_beams = 1;  // beams are spaced closer than their resolution
   acoustics.aperture.element_amplitude_sd = 0.12;
   acoustics.aperture.element_phase_sd_rad = 7 * degree;
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc;
@@ -157,7 +157,7 @@ render::SonarSettings oculus_acoustics() {
   return acoustics;
 }
 
-// Data sheets: 1.0 and 0.6 degrees, 4 and 2.5 mm of an M750d; 0.6 and 0.4 degrees, 2.5 mm of an M1200d.
+// Data sheets: M750d 1.0 and 0.6 degrees, 4 and 2.5 mm; M1200d 0.6 and 0.4 degrees, 2.5 mm.
 std::array<OculusModeAcoustics, 2> oculus_modes(const oculus::Model& model) {
   const bool m1200d = model.part_number == oculus::m1200d.part_number;
   const render::Water water;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Oculus as the server knows it.
+// The kind of device of the Oculus.
 #pragma once
 
 #include "server/devices/device_kind.hpp"

@@ -143,7 +143,7 @@ render::Water water_of(const WaterConfig& water) {
   return {water.temperature_c, water.salinity_ppt, water.depth_m, water.ph};
 }
 
-/// What water does at each frequency; `head` has what it does at the low one.
+/// Sets the effects of water at each frequency; `head` holds the values of the low one.
 void apply_water_to_modes(const HeadContext& context, const HeadConfig& head, OculusConfig& config) {
   const oculus::Model& model = config.device.plan.model;
   const render::Water water = water_of(context.water);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of the loader that reads a head of type `oculus`.
+// Reads the section of a head of type `oculus`.
 #pragma once
 
 #include "server/config/head_section.hpp"
@@ -7,7 +7,7 @@
 
 namespace sonard::server {
 
-/// @param head has the defaults, and gets what the section says, but for `head.device`
+/// @param head holds the defaults; values of the section replace them, except `head.device`
 OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, HeadConfig& head);
 
 }  // namespace sonard::server

@@ -9,8 +9,8 @@
 namespace sonard::server {
 namespace {
 
-/// Beams look where the table of the head says (4.5), from one end of the aperture to the other: each fills
-/// half the way to its neighbours, in the sine.
+/// Beams point to the bearings of the head's table (docs/protocols/oculus.md 4.5), from one end of the
+/// aperture to the other. Each reaches half way to its neighbours, in sine.
 std::vector<double> beam_edges_rad(int beams, double aperture_deg) {
   const double end = std::sin(aperture_deg * std::numbers::pi / 360.0);
   const double outermost = end * beams / (beams - 1);
@@ -42,7 +42,7 @@ render::SonarSettings oculus_sonar_settings(const PingJob& job, const HeadConfig
   render::PhysicalModel& physical = settings.physical;
   physical.range_cell_m = mode.range_cell_m;
   physical.absorption_db_per_m = mode.absorption_db_per_m;
-  // Whatever the head makes of its water at one frequency, it makes of it at the other.
+  // The head's error in the absorption of its water is the same at both frequencies.
   physical.tvg_absorption_db_per_m += mode.absorption_db_per_m - low.absorption_db_per_m;
   physical.multipath.wavelength_m = mode.wavelength_m;
   physical.noise_level_db += mode.noise_db;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows both a ping of an Oculus and the renderer's settings.
+// Maps a ping of an Oculus to the renderer's settings. Only this file uses both.
 #pragma once
 
 #include "protocol/common/ping_job.hpp"
@@ -9,8 +9,8 @@
 namespace sonard::server {
 
 /// Renderer settings of one ping.
-/// @return the acoustics of the head at the frequency of the job, with its beams
-///   (docs/protocols/oculus.md 4.5, 8), rows, width of samples and gamma, and the gain moved by the job's
+/// @return the acoustics of the head at the frequency of the job, with the job's beams
+/// (docs/protocols/oculus.md 4.5, 8), rows, sample width, gamma and gain
 render::SonarSettings oculus_sonar_settings(const PingJob& job, const HeadConfig& head);
 
 }  // namespace sonard::server

@@ -16,7 +16,7 @@
 namespace sonard::server {
 namespace {
 
-/// With 512 beams and linear samples, as of other heads.
+/// Uses 512 beams and linear samples, like other heads.
 oculus::SimpleFire fire_of(const SurveyOptions& options, const oculus::Model& model) {
   const OptionsOf taken("Oculus");
   taken.refuse("--compression", options.compression_log2.has_value());

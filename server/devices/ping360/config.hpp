@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What only a head of type `ping360` has in the configuration (docs/configuration.md).
+// Configuration that only a head of type `ping360` has (docs/configuration.md).
 #pragma once
 
 #include <array>
@@ -16,40 +16,40 @@
 
 namespace sonard::server {
 
-/// To which clients send that have found the head (docs/protocols/ping360.md 4.1).
+/// Destination port of clients that have found the head (docs/protocols/ping360.md 4.1).
 inline constexpr std::uint16_t ping360_data_port = 12345;
 
-/// What a head transmits at boot (docs/protocols/ping360.md 2.3), and levels are stated for.
+/// Transmit frequency at boot (docs/protocols/ping360.md 2.3); levels refer to it.
 inline constexpr double ping360_carrier_hz = 740'000.0;
 
-/// The socket at which clients find the head (docs/protocols/ping360.md 5).
+/// The socket that answers discovery requests (docs/protocols/ping360.md 5).
 struct DiscoveryConfig {
   Endpoint bind{0, 30303};
-  Ipv4 address = 0;  ///< that the answer names: one at which a socket of `udp` is reached
+  Ipv4 address = 0;  ///< in the answer: an address at which a socket of `udp` is reached
   std::array<std::uint8_t, 6> mac{0x54, 0x10, 0xEC, 0x12, 0x34, 0x56};
   AllowList allow;
 };
 
-/// The head turns about the z axis of its mount, and looks along x at the angle `device.bearing_offset`. Its
-/// jobs fill in `range` of the acoustics.
+/// The head turns about the z axis of its mount; the angle `device.bearing_offset` is along x. Its jobs set
+/// `range` of the acoustics.
 struct Ping360Config final : DeviceSettings {
   ping360::DeviceConfig device;
-  std::vector<UdpTransportConfig> udp;  ///< channels 0, 1, ... of the device, all with the faults of one link
-  /// Behind them, as one channel more; without tcp, udp and pty: there is none.
+  std::vector<UdpTransportConfig> udp;  ///< channels 0, 1, ... of the device; all have the faults of one link
+  /// The channel after the UDP channels; without tcp, udp and pty there is no serial line.
   SerialLinkConfig serial;
   std::optional<DiscoveryConfig> discovery;
-  /// A client chooses the frequency. The maker calls 650 to 850 kHz usable (docs/protocols/ping360.md 9).
+  /// Clients choose the frequency. The maker calls 650 to 850 kHz usable (docs/protocols/ping360.md 9).
   render::TransducerBand transducer_band{650e3, 850e3};
-  /// Whose absorption follows the frequency; nullopt: the configuration states the absorption.
+  /// Sets absorption by frequency; nullopt: the configuration sets the absorption.
   std::optional<render::Water> water = render::Water{};
 };
 
-/// Of a head of this type.
+/// Configuration of a head of this type.
 inline const Ping360Config& ping360_config(const HeadConfig& head) {
   return static_cast<const Ping360Config&>(*head.device);
 }
 
-/// The acoustics of such a head, where nothing is configured.
+/// Default acoustics of such a head.
 render::SonarSettings ping360_acoustics();
 
 }  // namespace sonard::server

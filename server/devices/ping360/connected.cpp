@@ -32,7 +32,7 @@ std::vector<std::unique_ptr<Transport>> open_transports(const Ping360Config& con
   return transports;
 }
 
-/// Tells clients where the head is, and does not take the addresses that they give it.
+/// Answers discovery requests with the head's address, and ignores requests to change it.
 class Discovery {
  public:
   Discovery(const std::string& head, const DiscoveryConfig& config, boost::asio::io_context& io)

@@ -47,7 +47,7 @@ class Ping360Kind final : public DeviceKind {
     for (std::size_t i = 0; i < config.udp.size(); ++i) {
       sockets.push_back({PlannedSocket::Transport::udp, config.udp[i].bind, fmt::format("udp[{}].bind", i)});
     }
-    return sockets;  // that of discovery is shared
+    return sockets;  // the discovery socket is shared, so it is not listed
   }
   std::string socket_key() const override { return "udp"; }
 
@@ -130,9 +130,9 @@ const DeviceKind& ping360_kind() {
   return kind;
 }
 
-// A beam of 2 by 25 degrees, as the maker's data sheet has it. The law of the samples is not published: half
-// decibels, as of the other scanning head, at levels that put a wall 5 m away into the upper half of the
-// scale. Nearer than 0.75 m the transducer rings, and pictures of owners are bright from the first sample on
+// Beam of 2 by 25 degrees, from the maker's data sheet. The law of the samples is not published. Assumed:
+// half decibels, as in the other scanning head, with a wall 5 m away in the upper half of the scale. Nearer
+// than 0.75 m the transducer rings, and images of owners are bright from the first sample on
 // (docs/protocols/ping360.md 2.3).
 render::SonarSettings ping360_acoustics() {
   constexpr double degree = std::numbers::pi / 180.0;
@@ -140,7 +140,7 @@ render::SonarSettings ping360_acoustics() {
   acoustics.aperture.beam_edges_rad = {1.0 * degree, -1.0 * degree};
   acoustics.aperture.receive_beamwidth_rad = 2.0 * degree;
   acoustics.aperture.vertical_beamwidth_rad = 25.0 * degree;
-  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // one transducer sends and hears
+  acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // same transducer both ways
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;

@@ -10,12 +10,12 @@
 namespace sonard::server {
 namespace {
 
-// Levels were set with what clients ask for at 10 m (docs/protocols/ping360.md 2.3).
+// Levels were set with the settings that clients use at 10 m (docs/protocols/ping360.md 2.3).
 constexpr double usual_pulse_s = 53e-6;
 constexpr int usual_sample_period = 444;
 
-/// What the water does to sound of another frequency. Whatever the head makes of its water at its usual
-/// frequency, it makes of it at this one.
+/// Changes wavelength and absorption to those of another frequency. The head's error in the absorption of its
+/// water stays as at its usual frequency.
 void follow_frequency(double frequency_hz, const Ping360Config& config, render::PhysicalModel& physical) {
   physical.multipath.wavelength_m *= ping360_carrier_hz / frequency_hz;
   if (config.water) {
@@ -41,7 +41,7 @@ render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfi
   physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
   physical.usual_pulse = {job.sound_speed_mps * usual_pulse_s / 2.0,
                           job.sound_speed_mps * ping360::sample_time_s(usual_sample_period) / 2.0};
-  // The transducer cannot listen before its tone is over, and rings from then on.
+  // The transducer can receive only after its tone ends, and then rings.
   const double longer_m = std::max(0.0, physical.range_cell_m - physical.usual_pulse.cell_m);
   physical.ring_down.peak_m += longer_m;
   physical.ring_down.end_m += longer_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place that knows both a ping of a Ping360 and the renderer's settings.
+// Maps a ping of a Ping360 to the renderer's settings. Only this file uses both.
 #pragma once
 
 #include "protocol/common/ping_job.hpp"
@@ -8,8 +8,8 @@
 
 namespace sonard::server {
 
-/// Renderer settings of one ping: the head's acoustics with the bins of the job, the range cell of its pulse
-/// at the true speed of sound, and the gain moved by the job's.
+/// Renderer settings of one ping: the head's acoustics with the job's bins, the range cell of its pulse at
+/// the true sound speed, and the job's gain.
 render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfig& head);
 
 }  // namespace sonard::server

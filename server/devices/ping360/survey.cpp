@@ -23,7 +23,7 @@ namespace {
 constexpr double gradian_rad = 2.0 * std::numbers::pi / ping360::gradians_per_turn;
 constexpr int most_step = 10;
 
-/// What a user wants of a scan, in the units of the head.
+/// The scan that a user requests, in the head's units.
 struct Asked {
   double range_m = 10.0;
   double sound_speed_mps = 1500.0;
@@ -98,8 +98,8 @@ class Ping360Survey final : public Survey {
                                    device_.time_scale * static_cast<double>(period.count()))});
   }
 
-  // What is scanned one way ends before it comes back to where it began; a sweep to and fro with the ping at
-  // the other limit.
+  // A one-way scan ends before its first angle comes again; a scan to and fro ends with the ping at the other
+  // limit.
   std::vector<int> frames(int pings) override {
     std::vector<int> first_pings{0};
     angles_.clear();
@@ -107,7 +107,7 @@ class Ping360Survey final : public Survey {
                          device_.clamps_scan_to_stop);
     int before = asked_.scan.start_angle;
     int way_before = 0;
-    // One ping more says whether the last one ended a frame.
+    // One ping more shows whether the last one ended a frame.
     for (int ping = 0; ping <= pings; ++ping) {
       const int angle = sweep.angle();
       const int way = ping360::shortest_turn(before, angle);
@@ -173,7 +173,7 @@ class Ping360Survey final : public Survey {
  private:
   ping360::DeviceConfig device_;
   Asked asked_;
-  std::vector<int> angles_;  ///< of every ping that frames() has laid out, in gradians
+  std::vector<int> angles_;  ///< of every ping planned by frames(), in gradians
 };
 
 }  // namespace
