@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Something that looks wrong, for the person who set it up.
+// A likely error in a setup, reported to the user.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Finding {
   bool operator==(const Finding&) const = default;
 };
 
-/// Of poses whose stamps stand still while pings wait for them to move: no ping is made.
+/// Code for poses whose stamps do not move while pings wait for them: no ping is made.
 inline constexpr const char* no_ping_by_stamps = "stamps_never_moved";
 
 }  // namespace sonard::server

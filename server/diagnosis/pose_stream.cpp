@@ -12,17 +12,17 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint64_t enough_poses = 20;       // to tell a clock by
-constexpr std::chrono::minutes worth_saying{1};  // of a clock that went back once
+constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate
+constexpr std::chrono::minutes worth_saying{1};  // a clock that went back once is reported for so long
 
 struct Unit {
   std::string_view name;
-  double time_rate;  ///< of stamps in this unit that are taken for nanoseconds
+  double time_rate;  ///< measured rate of stamps in this unit, read as nanoseconds
 };
-constexpr double shortest_run_s = 1e-3;  ///< of stamps over that many poses; what is shorter is no time
+constexpr double shortest_run_s = 1e-3;  ///< stamps of all poses that span less are not times
 constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6}, Unit{"seconds", 1e-9}};
 
-/// Of how fast stamps go on, by the clock.
+/// Compares the rate of the stamps with the clock.
 std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
   if (summary.poses < enough_poses || !summary.time_rate || *summary.time_rate <= 0.0) {
     return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
   return std::nullopt;
 }
 
-/// Of stamps that do not go on with the poses.
+/// Finds stamps that do not advance with the poses.
 std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::string& name, PingClock clock) {
   switch (stamps.looks()) {
     case StampWatch::Looks::good:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What looks wrong about the poses of one input.
+// Findings about the poses of one input.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace sonard::server {
 
-/// Stamps of another unit or without meaning, a clock that was set back, several publishers at once. Belongs
-/// to the I/O thread.
+/// Finds stamps in a wrong unit or without meaning, a clock that went back, and several publishers at once.
+/// Belongs to the I/O thread.
 /// @param index of the input
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now);
 

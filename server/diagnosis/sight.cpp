@@ -49,7 +49,7 @@ glm::dvec3 nearest_on_segment(const glm::dvec3& p, const glm::dvec3& a, const gl
   return a + share * along;
 }
 
-/// The foot of the perpendicular where it is within the triangle, else the nearest point of an edge.
+/// Nearest point of a triangle: the foot of the perpendicular if it is inside, else a point on an edge.
 glm::dvec3 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3, 3>& t) {
   const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
   const double area2 = glm::dot(normal, normal);
@@ -72,14 +72,14 @@ glm::dvec3 nearest_on_triangle(const glm::dvec3& p, const std::array<glm::dvec3,
   return nearest;
 }
 
-/// What a ray meets of a body.
+/// Intersections of a ray with a body.
 struct Crossings {
   int count = 0;
   double nearest = std::numeric_limits<double>::infinity();  ///< in lengths of the direction
   bool from_behind = false;                                  ///< the nearest triangle shows its back
 };
 
-/// Moeller and Trumbore 1997.
+/// Counts the intersection of a ray with a triangle (Moeller and Trumbore 1997).
 void cross(const glm::dvec3& from, const glm::dvec3& direction, const std::array<glm::dvec3, 3>& t,
            Crossings& crossings) {
   const glm::dvec3 a = t[1] - t[0];
@@ -113,9 +113,9 @@ Crossings crossings_of(const render::Body& body, const glm::dvec3& from, const g
 
 enum class Within { outside, solid, hollow };
 
-/// Inside a closed mesh rays leave through an odd number of triangles. Three odd directions, so that an open
-/// mesh, as a bed or a tank without a lid, is not taken for a closed one. A room shows the faces of its
-/// triangles to who is in it, a solid thing their backs.
+/// A ray from inside a closed mesh crosses an odd number of triangles. Three rays must be odd, so that an
+/// open mesh (a bed, a tank without a lid) does not count as closed. From inside, a room shows the front of
+/// its triangles, a solid body the back.
 Within where_in(const render::Body& body, const glm::dvec3& p_body) {
   int backs = 0;
   for (const glm::dvec3& direction : {glm::dvec3(0.137, 0.071, 0.988), glm::dvec3(-0.113, 0.989, 0.093),
@@ -129,7 +129,7 @@ Within where_in(const render::Body& body, const glm::dvec3& p_body) {
   return backs >= 2 ? Within::solid : Within::hollow;
 }
 
-/// Whether a ray meets a box.
+/// True if a ray meets a box.
 bool meets(const BodyBox& box, const glm::dvec3& from, const glm::dvec3& direction) {
   double enters = 0.0;
   double leaves = std::numeric_limits<double>::infinity();
@@ -146,19 +146,19 @@ bool meets(const BodyBox& box, const glm::dvec3& from, const glm::dvec3& directi
   return enters <= leaves;
 }
 
-/// Easting and northing of UTM, in either order: 100 to 900 km, and more than 1000 km.
+/// True for UTM easting and northing, in either order: 100 to 900 km, and 1000 to 10 000 km.
 bool looks_like_utm(const glm::dvec3& p) {
   const double less = std::min(p.x, p.y);
   const double more = std::max(p.x, p.y);
   return less > 1e5 && less < 9e5 && more > 1e6 && more < 1e7 && std::abs(p.z) < 1.2e4;
 }
 
-/// A body where it is now, seen from the sonar.
+/// A body at its current pose, with the sonar's position.
 struct Neighbour {
   const render::Body* body = nullptr;
   render::Pose T_world_body;
-  BodyBox box;              ///< in its own frame
-  glm::dvec3 sonar_m{0.0};  ///< likewise
+  BodyBox box;              ///< in the body's frame
+  glm::dvec3 sonar_m{0.0};  ///< in the body's frame
   bool is_terrain = false;
 };
 
@@ -200,7 +200,7 @@ class LookAround {
  private:
   void add(std::string code, std::string text) { findings_.push_back({std::move(code), std::move(text)}); }
 
-  /// Whether a place is within the box of any body, or below the surface and right above one.
+  /// True if a place is within the sonar's range of the box of any body.
   bool is_in_the_world(const glm::dvec3& p) const {
     return std::ranges::any_of(neighbours_, [&](const Neighbour& neighbour) {
       const glm::dvec3 p_body = render::inverse(neighbour.T_world_body) * p;
@@ -208,8 +208,8 @@ class LookAround {
     });
   }
 
-  /// The unit that positions seem to be in, where they are not in metres: "centimetres or millimetres" if
-  /// either would put the sonar into the world. Empty: none would.
+  /// The likely unit of positions if they are not in metres: "centimetres or millimetres" if either would put
+  /// the sonar into the world; empty if neither would.
   std::string wrong_unit() const {
     const glm::dvec3& p = sight_.T_world_sonar.position_m;
     std::string unit;
@@ -237,8 +237,8 @@ class LookAround {
                                                    : ""));
   }
 
-  /// A quaternion that comes with w first, read as x, y, z, w: that of a level vehicle leans by 180 degrees
-  /// less its heading. (One that heads due west looks level, and cannot be told.)
+  /// Detects a quaternion with w first that was read as x, y, z, w: a level vehicle then leans by 180 degrees
+  /// minus its heading. (A vehicle that heads due west looks level and is not detected.)
   void note_upside_down() {
     const glm::dquat& q = sight_.T_world_vehicle.orientation;
     const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
@@ -258,7 +258,7 @@ class LookAround {
       const Within within = where_in(body, neighbour.sonar_m);
       const bool is_vehicle = body.name == sight_.vehicle_model;
       const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
-      // One may be inside of a tank or a harbour, and see it.
+      // A sonar may be inside a tank or a harbour, and see it.
       const bool holds_a_sonar = within == Within::hollow && sight_.sees_surface.value_or(true) &&
                                  !is_vehicle && glm::length(size) > 5.0;
       if (within != Within::outside && !holds_a_sonar) {
@@ -276,7 +276,7 @@ class LookAround {
                : Crossings{};
   }
 
-  /// Whether it may be a bed: a sheet or a slab of more than ten metres both ways.
+  /// True for a possible bed: terrain, or a sheet or slab of more than ten metres both ways.
   static bool may_be_ground(const Neighbour& neighbour) {
     const glm::dvec3 size = neighbour.box.max_m - neighbour.box.min_m;
     std::array<double, 3> sides{size.x, size.y, size.z};
@@ -284,8 +284,8 @@ class LookAround {
     return neighbour.is_terrain || (sides[1] > 10.0 && sides[0] < 0.5 * sides[1]);
   }
 
-  /// Reports a sonar below the lowest body, if that is wide. If its echo is received, the body may be ice or
-  /// a ship, unless the echo comes from the back of a surface.
+  /// Reports a sonar below the lowest body, if that body is wide. If its echo is visible, the body may be ice
+  /// or a ship, unless the echo comes from the back of a surface.
   void note_under_ground() {
     const Neighbour* ground = nullptr;
     Crossings overhead;
@@ -335,7 +335,7 @@ class LookAround {
       });
     }
     if (nearest == nullptr) {
-      if (world_.triangle_count() > 0) {  // else it is open water on purpose
+      if (world_.triangle_count() > 0) {  // else it is open water by configuration
         add("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden.");
       }
     } else if (!sees_surface && least_m > sight_.range_m) {
@@ -378,7 +378,7 @@ class LookAround {
   std::string where_is(std::string_view article, const Neighbour& nearest, double away_m,
                        const glm::dvec3& point_world) const {
     const glm::dvec3 p = render::inverse(sight_.T_world_sonar) * point_world;
-    const double bearing_rad = std::atan2(-p.y, p.x);  // to starboard
+    const double bearing_rad = std::atan2(-p.y, p.x);  // positive to starboard
     const double elevation_rad = std::atan2(p.z, std::hypot(p.x, p.y));
     return fmt::format(
         "{} nearest body, '{}', is {:.4g} m away, {:.0f} degrees to {} and {:.0f} degrees {} the axis of the "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a picture is black: what the sonar's place in the world says.
+// Causes of a black picture that follow from the sonar's place in the world.
 #pragma once
 
 #include <limits>
@@ -15,33 +15,34 @@
 
 namespace sonard::server {
 
-/// From where a sonar looks, and how far.
+/// Pose and range of a sonar, and results of its newest ping.
 struct Sight {
   render::Pose T_world_vehicle;
   render::Pose T_world_sonar;
   double range_m = 0.0;
-  /// false: its newest ping had no surface in range and fan; nullopt: there was no ping
+  /// false: no surface was in range and fan of the newest ping; nullopt: there was no ping
   std::optional<bool> sees_surface = false;
-  /// PingStatistics::echo_over_floor of that ping
+  /// PingStatistics::echo_over_floor of the newest ping
   double echo_over_floor = std::numeric_limits<double>::infinity();
-  std::string vehicle_model{};  ///< the body that the vehicle is; empty: none
-  bool hides_vehicle = false;   ///< whether that is left out of the picture
+  std::string vehicle_model{};  ///< the vehicle's own body; empty: it has no body
+  bool hides_vehicle = false;   ///< true if the image omits it
 };
 
-/// A box around a body, in its own frame; of a body without a mesh it is inside out.
+/// A bounding box of a body, in its own frame; without a mesh, min_m > max_m.
 struct BodyBox {
   glm::dvec3 min_m, max_m;
 };
-/// In the order of the bodies. Looks at every corner of every mesh.
+/// Bounding boxes, in the order of the bodies. Reads every corner of every mesh.
 std::vector<BodyBox> boxes_of(const render::World& world);
 
-/// Echoes of less intensity than this, re noise and the least step of samples, do not stand out of a picture.
+/// Echo intensity, relative to noise and the least step of samples, below which an echo does not stand out in
+/// a picture.
 inline constexpr double least_visible_echo = 0.25;
 
-/// What is wrong with it, the likeliest cause first; empty: nothing is. Distances are those to triangles:
-/// a world of a million takes some ten milliseconds, but only where the sonar sees nothing.
+/// Findings about the sonar's place, the likeliest cause first; empty if nothing looks wrong. Distances are
+/// to triangles: a world of a million takes some ten milliseconds, but only if the sonar sees nothing.
 /// @param boxes boxes_of(world)
-/// @param moved where bodies are that are not where the world has them
+/// @param moved current poses of bodies that have moved
 std::vector<Finding> look_around(const render::World& world, const std::vector<BodyBox>& boxes,
                                  const std::vector<PosedBody>& moved, const Sight& sight);
 

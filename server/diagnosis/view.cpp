@@ -18,10 +18,10 @@ namespace sonard::server {
 namespace {
 
 constexpr double half_turn_deg = 180.0;
-constexpr double told_deg = 0.5;  // less is rounded away
+constexpr double told_deg = 0.5;  // smaller angles are rounded away
 constexpr double least_up = 0.5;  // of a bed's normal: slopes of up to 60 degrees
 
-/// "forward", "30 degrees to port"
+/// "forward", "30 degrees to port".
 std::string bearing_words(double to_port_deg) {
   const double off_deg = std::abs(to_port_deg);
   const char* const side = to_port_deg > 0 ? "port" : "starboard";
@@ -35,7 +35,7 @@ std::string bearing_words(double to_port_deg) {
                                              : fmt::format("{:.0f} degrees to {}", off_deg, side);
 }
 
-/// A wedge of two directions less than half a turn apart, in a plane.
+/// A wedge between two directions less than 180 degrees apart, in a plane.
 struct Wedge {
   glm::dvec2 low, high;  ///< high is counter-clockwise of low
 
@@ -43,7 +43,7 @@ struct Wedge {
   double below_high(const glm::dvec2& p) const { return high.y * p.x - high.x * p.y; }
 };
 
-/// Cuts a segment where `side` is negative. False: nothing is left.
+/// Cuts off the part of a segment where `side` is negative. Returns false if nothing is left.
 template <class Side>
 bool cut(glm::dvec2& a, glm::dvec2& b, Side side) {
   const double at_a = side(a);
@@ -65,7 +65,8 @@ double nearest_to_origin(const glm::dvec2& a, const glm::dvec2& b) {
   return glm::length(a + share * along);
 }
 
-/// The plane of the axis that is nearest to upright, and the beam in it: a fan on its side is upright, too.
+/// The more upright of two planes through the acoustic axis, and the beam in it. It also serves a fan on its
+/// side.
 class BeamPlane {
  public:
   BeamPlane(const render::Pose& T_world_sonar, const render::SonarSettings& settings) {
@@ -82,7 +83,8 @@ class BeamPlane {
     wedge_ = {{std::cos(low_rad), std::sin(low_rad)}, {std::cos(high_rad), std::sin(high_rad)}};
   }
 
-  /// Where the plane cuts a triangle, and the beam that; corners are in the sonar's frame.
+  /// Updates the view with the part of a triangle that is in the plane and the beam; corners in the sonar's
+  /// frame.
   void look_at(const std::array<glm::dvec3, 3>& corners, BedView& view, double range_m) const {
     std::array<glm::dvec2, 3> cuts;
     std::size_t count = 0;
@@ -114,7 +116,8 @@ class BeamPlane {
   Wedge wedge_{};
 };
 
-/// How far straight below the origin a triangle lies; infinite: not below. Corners are in axes of the world.
+/// Depth of a triangle straight below the origin, in metres; infinite if it is not below. Corners in world
+/// axes.
 double depth_below(const std::array<glm::dvec3, 3>& corners) {
   const auto edge = [](const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.y - a.y * b.x; };
   const std::array<double, 3> weights{edge(corners[1], corners[2]), edge(corners[2], corners[0]),
@@ -129,7 +132,7 @@ double depth_below(const std::array<glm::dvec3, 3>& corners) {
   return z < 0 ? -z : std::numeric_limits<double>::infinity();
 }
 
-/// Corners of a triangle of a body from the sonar, in other axes.
+/// Transforms the corners of a body's triangle.
 std::array<glm::dvec3, 3> seen(const std::array<glm::dvec3, 3>& corners, const render::Pose& T_axes_body) {
   return {T_axes_body * corners[0], T_axes_body * corners[1], T_axes_body * corners[2]};
 }
@@ -190,7 +193,7 @@ std::optional<BedView> view_of_bed(const render::World& world, const std::vector
   each_triangle(*bed, [&](const std::array<glm::dvec3, 3>& corners) {
     const auto from_sonar = seen(corners, T_sonar_body);
     const glm::dvec3 normal = glm::cross(from_sonar[1] - from_sonar[0], from_sonar[2] - from_sonar[0]);
-    // Not the underside of a slab, nor a wall that is one body with the floor.
+    // Skips undersides of slabs, and walls that belong to the floor's body.
     if (glm::dot(normal, from_sonar[0]) < 0 && glm::dot(normal, up) > least_up * glm::length(normal)) {
       plane.look_at(from_sonar, view, settings.range.max_range_m());
     }
