@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the entities of a simulator to our vehicle and bodies.
+// Maps the entities of a simulator to our vehicle and bodies.
 #pragma once
 
 #include <cstddef>
@@ -17,28 +17,27 @@
 
 namespace sonard::server {
 
-/// What a simulator said at one instant, unchecked. Axes are ENU and FLU.
+/// Poses that a simulator sent for one instant, unchecked. Axes are ENU and FLU.
 struct EntityPoses {
   std::optional<std::int64_t> time_ns;  ///< simulated time; nullopt: the message has no stamp
   std::vector<pose::NamedTransform> entities;
 };
 
-/// Finds the configured entities in each message, and composes poses that are relative to parents. What is
-/// not configured is ignored. Reads no clock and no socket.
+/// Finds the configured entities in each message, and composes poses that are relative to parents. Ignores
+/// other entities. Reads no clock and no socket.
 class EntityMap {
  public:
   explicit EntityMap(const IgnitionPoseInput& input);
 
-  /// The message as a sample of ours. A body that is not in the message stays where it was, so it is left
-  /// out.
-  /// @return a text when there is no pose of the vehicle in it, one that is needed means nothing, or a name
-  /// that is needed is not unique: no image is better than one from a wrong place
+  /// Converts a message to a sample. A body that is not in the message stays where it was, so the sample
+  /// omits it.
+  /// @return an error text if the vehicle's pose is missing, a needed pose is invalid, or a needed name is
+  /// not unique: no image is better than an image from a wrong place
   Result<pose::PoseSample, std::string> map(const EntityPoses& poses);
 
-  /// Names that came and are not configured: those that were new since the last call, as far as seen() has
-  /// them.
+  /// Ignored names that are new since the last call, from among seen().
   std::vector<std::string> take_ignored();
-  /// Names that came, in alphabetical order: the first max_seen of them.
+  /// Names of received entities, in alphabetical order: the first max_seen that arrived.
   std::vector<std::string> seen() const { return {seen_.begin(), seen_.end()}; }
 
   static constexpr std::size_t max_seen = 256;

@@ -29,7 +29,8 @@ int option_of(int socket, int option) {
   return getsockopt(socket, SOL_SOCKET, option, &value, &size) == 0 ? value : 0;
 }
 
-/// A UDP socket on all addresses that shares its port: no other part of this program opens such sockets.
+/// True for a UDP socket on all addresses that shares its port: only Gazebo's library opens such sockets
+/// here.
 bool receives_discovery(int descriptor) {
   sockaddr_in local{};
   socklen_t size = sizeof(local);
@@ -49,8 +50,8 @@ std::vector<int> discovery_sockets() {
   return sockets;
 }
 
-/// Passes what came by the loopback interface, and multicast that this machine sent on another interface: a
-/// simulator here sends on another one unless IGN_IP names an address.
+/// Accepts datagrams from the loopback interface, and multicast that this machine sent on another interface:
+/// a simulator here uses another interface unless IGN_IP names an address.
 void drop_other_machines(int socket) {
   const auto metadata = [](int field) { return static_cast<std::uint32_t>(SKF_AD_OFF + field); };
   std::array<sock_filter, 6> program{{

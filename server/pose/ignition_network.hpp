@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far Gazebo's transport reaches, which opens its sockets by itself and once in a process.
+// Limits the reach of Gazebo's transport, which opens its sockets by itself, once per process.
 #pragma once
 
 #include "protocol/common/endpoint.hpp"
@@ -7,12 +7,11 @@
 namespace sonard::server {
 
 /// Call it before the first node: the library then joins discovery on the interface with this address, and
-/// listens there by TCP.
-/// @throws PoseSourceError for an address that this machine does not have, with which the library would take
-///   another one
+/// listens there on TCP.
+/// @throws PoseSourceError if this machine does not have the address; the library would use another one
 void set_ignition_address(Ipv4 address);
 
-/// Call it after the first node. The library receives discovery on all addresses, whatever its address is.
+/// Call it after the first node. The library receives discovery on all addresses, whatever its own address.
 /// From now on these sockets drop all datagrams of other machines.
 /// @throws PoseSourceError
 void keep_ignition_to_this_machine();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one file that includes the headers of Gazebo's transport, which take seconds to compile.
+// The only file that includes the headers of Gazebo's transport, which take seconds to compile.
 #include "server/pose/ignition_pose_source.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ namespace asio = boost::asio;
 #ifdef SONARD_GAZEBO_GZ
 namespace gazebo = gz;
 #else
-namespace gazebo = ignition;  // its name until the release Fortress
+namespace gazebo = ignition;  // its name before Gazebo Garden
 #endif
 
 struct Message {
@@ -50,7 +50,7 @@ std::optional<std::int64_t> stamp_ns(const gazebo::msgs::Header& header) {
   if (!header.has_stamp()) {
     return std::nullopt;
   }
-  // Beyond this, seconds as nanoseconds would overflow; EntityMap refuses it.
+  // Limited so that nanoseconds do not overflow; EntityMap rejects such a stamp.
   const std::int64_t seconds = std::min<std::int64_t>(header.stamp().sec(), 9'000'000'000);
   return seconds * 1'000'000'000 + header.stamp().nsec();
 }
@@ -61,10 +61,10 @@ pose::NamedTransform entity(const gazebo::msgs::Pose& pose) {
   return {pose.name(), {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-/// The library and protobuf print about what peers send, as often as these like.
+/// Redirects output of the library and protobuf, which peers can cause as often as they like.
 void take_lines_of_the_library() {
   take_library_lines();
-#if GOOGLE_PROTOBUF_VERSION < 4022000  // later ones log by Abseil
+#if GOOGLE_PROTOBUF_VERSION < 4022000  // later versions log through Abseil
   google::protobuf::SetLogHandler([](google::protobuf::LogLevel, const char*, int, const std::string& text) {
     log_library_line("libprotobuf", text);
   });
@@ -99,8 +99,8 @@ Result<EntityPoses, std::string> parse(const Message& message) {
 
 }  // namespace
 
-// Lives as long as any handler that is queued on the io_context. `waiting` and `stopped` are shared with the
-// thread of the transport, by `mutex`; all else belongs to the I/O thread.
+// Lives as long as any handler queued on the io_context. `waiting`, `crowded` and `stopped` are shared with
+// the transport's threads and guarded by `mutex`. Everything else belongs to the I/O thread.
 struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSource::Impl> {
   Impl(asio::io_context& context, IgnitionPoseInput configured, const Clock& used_clock, PoseSink poses_go_to)
       : io(context),
@@ -127,7 +127,7 @@ struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSourc
   bool stopped = false;
 };
 
-// On a thread of the transport. Reading the clock and queueing under one lock keeps arrivals in order.
+// Runs on a thread of the transport. Reading the clock and queueing under one lock keeps arrivals in order.
 void IgnitionPoseSource::Impl::on_message(const char* data, std::size_t size, const std::string& type) {
   const std::scoped_lock lock(mutex);
   if (stopped) {
@@ -190,8 +190,8 @@ void IgnitionPoseSource::Impl::complain(const std::string& problem) {
   }
 }
 
-// Ends with the source and on its thread, never on that of the transport: there its destructor would wait for
-// itself.
+// Destroyed with the source, on the source's thread. On a thread of the transport, its destructor would wait
+// for itself.
 struct IgnitionPoseSource::Subscription {
   explicit Subscription(const gazebo::transport::NodeOptions& options) : node(options) {}
   gazebo::transport::Node node;

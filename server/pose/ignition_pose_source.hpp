@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of Gazebo, by Ignition Transport (docs/simulators/gazebo.md).
+// Poses from Gazebo through Ignition Transport (docs/simulators/gazebo.md).
 #pragma once
 
 #include "server/pose/pose_source.hpp"
 
 namespace sonard::server {
 
-/// Takes Pose_V and Pose messages of one topic, of the packages ignition.msgs and gz.msgs alike. The time of
-/// a pose is that of the header, simulated time. A message that cannot be used is counted and dropped: one of
-/// another type or with bytes that are none as `malformed`, one that EntityMap refuses as `bad_value`, one
-/// that comes while max_waiting others wait as `refused`. The 1st, 2nd, 4th, 8th ... of each is logged.
+/// Accepts Pose_V and Pose messages on one topic, from the packages ignition.msgs and gz.msgs. The time of a
+/// pose is the simulated time in the header. Unusable messages are counted and dropped. `malformed` counts
+/// other types and undecodable bytes, `bad_value` messages that EntityMap rejects, `refused` messages that
+/// arrive while max_waiting others wait. The 1st, 2nd, 4th, 8th ... of each is logged.
 ///
-/// Messages arrive on a thread of the transport, which takes the time and hands the bytes to the I/O thread.
+/// Messages arrive on a thread of the transport, which reads the time and posts the bytes to the I/O thread.
 class IgnitionPoseSource final : public PoseSource {
  public:
   IgnitionPoseSource(boost::asio::io_context& io, IgnitionPoseInput input, const Clock& clock, PoseSink sink);

@@ -18,7 +18,7 @@ namespace sonard::server {
 
 namespace {
 
-/// Frames of the vehicle, by what they are good for.
+/// Counts of the vehicle's frames, by their use.
 struct Received {
   std::uint64_t odometry = 0;
   std::uint64_t local_position = 0;
@@ -40,7 +40,7 @@ std::uint64_t& counter_of(const mavlink::Message& message, Received& received) {
   return std::holds_alternative<std::monostate>(message) ? received.other : received.attitude;
 }
 
-/// What a pose takes.
+/// Messages from which a pose can be made.
 std::string_view expected_of(MavlinkMessages messages) {
   switch (messages) {
     case MavlinkMessages::automatic:
@@ -66,10 +66,10 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
 
   void take(std::span<const std::uint8_t> datagram, TimePoint arrival);
   void take(const mavlink::Frame& frame, TimePoint arrival);
-  /// True when the frame is of the vehicle that is listened to.
+  /// True if the frame is from the configured vehicle.
   bool is_ours(const mavlink::Frame& frame);
   void tell_what_is_missing(TimePoint arrival);
-  /// Why GLOBAL_POSITION_INT, where it arrives, is no pose; empty: it does not, or nothing is known.
+  /// Why received GLOBAL_POSITION_INT messages give no pose; empty if no reason is known.
   std::string what_is_missing() const;
   void tell_of_broken_frames(std::uint64_t before);
 

@@ -16,9 +16,9 @@ namespace {
 
 using mavlink::MavFrame;
 
-/// More than two seconds of the fastest stream; a position waits for one attitude only.
+/// More than two seconds of the fastest stream; a position waits for only one attitude.
 constexpr std::size_t most_headings = 256;
-/// A world this near to latitude 0, longitude 0 may have its vehicle there.
+/// In a world this near to latitude 0, longitude 0, such a position may be real.
 constexpr double near_deg = 0.1;
 
 pose::Quat about_x(double angle_rad) {
@@ -257,7 +257,7 @@ bool MavlinkPoses::local_position_is_wanted(TimePoint arrival) const {
   return !last_odometry_ || arrival - *last_odometry_ > precedence;
 }
 
-// The first one that comes may be followed by something better.
+// Waits for `precedence` after the first message, because a better message may follow.
 bool MavlinkPoses::global_position_is_wanted(TimePoint arrival) {
   if (wanted_ != MavlinkMessages::automatic) {
     return wanted_ == MavlinkMessages::global_position;
@@ -310,7 +310,7 @@ std::optional<pose::Velocity> MavlinkPoses::twist_of(const mavlink::Odometry& od
   pose::Velocity twist{vec3(odometry.vx, odometry.vy, odometry.vz),
                        vec3(odometry.rollspeed, odometry.pitchspeed, odometry.yawspeed)};
   if (!is_speed(twist.linear_mps) || !is_speed(twist.angular_radps)) {
-    return std::nullopt;  // a vehicle that does not know its speed says NaN
+    return std::nullopt;  // NaN: the vehicle does not know its speed
   }
   const MavFrame axes = odometry.child_frame_id;
   if (axes == MavFrame::body_frd || axes == MavFrame::body_ned) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From MAVLink messages to poses of the vehicle.
+// Converts MAVLink messages to poses of the vehicle.
 #pragma once
 
 #include <bitset>
@@ -18,55 +18,57 @@
 
 namespace sonard::server {
 
-/// Counters, which only grow.
+/// Counters; they only grow.
 struct MavlinkPoseCounters {
-  std::uint64_t bad_value = 0;         ///< not finite, no rotation, or out of bounds
-  std::uint64_t unknown_frame = 0;     ///< ODOMETRY whose frame_id has no place in the world
-  std::uint64_t without_attitude = 0;  ///< a position that no attitude was near enough to
-  std::uint64_t without_place = 0;     ///< GLOBAL_POSITION_INT of a vehicle that does not know where it is
-  std::uint64_t not_wanted = 0;        ///< of the kind that is not configured, or gives way to ODOMETRY
+  std::uint64_t bad_value = 0;         ///< not finite, not a rotation, or out of bounds
+  std::uint64_t unknown_frame = 0;     ///< ODOMETRY with an unsupported frame_id
+  std::uint64_t without_attitude = 0;  ///< a position without an attitude near enough in time
+  std::uint64_t without_place = 0;     ///< GLOBAL_POSITION_INT of a vehicle without a position fix
+  std::uint64_t not_wanted = 0;        ///< a kind that is not configured, or that ODOMETRY overrides
   std::uint64_t clock_restarts = 0;    ///< the vehicle's clock restarted
 };
 
-/// The messages of one vehicle, one by one; reads no clock and no socket.
+/// Processes the messages of one vehicle, one by one; reads no clock and no socket.
 ///
-/// ODOMETRY is a pose by itself. LOCAL_POSITION_NED, or GLOBAL_POSITION_INT where that is asked for, or where
-/// with `auto` nothing better has come for `precedence` and the world has an origin, is one together with the
-/// attitude at its time, told by time_boot_ms: that of a message of the same time, or between two at most
-/// `longest_gap` apart on the shortest arc. A position that is newer than every attitude waits for the next
-/// one. When the next position comes before it, the nearest attitude serves, turned on by its own rates, if
-/// it is within `nearest_limit`. ATTITUDE and ATTITUDE_QUATERNION are worth the same.
+/// ODOMETRY gives a pose by itself. LOCAL_POSITION_NED gives one together with the attitude at its time
+/// (time_boot_ms). So does GLOBAL_POSITION_INT if it is configured. With `auto`, GLOBAL_POSITION_INT is used
+/// if no better message has come for `precedence` and the world has an origin. The attitude is from a message
+/// of the same time, or interpolated on the shortest arc between two at most `longest_gap` apart. A position
+/// newer than every attitude waits for the next attitude. If the next position comes first, the nearest
+/// attitude within `nearest_limit` is used, rotated by its own rates. ATTITUDE and ATTITUDE_QUATERNION count
+/// the same.
 ///
-/// Time stamps become times of ours by what the clock was when the first message arrived; the clock since
-/// boot and that of ODOMETRY are two. A clock that goes back by more than PoseHistory::reset_threshold has
-/// begun again (a reboot, a simulation that was reset): positions and attitudes of before are forgotten, and
-/// poses go back by as much, so that PoseHistory forgets too. time_boot_ms begins again after 49.7 days, too.
+/// The offset from the vehicle's clock to ours is fixed when the first message arrives. The clock since boot
+/// and the clock of ODOMETRY have separate offsets. A clock that goes back by more than
+/// PoseHistory::reset_threshold has restarted (a reboot, or a simulation reset). Earlier positions and
+/// attitudes are then dropped, and poses go back by the same time, so that PoseHistory drops its poses too.
+/// time_boot_ms wraps after 49.7 days, with the same effect.
 ///
-/// A vehicle that does not know where it is sends GLOBAL_POSITION_INT at latitude 0, longitude 0: with `auto`
-/// its altitude is its depth then, at the origin of its positions; where GLOBAL_POSITION_INT was asked for it
-/// is dropped, and counted.
+/// A vehicle without a position fix sends GLOBAL_POSITION_INT at latitude 0, longitude 0. With `auto`, its
+/// altitude is then used as depth at the origin of its positions. If GLOBAL_POSITION_INT is configured, the
+/// message is dropped and counted.
 class MavlinkPoses {
  public:
   explicit MavlinkPoses(const MavlinkPoseInput& input);
 
-  /// @return the pose that is known by this message, if it is one more: converted to enu_flu, as decode() of
-  /// the pose stream vouches for it.
+  /// @return the pose that this message completes, if any: converted to enu_flu and checked like the output
+  /// of pose::decode()
   std::optional<pose::PoseSample> take(const mavlink::Message& message, TimePoint arrival);
 
   const MavlinkPoseCounters& counters() const { return counters_; }
-  /// The newest position is that of a vehicle that knows its depth alone.
+  /// True if the newest position is of a vehicle that knows only its depth.
   bool knows_depth_alone() const { return depth_alone_; }
 
   static constexpr std::int64_t longest_gap_ns = 500'000'000;
   static constexpr std::int64_t nearest_limit_ns = 100'000'000;
-  /// With `messages: auto`, ODOMETRY goes before LOCAL_POSITION_NED, and both before GLOBAL_POSITION_INT,
-  /// while they came within this time.
+  /// With `messages: auto`, ODOMETRY overrides LOCAL_POSITION_NED, and both override GLOBAL_POSITION_INT, if
+  /// they came within this time.
   static constexpr std::chrono::nanoseconds precedence = std::chrono::seconds{2};
 
  private:
-  /// A clock of the vehicle.
+  /// State of a clock of the vehicle.
   struct VehicleClock {
-    std::optional<std::int64_t> offset_ns;  ///< ours minus the vehicle's, when the first message arrived
+    std::optional<std::int64_t> offset_ns;  ///< our time minus the vehicle's, when the first message arrived
     std::int64_t newest_ns = 0;
   };
   struct Heading {
@@ -75,7 +77,7 @@ class MavlinkPoses {
   };
   struct Place {
     std::int64_t time_ns = 0;
-    pose::Transform T_world_local;  ///< where its north, east and down begin, as east, north, up
+    pose::Transform T_world_local;  ///< origin of north, east, down in the world, with axes east, north, up
     pose::Vec3 position_ned_m;
     pose::Vec3 velocity_ned_mps;
   };
@@ -96,9 +98,9 @@ class MavlinkPoses {
   bool attitude_is_wanted(TimePoint arrival) const;
   bool local_position_is_wanted(TimePoint arrival) const;
   bool global_position_is_wanted(TimePoint arrival);
-  /// True when it began again.
+  /// Returns true if the clock restarted.
   bool observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint arrival);
-  /// Checked and converted; nullopt, counted, when it means nothing.
+  /// Checks and converts a pose; nullopt, and counted, if it is invalid.
   std::optional<pose::PoseSample> sample(std::int64_t time_ns, const pose::Transform& T_world_local,
                                          pose::Transform T_ned_frd,
                                          const std::optional<pose::Velocity>& twist_frd);
@@ -108,13 +110,13 @@ class MavlinkPoses {
   Reasons complaints_;
   MavlinkMessages wanted_;
   pose::Transform T_world_local_;
-  bool world_is_there_;  ///< at latitude 0, longitude 0
+  bool world_is_there_;  ///< the world is near latitude 0, longitude 0
   std::optional<render::GeographicFrame> earth_;
   VehicleClock boot_clock_, odometry_clock_;
   std::map<std::int64_t, Heading> headings_;  // by the vehicle's time since boot
   std::optional<Place> waiting_;
   std::optional<TimePoint> last_odometry_;
-  std::optional<TimePoint> last_local_;  ///< ODOMETRY or LOCAL_POSITION_NED, or the first message of all
+  std::optional<TimePoint> last_local_;  ///< ODOMETRY, LOCAL_POSITION_NED, or the very first message
   bool depth_alone_ = false;
   std::bitset<256> frames_said_, velocity_frames_said_;
   MavlinkPoseCounters counters_;

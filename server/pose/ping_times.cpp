@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// The 1st, 2nd, 4th, 8th ... time.
+// Logs the 1st, 2nd, 4th, 8th ... time.
 void note(std::uint64_t& count, std::uint64_t more, const char* reason) {
   const std::uint64_t before = std::exchange(count, count + more);
   if (std::bit_width(before) != std::bit_width(count)) {
@@ -20,7 +20,7 @@ void note(std::uint64_t& count, std::uint64_t more, const char* reason) {
   }
 }
 
-// Rounds up, whatever the sign.
+// Rounds up, for either sign.
 nanoseconds whole_periods(nanoseconds way, nanoseconds period) {
   const auto whole = way / period;
   return (whole + (way > whole * period ? 1 : 0)) * period;
@@ -64,7 +64,7 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
     note(counters_.lost, skip_to(oldest), "their poses were overtaken by too many newer ones");
   }
   if (poses_.ping_clock() == PingClock::source && *next_ + listening + period <= newest) {
-    // Down to the last one that could begin.
+    // Skips to the last ping that can begin.
     counters_.left_out += skip_to(newest - listening - period + nanoseconds{1});
   }
   for (auto known = poses_.known_from(*next_); known && *known > *next_; known = poses_.known_from(*next_)) {
@@ -82,7 +82,7 @@ void PingTimes::follow_restart() {
   }
 }
 
-// In lock-step it follows from the stamps alone, however long the head is busy with its last ping.
+// In lock-step this depends only on the stamps, not on how long the head is busy with its last ping.
 std::optional<TimePoint> PingTimes::first_of_new_life() const {
   const auto oldest = poses_.oldest();
   const bool wanted = next_ || last_;

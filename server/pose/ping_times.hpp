@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a head pings by the clock of the source of the poses.
+// Ping times of a head by the clock of the pose source.
 #pragma once
 
 #include <chrono>
@@ -11,46 +11,45 @@
 
 namespace sonard::server {
 
-/// Counters, which only grow.
+/// Counters; they only grow.
 struct PingTimesCounters {
-  std::uint64_t left_out = 0;  ///< by PingClock::source: the head could not keep up
-  std::uint64_t unknown =
-      0;  ///< the source was silent for longer than the extrapolation limit, or set its clock
-  std::uint64_t lost = 0;  ///< in lock-step: the poses of the time were no longer kept
+  std::uint64_t left_out = 0;  ///< with PingClock::source: the head was too slow
+  std::uint64_t unknown = 0;   ///< the source was silent for too long, or set its clock
+  std::uint64_t lost = 0;      ///< in lock-step: the poses of that time were dropped
 };
 
 /// The times of one head's pings, on the publisher's clock. A ping is due one period after the last one, the
-/// first one at a whole number of periods; and it may begin when every pose until its last echo is there, so
-/// that no pose is extrapolated. Which pings there are, and what they show, follows from the stamps alone.
+/// first at a whole number of periods. It can begin when every pose until its last echo has arrived, so that
+/// no pose is extrapolated. The pings and their images depend only on the stamps.
 ///
 /// Belongs to the I/O thread; reads no clock.
 class PingTimes {
  public:
-  /// `poses` outlives it; its PingClock is not PingClock::wall.
+  /// `poses` must outlive this object; its PingClock is not PingClock::wall.
   explicit PingTimes(const PoseHistory& poses) : poses_(poses) {}
 
-  /// The transmit time of a ping that is wanted, which is then taken to begin; nullopt: its poses are not
-  /// there yet. `period` > 0, `listening` >= 0.
+  /// Begins a requested ping and returns its transmit time; nullopt: its poses have not arrived yet.
+  /// `period` > 0, `listening` >= 0.
   std::optional<TimePoint> begin(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
-  /// No pings are wanted any more: the next one counts as the first.
+  /// No more pings are requested: the next one counts as the first.
   void rest();
 
-  /// By how much the poses there are exceed what the next ping needs, if it is like the last one that was
-  /// wanted; negative: it has to wait for poses. nullopt: no pings are wanted.
+  /// By how much the newest pose exceeds the need of the next ping, if it is like the last requested one.
+  /// Negative: it must wait for poses. nullopt: no pings are requested.
   std::optional<std::chrono::nanoseconds> lead() const;
 
   const PingTimesCounters& counters() const { return counters_; }
 
  private:
   void follow_restart();
-  /// nullopt: the first ping is that of the newest pose when it is asked for.
+  /// nullopt: the first ping is at the newest pose when it is requested.
   std::optional<TimePoint> first_of_new_life() const;
   void leave_out(std::chrono::nanoseconds period, std::chrono::nanoseconds listening);
 
   const PoseHistory& poses_;
   std::uint64_t restarts_ = 0;
-  std::optional<TimePoint> last_;                    ///< begun
-  std::optional<TimePoint> next_;                    ///< awaited
+  std::optional<TimePoint> last_;                    ///< of the last ping begun
+  std::optional<TimePoint> next_;                    ///< of the awaited ping
   std::chrono::nanoseconds period_{}, listening_{};  ///< of the last request
   PingTimesCounters counters_;
 };

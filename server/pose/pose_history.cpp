@@ -11,7 +11,7 @@
 namespace sonard::server {
 namespace {
 
-/// Messages on a local network take less; and a slow clock must not use up the extrapolation limit.
+/// Local networks are faster than 50 ms, and a slow clock must not use up the extrapolation limit.
 std::chrono::nanoseconds longest_delay(std::chrono::nanoseconds extrapolation_limit) {
   return std::min<std::chrono::nanoseconds>(std::chrono::milliseconds{50}, extrapolation_limit / 2);
 }

@@ -13,7 +13,7 @@ namespace sonard::server {
 namespace {
 
 constexpr std::chrono::seconds at_once{2};
-constexpr std::size_t most_publishers = 8;  // that are told apart
+constexpr std::size_t most_publishers = 8;  // limit of tracked publishers
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
 std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now) const {
   std::vector<std::string> recent;
   for (const auto& [publisher, times] : publishers_[index]) {
-    // One that fell silent before another began was started anew, with a port of its own.
+    // A publisher that fell silent before another began was restarted, with a new port.
     const bool replaced = std::ranges::any_of(
         publishers_[index], [last = times.last](const auto& other) { return other.second.first > last; });
     if (now - times.last <= at_once && !replaced) {
@@ -90,7 +90,7 @@ std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now
 
 void PoseInputs::report_every_period() {
   report_timer_.expires_after(report_period_);
-  // An end of this object is one of the timer, too, and calls with an error.
+  // Destroying this object also cancels the timer, which calls with an error.
   report_timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error && running_) {
       report();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All pose sources of a configuration, and how well each delivers.
+// All pose sources of a configuration, with statistics of each.
 #pragma once
 
 #include <chrono>
@@ -16,13 +16,13 @@
 
 namespace sonard::server {
 
-/// Belongs to the I/O thread, as its sources do; made and destroyed by the owner of the io_context while it
-/// does not run. Every `report_period`, and when it is stopped, it logs a line for each source; a source
-/// that stays silent is logged once.
+/// Belongs to the I/O thread. The owner of the io_context constructs and destroys it while the context does
+/// not run. It logs a line for each source every `report_period` and when it is stopped; a source that stays
+/// silent is logged once.
 class PoseInputs {
  public:
-  /// Every pose of every source goes to `sink`. `hold` may be empty: no publisher has to wait.
-  /// @throws what make_pose_sources() throws
+  /// Every pose of every source goes to `sink`. `hold` may be empty: publishers then never wait.
+  /// @throws exceptions of make_pose_sources()
   PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink,
              PoseHold hold = {}, std::chrono::milliseconds report_period = std::chrono::seconds{10});
 
@@ -35,12 +35,12 @@ class PoseInputs {
   /// PoseConfig::clock
   PingClock ping_clock() const { return ping_clock_; }
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
-  /// Who has sent poses by an input within the last two seconds, without those that another has come after;
-  /// empty where publishers are not told apart.
+  /// Publishers that sent poses to an input within the last two seconds, except those that a later publisher
+  /// replaced. Empty if the source does not distinguish publishers.
   std::vector<std::string> publishers(std::size_t index, TimePoint now) const;
 
  private:
-  /// When a publisher gave its first and its newest pose.
+  /// Times of a publisher's first and newest pose.
   struct Times {
     TimePoint first{}, last{};
   };

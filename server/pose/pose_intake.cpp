@@ -50,7 +50,7 @@ void PoseIntake::insert(const pose::PoseSample& sample, TimePoint arrival) {
   hooks_.changed();
 }
 
-// Up to the next that has to wait.
+// Stops at the next pose that must wait.
 void PoseIntake::insert_waiting() {
   while (!waiting_.empty() && !(poses_.would_restart(waiting_.front().sample.time_ns) && pings_to_come())) {
     const Arrived next = std::move(waiting_.front());

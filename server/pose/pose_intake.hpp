@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way of poses from their sources into the history, and to the pings that wait for them.
+// Passes poses from their sources to the history, and to the pings that wait for them.
 #pragma once
 
 #include <chrono>
@@ -17,27 +17,27 @@ namespace sonard::server {
 
 /// Belongs to the I/O thread.
 ///
-/// In lock-step two things wait for the pings that the poses so far allow: a clock that is set back, which
-/// would take these poses away, with all that comes after it; and publishers that can wait, when the poses
-/// are too far ahead. By any other clock poses pass at once.
+/// In lock-step, two things wait for the pings that the received poses allow. If a clock is set back, its
+/// poses wait, because they would drop the earlier poses. If the poses are too far ahead, publishers wait if
+/// they can. With other clocks, poses pass at once.
 class PoseIntake {
  public:
   struct Hooks {
-    std::function<void()> changed;  ///< the history has one more
-    /// By how much the poses there are exceed what the head needs that is furthest behind, for its next ping;
-    /// negative: all heads wait for poses. nullopt: no pings are wanted.
+    std::function<void()> changed;  ///< called when the history has a new pose
+    /// By how much the newest pose exceeds the need of the slowest head for its next ping. Negative: all
+    /// heads wait for poses. nullopt: no pings are requested.
     std::function<std::optional<std::chrono::nanoseconds>()> lead;
   };
-  /// `poses` outlives it.
+  /// `poses` must outlive this object.
   PoseIntake(boost::asio::io_context& io, PoseHistory& poses, Hooks hooks);
 
   void take(const pose::PoseSample& sample, TimePoint arrival);
-  /// Publishers that can wait are to wait.
+  /// True if publishers must wait, if they can.
   bool hold() const;
   void stop();
 
   static constexpr std::chrono::milliseconds most_ahead{500};
-  /// Poses of a new life of the clock that may wait for the end of the last one; what comes beyond is lost.
+  /// Limit of the poses after a clock restart that wait for the last pings before it; further poses are lost.
   static constexpr std::size_t most_waiting = 65'536;
 
  private:

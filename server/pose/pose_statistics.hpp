@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well poses come: what a user asks first when the image does not move.
+// Statistics of received poses: the first thing to check if an image does not move.
 #pragma once
 
 #include <chrono>
@@ -13,26 +13,25 @@
 
 namespace sonard::server {
 
-/// The poses of one source, as they arrived. Reads no clock; times do not go backwards. Belongs to the I/O
+/// Statistics of the poses of one source. Reads no clock; times must not go backwards. Belongs to the I/O
 /// thread.
 class PoseStatistics {
  public:
   struct Summary {
     std::uint64_t poses = 0;
-    double rate_hz = 0.0;  ///< that arrived
-    /// Seconds of the publisher's stamps for each second of ours: 1 in real time, 0 in a pause; nullopt:
-    /// there were not two poses to tell by.
+    double rate_hz = 0.0;  ///< rate of arrival
+    /// Seconds of the publisher's stamps per second of ours: 1 in real time, 0 in a pause; nullopt: fewer
+    /// than two poses.
     std::optional<double> time_rate;
-    std::optional<std::chrono::nanoseconds> age;  ///< since the newest arrived; nullopt: none ever did
-    /// Between arrivals, and from the last one until now.
+    std::optional<std::chrono::nanoseconds> age;  ///< since the newest arrived; nullopt: no pose has arrived
+    /// Between arrivals, and from the last arrival until now.
     std::chrono::nanoseconds longest_gap{0};
-    std::uint64_t gaps = 0;  ///< longer than the limit
-    std::uint64_t jumps =
-        0;  ///< faster than PoseTrack::teleport_mps from one pose to the next: put elsewhere
-    /// Stamps that went back by more than PoseHistory::reset_threshold: a simulation that was reset, or two
+    std::uint64_t gaps = 0;   ///< gaps longer than the limit
+    std::uint64_t jumps = 0;  ///< steps faster than PoseTrack::teleport_mps: the vehicle was moved
+    /// Stamps that went back by more than PoseHistory::reset_threshold: a reset simulation, or two
     /// publishers.
     std::uint64_t clock_restarts = 0;
-    std::optional<std::chrono::nanoseconds> since_restart;  ///< the last of them; nullopt: there was none
+    std::optional<std::chrono::nanoseconds> since_restart;  ///< since the last restart; nullopt: no restart
   };
 
   /// `gap_limit`: PoseConfig::extrapolation_limit.
@@ -40,21 +39,21 @@ class PoseStatistics {
 
   void observe(const pose::PoseSample& sample, TimePoint arrival);
 
-  /// Summary since the last call, or since the first pose.
+  /// Summary since the last call; the first call: since the first pose.
   Summary take(TimePoint now);
   /// Summary since the first pose.
   Summary in_all(TimePoint now) const { return summary(all_, now); }
 
-  /// The last pose; nullopt: none has come.
+  /// The newest pose; nullopt before the first.
   const std::optional<pose::PoseSample>& newest() const { return newest_; }
   const StampWatch& stamps() const { return stamps_; }
 
  private:
   struct Period {
-    std::optional<TimePoint> begin;  // nullopt: with the first pose
+    std::optional<TimePoint> begin;  // nullopt: before the first pose
     std::uint64_t poses = 0;
-    std::int64_t stamps_ns = 0;            // by how much stamps went on
-    std::chrono::nanoseconds arrivals{0};  // and arrivals
+    std::int64_t stamps_ns = 0;            // sum of the steps of stamps
+    std::chrono::nanoseconds arrivals{0};  // sum of the steps of arrivals
     std::chrono::nanoseconds longest_gap{0};
     std::uint64_t gaps = 0;
     std::uint64_t jumps = 0;
@@ -72,8 +71,8 @@ class PoseStatistics {
   StampWatch stamps_;
 };
 
-/// "poses=500 rate_hz=50.0 time_rate=1.00 age_ms=12 longest_gap_ms=34 gaps=0 jumps=0 clock_restarts=0"; what
-/// is not known is "-".
+/// "poses=500 rate_hz=50.0 time_rate=1.00 age_ms=12 longest_gap_ms=34 gaps=0 jumps=0 clock_restarts=0";
+/// unknown values are "-".
 std::string to_string(const PoseStatistics::Summary& summary);
 
 }  // namespace sonard::server

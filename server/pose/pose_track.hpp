@@ -14,10 +14,10 @@ namespace sonard::server {
 struct TrackPoint {
   std::int64_t time_ns = 0;
   pose::Transform T_world_body;
-  std::optional<pose::Velocity> twist;  ///< in the axes of the body
+  std::optional<pose::Velocity> twist;  ///< in the body's frame
 };
 
-/// Bounded: the oldest points make room for new ones.
+/// Bounded: new points replace the oldest ones.
 class PoseTrack {
  public:
   /// `capacity` >= 1.
@@ -25,8 +25,8 @@ class PoseTrack {
 
   enum class Placed {
     newest,
-    between,   ///< older than the newest: it came late
-    replaced,  ///< same time as a point there was: the later word counts
+    between,   ///< older than the newest: it arrived late
+    replaced,  ///< same time as an existing point, which it replaces
     too_old,   ///< older than all points of a full track: dropped
   };
   /// Points may come in any order.
@@ -39,21 +39,21 @@ class PoseTrack {
   const TrackPoint& newest() const { return points_.back(); }
   const TrackPoint& oldest() const { return points_.front(); }
 
-  /// The pose at a time; must not be empty. Between two points by interpolation, unless the body would have
-  /// gone faster than teleport_mps: it has then been put elsewhere, and stays where it was until the time of
-  /// the later point. After the newest point along its twist for at most `limit_ns`, at rest without a twist.
-  /// Before the oldest point: the pose of that point.
+  /// The pose at a time; the track must not be empty. Between two points it is interpolated. If the body
+  /// would be faster than teleport_mps, it was moved: it then stays at the earlier point until the time of
+  /// the later one. After the newest point it follows its twist for at most `limit_ns`, or rests without a
+  /// twist. Before the oldest point: the pose of that point.
   pose::Transform at(std::int64_t time_ns, std::int64_t limit_ns) const;
 
-  /// The earliest time from `time_ns` on that is at a point, or between two that are at most `gap_ns` apart;
-  /// nullopt: after the newest point. Must not be empty.
+  /// The earliest time, from `time_ns` on, that is at a point or between two points at most `gap_ns` apart;
+  /// nullopt: after the newest point. The track must not be empty.
   std::optional<std::int64_t> known_from(std::int64_t time_ns, std::int64_t gap_ns) const;
 
   static constexpr double teleport_mps = 100.0;
 
  private:
   std::size_t capacity_;
-  std::deque<TrackPoint> points_;  // in strictly rising time
+  std::deque<TrackPoint> points_;  // in strictly increasing time
 };
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body of the world and where it is.
+// A body of the world with its pose.
 #pragma once
 
 #include <string>

@@ -20,7 +20,7 @@ void PublisherClock::observe(std::int64_t stamp_ns, TimePoint arrival) {
   } else {
     least_offset_ns_ = std::min(least_offset_ns_, offset_ns);
   }
-  // A late message says nothing about how far the clock has come.
+  // A late message does not show how far the clock has advanced.
   if (empty_ || stamp_ns >= newest_stamp_ns_) {
     newest_stamp_ns_ = stamp_ns;
     newest_offset_ns_ = offset_ns;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What time it is at the publisher of the poses, told from its time stamps and when they arrived.
+// Estimates the publisher's time from its stamps and their arrival times.
 #pragma once
 
 #include <chrono>
@@ -9,24 +9,24 @@
 
 namespace sonard::server {
 
-/// Maps our time to the publisher's. Each message gives an offset, arrival minus stamp: the true offset of
-/// the two clocks plus the time the message was under way. The smallest offset of the last seconds comes
-/// nearest to the truth, and keeps jitter of the network out of the poses.
+/// Maps our time to the publisher's. Each message gives an offset, arrival minus stamp: the offset of the two
+/// clocks plus the message's delay. The smallest offset of the last seconds is the best estimate, and keeps
+/// network jitter out of the poses.
 ///
-/// A publisher whose clock runs slow (a simulation below real time) or stands still (paused) lets the offsets
-/// grow for ever; therefore a message is never believed to have been under way for longer than
-/// `longest_delay`. A clock that runs fast needs no rule: its newest offset is the smallest.
+/// If the publisher's clock is slow (a simulation below real time) or stopped (paused), offsets grow without
+/// limit. Therefore a message's delay is assumed to be at most `longest_delay`. A fast clock needs no rule:
+/// its newest offset is the smallest.
 class PublisherClock {
  public:
   /// `longest_delay` >= 0.
   explicit PublisherClock(std::chrono::nanoseconds longest_delay);
 
-  /// A message. `arrival` does not go backwards.
+  /// Adds a message. `arrival` must not go backwards.
   void observe(std::int64_t stamp_ns, TimePoint arrival);
-  /// Forgets everything: the publisher's clock was set.
+  /// Forgets all messages: the publisher's clock was set.
   void restart();
 
-  /// The publisher's time at `local`; needs a message observed since the last restart.
+  /// The publisher's time at `local`; requires a message since the last restart.
   std::int64_t stamp_at(TimePoint local) const;
 
  private:
@@ -36,8 +36,8 @@ class PublisherClock {
   std::chrono::nanoseconds longest_delay_;
   bool empty_ = true;
   TimePoint half_start_{};
-  std::int64_t least_offset_ns_ = 0;         // in the present half window
-  std::int64_t least_offset_before_ns_ = 0;  // in the half window before
+  std::int64_t least_offset_ns_ = 0;         // in the current half window
+  std::int64_t least_offset_before_ns_ = 0;  // in the previous half window
   std::int64_t newest_stamp_ns_ = 0;
   std::int64_t newest_offset_ns_ = 0;  // of the message with the newest stamp
 };

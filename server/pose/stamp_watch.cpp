@@ -7,14 +7,14 @@
 namespace sonard::server {
 namespace {
 
-// Fewer poses, or a shorter time, may be those of a simulator whose physics is slower than its messages.
+// Fewer poses, or a shorter time, may come from a simulator whose physics is slower than its messages.
 constexpr std::size_t least_poses = 5;
 constexpr std::chrono::milliseconds least_length{200};
 constexpr std::chrono::milliseconds soon{500};  // for stamps that have never moved
 constexpr std::chrono::milliseconds longest_step{
-    1500};  // stamps in whole seconds stand still for one at a time
+    1500};  // stamps in whole seconds stay for one second at a time
 constexpr std::chrono::milliseconds at_rest{2000};
-// Noise of an estimator that is asked for a vehicle at rest is less.
+// Above the noise of an estimator for a vehicle at rest.
 constexpr double moved_m = 0.01;
 constexpr double moved_rad = 0.01;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the stamps of poses go on while the vehicle moves.
+// Detects stamps that do not advance while the vehicle moves.
 #pragma once
 
 #include <chrono>
@@ -12,30 +12,30 @@
 
 namespace sonard::server {
 
-/// Finds stamps that mean nothing: those that a publisher leaves out, or rounds. Reads no clock; arrivals do
-/// not go backwards. A simulation that is paused has stamps that stand still, too, but its vehicle rests.
+/// Finds meaningless stamps: missing or rounded ones. Reads no clock; arrivals must not go backwards. In a
+/// paused simulation stamps do not advance either, but the vehicle is at rest.
 class StampWatch {
  public:
   enum class Looks : std::uint8_t {
     good,
-    stand_still,  ///< while the vehicle moves
-    in_steps,     ///< they stand still for many poses of a moving vehicle, then jump, again and again
-    never_moved,  ///< since the first pose, whose place the vehicle has not left
+    stand_still,  ///< no advance while the vehicle moves
+    in_steps,     ///< no advance for many poses of a moving vehicle, then a jump, repeatedly
+    never_moved,  ///< no advance since the first pose, and the vehicle has not moved
   };
 
   void observe(const pose::PoseSample& sample, TimePoint arrival);
 
   Looks looks() const;
-  /// How long the stamps stood still the last time; of Looks::in_steps.
+  /// How long the stamps last stayed; for Looks::in_steps.
   std::chrono::nanoseconds last_step() const { return last_step_; }
 
  private:
-  /// Poses, one after the other, that have the same stamp.
+  /// Consecutive poses with the same stamp.
   struct Run {
     pose::Transform first;
     std::int64_t time_ns = 0;
     std::size_t poses = 1;
-    TimePoint begin{}, end{};  ///< arrivals of its first and its last pose
+    TimePoint begin{}, end{};  ///< arrivals of the first and the last pose
     bool moved = false;
 
     std::chrono::nanoseconds length() const { return end - begin; }
@@ -43,8 +43,8 @@ class StampWatch {
   };
 
   std::optional<Run> run_;
-  std::size_t runs_before_ = 0;  ///< that have ended
-  std::size_t steps_ = 0;        ///< the last of these that were of a moving vehicle
+  std::size_t runs_before_ = 0;  ///< ended runs
+  std::size_t steps_ = 0;        ///< consecutive newest ended runs of a moving vehicle
   std::chrono::nanoseconds last_step_{0};
 };
 

@@ -50,7 +50,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   PeerLog log;
 };
 
-/// One publisher. The set of its source owns it, and so does each pending handler.
+/// A connected publisher. The source's set and each pending handler own it.
 class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::shared_ptr<Impl> source, tcp::socket socket, Endpoint peer)
@@ -99,14 +99,14 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     }
   }
 
-  /// Reads when publishers need not wait, which is asked now and then.
+  /// Reads, or, while publishers must wait, tries again every 2 ms.
   void read_on(bool finished_a_message) {
     if (!source_->hold || !source_->hold()) {
       watch_unfinished_message(finished_a_message);
       read();
       return;
     }
-    stop_watching();  // it is not for the publisher to finish its message now
+    stop_watching();  // the publisher cannot finish its message now
     hold_timer_.expires_after(std::chrono::milliseconds{2});
     hold_timer_.async_wait([self = shared_from_this()](const error_code& error) {
       if (!error && self->socket_.is_open()) {
@@ -115,7 +115,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     });
   }
 
-  /// Delivers every whole message in the buffer and keeps the rest. @return true when there was one.
+  /// Delivers every whole message in the buffer and keeps the rest. @return true if there was one
   bool take_frames(TimePoint arrival) {
     bool finished_a_message = false;
     std::span<const std::uint8_t> rest{buffer_.data(), filled_};
@@ -135,7 +135,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       take_message(pose::frame_message(frame), arrival);
     }
     filled_ = rest.size();
-    std::copy(rest.begin(), rest.end(), buffer_.begin());  // to the front, so overlap does no harm
+    std::copy(rest.begin(), rest.end(), buffer_.begin());  // copies to the front, so overlap is safe
     return finished_a_message;
   }
 
@@ -161,7 +161,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     }
   }
 
-  /// Gives a message that has begun its deadline, which further bytes of it do not move.
+  /// Starts the deadline of a partial message; further bytes do not extend it.
   void watch_unfinished_message(bool finished_a_message) {
     if (filled_ == 0) {
       stop_watching();
@@ -173,7 +173,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     unfinished_ = true;
     timer_.expires_after(source_->message_timeout);
     timer_.async_wait([self = shared_from_this()](const error_code& error) {
-      // A wait that had ended before the timer was set again comes here too; the expiry tells.
+      // A wait that had expired before the timer was set again also comes here; the expiry shows it.
       const bool due = !error && self->timer_.expiry() <= std::chrono::steady_clock::now();
       if (due && self->unfinished_ && self->socket_.is_open()) {
         self->close_faulty("a message was left unfinished");
@@ -198,14 +198,14 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   asio::steady_timer timer_;
   asio::steady_timer hold_timer_;
   Endpoint peer_;
-  TimePoint newest_message_;  // when it came, if there is none
+  TimePoint newest_message_;  // arrival of the newest message, if any
   std::vector<std::uint8_t> buffer_;
   std::size_t filled_ = 0;
-  bool unfinished_ = false;  // the timer runs for a message that has begun
+  bool unfinished_ = false;  // the timer runs for a partial message
   Reasons complaints_;
 };
 
-/// While `hold` lets publishers wait, none is silent.
+/// While `hold` makes publishers wait, no publisher counts as silent.
 bool TcpPoseSource::Impl::make_room() {
   if (std::ssize(sessions) < max_clients) {
     return true;
@@ -232,7 +232,7 @@ void TcpPoseSource::Impl::admit(tcp::socket socket, const Endpoint& peer) {
 
 void TcpPoseSource::Impl::stop() {
   listener->close();
-  for (const auto& session : std::set{sessions}) {  // a copy: close() takes the session out of the set
+  for (const auto& session : std::set{sessions}) {  // a copy: close() removes the session from the set
     session->close();
   }
 }

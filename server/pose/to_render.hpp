@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of the pose protocol as the renderer has them.
+// Converts poses of the pose protocol to the renderer's.
 #pragma once
 
 #include "protocol/pose/transform.hpp"

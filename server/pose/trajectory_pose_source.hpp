@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses from a trajectory file, played in real time.
+// Poses from a trajectory file, played back at TrajectoryInput::speed.
 #pragma once
 
 #include "protocol/pose/trajectory.hpp"
@@ -7,9 +7,9 @@
 
 namespace sonard::server {
 
-/// Starts at start() with the first point. Between the points of the file, poses are interpolated and come
-/// 100 times a second, with their twist. At the end, unless it loops, the last pose comes once more, at rest,
-/// and then nothing more: it gets stale as any other.
+/// Starts at start() with the first point. Sends interpolated poses with their twist 100 times a second. At
+/// the end, unless it loops, it sends the last pose once more, at rest, and then stops: the pose becomes
+/// stale like any other.
 class TrajectoryPoseSource final : public PoseSource {
  public:
   /// @throws pose::TrajectoryError

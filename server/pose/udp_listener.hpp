@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A UDP socket that receives from those who may publish.
+// A UDP socket that receives from permitted publishers.
 #pragma once
 
 #include <cstdint>
@@ -17,27 +17,27 @@ namespace sonard::server {
 /// Belongs to the I/O thread.
 class UdpListener {
  public:
-  /// `bytes` and the peer of this datagram are good for the call, which may close the listener.
+  /// `bytes` and the peer of this datagram are valid during the call, which may close the listener.
   using Handler = std::function<void(std::span<const std::uint8_t> bytes, TimePoint arrival)>;
 
-  /// `name` begins each line of the log: "pose stream udp". `clock` outlives it.
+  /// `name` begins each log line: "pose stream udp". `clock` outlives this object.
   UdpListener(boost::asio::io_context& io, std::string name, const Endpoint& bind, AllowList allow,
               const Clock& clock);
 
   /// Binds and listens. Called once.
   /// @throws PoseSourceError
   void start(Handler handler);
-  /// The handler is not called any more.
+  /// Closes the socket; the handler is not called any more.
   void close();
   bool is_open() const { return open_; }
 
-  /// Where it listens, or will listen.
+  /// The listening address, before and after start().
   const Endpoint& local() const { return local_; }
-  /// Who has sent the datagram that is handled, or the last one.
+  /// Sender of the current or the last datagram.
   const Endpoint& peer() const { return peer_; }
   /// "pose stream udp 127.0.0.1:14600"
   std::string description() const;
-  /// Datagrams from peers that are not allowed: each the first, second, fourth, ... time in the log.
+  /// Number of datagrams from peers that are not allowed; the 1st, 2nd, 4th ... is logged.
   std::uint64_t refused() const { return refused_; }
 
  private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses by UDP: one message of pose.proto per datagram (docs/poses.md).
+// Poses over UDP: one message of pose.proto per datagram (docs/poses.md).
 #pragma once
 
 #include "server/pose/pose_source.hpp"
 
 namespace sonard::server {
 
-/// Datagrams that are no pose, or come from a peer that is not allowed, are counted and dropped; the 1st,
-/// 2nd, 4th, 8th ... of them is logged with its peer, so that a flood cannot fill the log.
+/// Undecodable datagrams, and datagrams from peers that are not allowed, are counted and dropped. The 1st,
+/// 2nd, 4th, 8th ... is logged with its peer, so that a flood cannot fill the log.
 class UdpPoseSource final : public PoseSource {
  public:
   UdpPoseSource(boost::asio::io_context& io, const UdpPoseInput& input, const Clock& clock, PoseSink sink);
@@ -18,7 +18,7 @@ class UdpPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::string received() const override;
-  /// Where it listens, once started.
+  /// The listening address, after start().
   Endpoint local_endpoint() const;
 
  private:
