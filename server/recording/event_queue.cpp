@@ -18,15 +18,15 @@ bool EventQueue::push(RecordingEvent event) {
     count_dropped(event);
     return false;
   }
-  // Owned by the stack from the exchange on; take() is the only one to remove nodes, and removes all at once,
-  // so the node that `next` names cannot come back as another (no ABA).
-  // Once it is there the taker may work it off and delete it, so it is not looked at again.
+  // The stack owns the node from the exchange on. Only take() removes nodes, and it removes all at once, so
+  // the node that `next` points to cannot be reused (no ABA). After the exchange the taker may delete the
+  // node, so it is not accessed again.
   Node* before = newest_.load(std::memory_order_relaxed);
   Node* const node = new Node{std::move(event), before};
   while (!newest_.compare_exchange_weak(before, node, std::memory_order_release, std::memory_order_relaxed)) {
     node->next = before;
   }
-  if (before == nullptr) {  // the thread that finds the stack empty wakes the taker: once for each take()
+  if (before == nullptr) {  // the thread that finds the stack empty wakes the taker: once per take()
     news_.release();
   }
   return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The queue from the serving threads to the recorder, which never makes the former wait.
+// The queue from the serving threads to the recorder. It never blocks the serving threads.
 #pragma once
 
 #include <atomic>
@@ -13,18 +13,18 @@
 
 namespace sonard::server {
 
-/// Events that found the queue full, by what is lost with them. They only grow.
+/// Counts of events dropped because the queue was full, by content. They only grow.
 struct DroppedEvents {
   std::uint64_t images = 0;  ///< pings and scan lines
-  std::uint64_t pieces = 0;  ///< datagrams and pieces of streams
+  std::uint64_t pieces = 0;  ///< datagrams and reads or writes of streams
   std::uint64_t others = 0;  ///< statuses, poses, ends of streams
 
   std::uint64_t total() const { return images + pieces + others; }
 };
 
-/// Bounded by bytes, for any number of threads that push and one that takes. push() takes no lock and makes
-/// no system call but the wake-up, so the taking thread, whatever its priority, cannot hold up a pushing one:
-/// events are pushed onto a linked stack by compare-and-swap, and the taker swaps the whole of it out.
+/// Bounded by bytes, for any number of pushing threads and one taking thread. push() takes no lock and makes
+/// no system call except the wake-up, so the taking thread, whatever its priority, cannot block a pushing
+/// one. Events are pushed onto a linked stack by compare-and-swap, and take() swaps out the whole stack.
 class EventQueue {
  public:
   explicit EventQueue(std::size_t most_bytes) : most_bytes_(most_bytes) {}
@@ -32,19 +32,19 @@ class EventQueue {
   EventQueue(const EventQueue&) = delete;
   EventQueue& operator=(const EventQueue&) = delete;
 
-  /// @return false when it does not fit, and is dropped and counted.
+  /// @return false if the event does not fit; it is then dropped and counted.
   bool push(RecordingEvent event);
   /// Wakes the taker without an event.
   void wake() { news_.release(); }
 
-  /// Waits until something was pushed, wake() was called or the time is over.
+  /// Waits until push() or wake() was called, or the time is over.
   void wait(std::chrono::milliseconds longest) { static_cast<void>(news_.try_acquire_for(longest)); }
-  /// Takes all events in the order in which they were pushed. Their memory counts until done().
+  /// Takes all events in the order of push(). Their memory counts until done().
   std::vector<RecordingEvent> take();
-  /// Frees the memory of a processed event.
+  /// Releases the counted memory of a processed event.
   void done(const RecordingEvent& event);
 
-  /// Any thread. Memory of the events that are not done yet.
+  /// Memory of the events that are not done, in bytes. Any thread.
   std::size_t bytes() const { return bytes_; }
   /// Any thread.
   DroppedEvents dropped() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What heads tell the recorder, from the I/O thread to the recorder's thread.
+// Events from heads to the recorder: from the I/O thread to the recorder's thread.
 #pragma once
 
 #include <cstddef>
@@ -16,21 +16,21 @@
 
 namespace sonard::server {
 
-/// Where everything was for one ping.
+/// All poses used for one ping.
 struct PosesUsed {
   TimePoint time{};  ///< of the transmission
   render::Pose T_world_vehicle;
   render::Pose T_world_sonar;     ///< of the mount
-  std::vector<PosedBody> bodies;  ///< those received so far
+  std::vector<PosedBody> bodies;  ///< bodies received so far
 };
 
-/// A ping goes onto the wire.
+/// A ping was sent.
 struct PingSent {
   PingRecord ping;
   std::shared_ptr<const PosesUsed> poses;
 };
 
-/// A message goes to everybody: the status of a head whose logs keep that (HeadToRecord::glf_status).
+/// A status message of a head whose logs store it (HeadToRecord::glf_status) was sent.
 struct StatusSent {
   SharedBytes message;
 };
@@ -40,18 +40,18 @@ struct PingPosed {
   std::shared_ptr<const PosesUsed> poses;
 };
 
-/// A stream has come to its end.
+/// A stream has ended.
 struct StreamEnded {
   WireEnds ends;
 };
 
 struct RecordingEvent {
-  int head = 0;      ///< its place in the configuration
-  TimePoint time{};  ///< when it happened
+  int head = 0;      ///< index in the configuration
+  TimePoint time{};  ///< time of the event
   std::variant<PingSent, StatusSent, PingPosed, WirePassed, StreamEnded> what;
 };
 
-/// Bytes of memory that an event holds, near enough for a bound. What events share counts for each.
+/// Approximate memory of an event, in bytes, for a limit. Shared data counts for each event.
 std::size_t memory_of(const RecordingEvent& event);
 
 }  // namespace sonard::server

@@ -19,7 +19,7 @@ void set(google::protobuf::Timestamp& timestamp, std::int64_t time_ns) {
 
 using Point = std::array<float, 4>;  // x, y, z, intensity
 
-/// The middle of a bin, on the plane through the acoustic axis.
+/// The centre of a bin, in the plane through the acoustic axis.
 Point point_at(const PingRecord& ping, std::size_t bin, std::size_t beam) {
   const double range_m = (static_cast<double>(bin) + 0.5) * ping.settings.bin_m;
   const double bearing_rad = ping.bearings_rad[beam];  // positive to starboard

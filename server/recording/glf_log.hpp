@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The .dat of one head while it grows (docs/logs.md 1 and "Recording").
+// Writes the .dat of one head (docs/logs.md 1 and "Recording").
 #pragma once
 
 #include "server/recording/glf_records.hpp"
@@ -7,11 +7,11 @@
 
 namespace sonard::server {
 
-/// Begins with a ping; statuses before the first are left out. A .dat is a log by itself after every record.
-/// What makes a .glf of it is GlfPacking.
+/// Starts with the first ping; earlier statuses are omitted. A .dat is a valid log after every record.
+/// GlfPacking makes a .glf from it.
 class GlfLog final : public Log {
  public:
-  /// @param head the place of a head with a glf_number in LogSetting::heads
+  /// @param head index in LogSetting::heads; the head has a glf_number
   GlfLog(const LogSetting& setting, int head) : Log(setting), head_(head) {}
 
   void write(const RecordingEvent& event) override;

@@ -25,7 +25,7 @@ glf::LogConfig config_of(const glf::DatIndex& index) {
   for (const glf::RecordEntry& record : index.records) {
     ids.insert(record.origin.device_id);
   }
-  // Not the time of packing, which may be days after a crash.
+  // Not the time of packing, which may be days later, after a crash.
   return {"sonard " SONARD_VERSION,
           index.records.front().origin.time_s,
           index.records.back().origin.time_s,
@@ -51,11 +51,11 @@ bool GlfPacking::begin() {
   const fs::path directory = dat_path_.parent_path();
   fs::remove(unfinished_glf_path(directory, stem_), error);
   glf_ = AppendFile::create(unfinished_glf_path(directory, stem_), error);
-  // The CRC that the head holds is known at the end; its size is the same.
+  // A placeholder: the CRC in the head is known only at the end, but its size is fixed.
   return good(error) && good(glf_.append(packer().head()));
 }
 
-// Learns what the archive says of the .dat, and ends it.
+// Reads the archive's metadata from the .dat, and ends the .dat.
 bool GlfPacking::close_dat() {
   glf::DatIndex index;
   {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a .glf of a .dat, a slice at a time (docs/logs.md 1.1 and "Recording").
+// Makes a .glf from a .dat, one slice at a time (docs/logs.md 1.1 and "Recording").
 #pragma once
 
 #include <cstdint>
@@ -16,25 +16,25 @@
 
 namespace sonard::server {
 
-/// Packs a .dat that is no longer written, finished or not. What follows its last whole record is cut off,
-/// and the terminator put behind it. The .glf has its own name only when all of it is on the disk; the .dat
-/// goes after that. So a power cut, or kill -9, at any moment leaves one of the two.
+/// Packs a .dat that is no longer written, finished or not. It cuts off bytes after the last whole record and
+/// appends the terminator. The .glf gets its final name only when it is on the disk; then the .dat is
+/// removed. So a power cut, or kill -9, at any moment leaves one of the two.
 ///
-/// Where the .glf cannot be written, that is logged and the .dat stays: it is a log too, and packed when the
-/// daemon starts the next time.
+/// If the .glf cannot be written, an error is logged and the .dat stays: it is a log too, and is packed at
+/// the next start of the daemon.
 class GlfPacking {
  public:
-  /// Nothing happens before the first step().
+  /// Does nothing until the first step().
   GlfPacking(std::filesystem::path dat, RecordingSync sync) : dat_path_(std::move(dat)), sync_(sync) {}
 
-  /// Packs one more slice: at most slice_bytes are copied and, unless RecordingSync::never, waited
-  /// for, which takes about as long as a disk takes for that. @return false when it is done or given up.
+  /// Packs one more slice: copies at most slice_bytes and, except for RecordingSync::never, waits until they
+  /// are on the disk. @return false if it is done or given up
   bool step();
 
   static constexpr std::uint64_t slice_bytes = 16 * glf::pack_block_size;
 
  private:
-  // Each returns false when it is done or given up.
+  // Each returns false if it is done or given up.
   bool begin();
   bool close_dat();
   bool copy_slice();

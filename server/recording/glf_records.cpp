@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::uint16_t first_node_id = 100;
 
-// Pixels stay in the order of the wire, so this table is in that order too.
+// Pixels stay in wire order, so this table is in wire order too.
 std::vector<double> log_bearings_rad(const std::vector<double>& bearings_rad) {
   std::vector<double> bearings;
   std::ranges::transform(bearings_rad, std::back_inserter(bearings), glf::bearing_for_log);
   return bearings;
 }
 
-// Frequency of lines as sent: the field of range compression changes no range. A half is rounded up, whatever
-// the division made of it.
+// Frequency of lines as sent; the field of range compression does not change the range. The small addend
+// makes a half round up, whatever the rounding error of the division.
 std::uint32_t line_frequency_hz(const RecordedSettings& settings) {
   constexpr double of_the_division = 1e-6;
   return static_cast<std::uint32_t>(
@@ -49,7 +49,7 @@ glf::ImageRecord glf_image(PingRecord ping, std::int64_t transmit_unix_ns, const
   image.bearings_rad = log_bearings_rad(ping.bearings_rad);
   image.modulation_frequency_hz = line_frequency_hz(settings);
   image.aperture_deg = static_cast<float>(ping.sector_rad * 180.0 / std::numbers::pi);
-  // A head of one frequency is said to use the low one of its family.
+  // A head with one frequency is recorded as using the low one of its family.
   image.ping_flags =
       settings.sound_speed_from_config ? glf::ping_flag_bits::manual_sound_speed : std::uint16_t{0};
   image.sound_speed_mps = static_cast<float>(settings.sound_speed_mps);

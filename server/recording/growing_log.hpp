@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One file of a recording, with what is done when it cannot be written.
+// One file of a recording, with error handling.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace sonard::server {
 
-/// A file that fails is given up: that is logged, once, and what else is written to it goes nowhere. It ends
-/// with the last piece that was written whole. Serving does not depend on it.
+/// If a file fails, the error is logged once and later writes are discarded. The file ends with the last
+/// piece written whole. Serving is not affected.
 class GrowingLog {
  public:
   explicit GrowingLog(RecordingSync sync) : sync_(sync) {}
@@ -23,16 +23,16 @@ class GrowingLog {
   std::uint64_t size() const { return file_.size(); }
   const std::filesystem::path& path() const { return file_.path(); }
 
-  /// Makes the file. Call it once.
+  /// Creates the file. Call it once.
   void begin(const std::filesystem::path& path);
-  /// A piece after which the file is whole, or can be made so. Goes nowhere before begin().
+  /// Appends a piece after which the file is whole or recoverable. Discarded before begin().
   void append(std::span<const std::uint8_t> piece);
-  /// In place of bytes that were appended.
+  /// Overwrites bytes that were appended.
   void overwrite(std::uint64_t offset, std::span<const std::uint8_t> bytes);
-  /// Cuts it off behind bytes that were appended.
+  /// Truncates the file after bytes that were appended.
   void truncate(std::uint64_t size);
   void sync();
-  /// Nothing is written after that.
+  /// Closes the file; nothing is written after that.
   void end();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head's end of the recorder. Without a recorder nothing is done.
+// A head's interface to the recorder. Without a recorder it does nothing.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,11 @@
 
 namespace sonard::server {
 
-/// Belongs to the I/O thread, as its head does. Nothing here waits.
+/// Belongs to the I/O thread. Never blocks.
 class HeadRecording {
  public:
-  /// @param recorder null: nothing is recorded; otherwise it outlives this
-  /// @param head its place in the configuration
+  /// @param recorder null: nothing is recorded; otherwise it must outlive this object
+  /// @param head index in the configuration
   HeadRecording(Recorder* recorder, int head, const Clock& clock)
       : recorder_(recorder), head_(head), clock_(&clock) {}
 

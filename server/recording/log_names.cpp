@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view dat_prefix = "data_";
 
-// Names of heads are any text.
+// Names of heads can be any text.
 std::string plain(std::string_view head) {
   std::string name(head);
   std::ranges::replace_if(

@@ -13,8 +13,8 @@ namespace sonard::server {
 
 class LogSet {
  public:
-  /// @param begin of the first event
-  /// @param has_room false: everything is thrown away
+  /// @param begin time of the first event
+  /// @param has_room false: everything is discarded
   LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads, TimePoint begin,
          bool has_room);
   ~LogSet() = default;
@@ -22,14 +22,14 @@ class LogSet {
   LogSet& operator=(const LogSet&) = delete;
 
   void write(const RecordingEvent& event);
-  /// False when there is no log that could be written, up to the last event.
+  /// True if at least one log has begun and has not failed.
   bool any_good() const;
   void flush(TimePoint now);
   void sync();
-  /// True when the next event belongs into new logs.
+  /// True if the next event belongs into new logs.
   bool is_over(TimePoint now) const;
 
-  /// What became of it.
+  /// Results of close().
   struct Closed {
     std::vector<std::filesystem::path> dats;  ///< to be packed
     std::uint64_t written = 0;

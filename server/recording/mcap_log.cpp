@@ -36,7 +36,7 @@ log::SonarImage image_message(const PingSent& sent, const HeadToRecord& head, st
   image.set_beams(static_cast<std::uint32_t>(ping.settings.beams));
   image.set_pixels(text(ping.samples));
   for (const double bearing_rad : ping.bearings_rad) {
-    image.add_bearings_rad(-bearing_rad);  // devices count to starboard
+    image.add_bearings_rad(-bearing_rad);  // devices count bearings to starboard
   }
   image.set_wire_head(text(ping.wire));
   image.set_amplitude_exponent(ping.settings.amplitude_exponent);
@@ -57,7 +57,7 @@ log::ScanLine line_message(const PingSent& sent, const HeadToRecord& head, std::
   line.set_device_id(head.device_id);
   line.set_line_number(ping.number);
   line.set_transmit_time_ns(transmit_ns);
-  line.set_bearing_rad(-ping.bearings_rad.front());  // devices count to starboard
+  line.set_bearing_rad(-ping.bearings_rad.front());  // devices count bearings to starboard
   line.set_bins(text(ping.samples));
   line.set_bits_per_bin(static_cast<std::uint32_t>(ping.bits_per_bin));
   line.set_wire_line(text(ping.wire));
@@ -191,7 +191,7 @@ std::uint16_t McapLog::channel(const std::string& topic) {
 
 void McapLog::flush(TimePoint now) {
   if (!file().begun()) {
-    return;  // what the writer has, the beginning of the file, waits for it
+    return;  // the writer's data, the start of the file, waits for begin()
   }
   if (now - chunk_begun_at_ >= longest_chunk) {
     writer_.end_chunk();

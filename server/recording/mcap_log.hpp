@@ -12,15 +12,15 @@
 
 namespace sonard::server {
 
-/// Everything: images, lines, poses, and the bytes of both directions. A chunk has so many bytes or so much
-/// time, but what is in it is handed to the file with every image and line, and after `longest_wait` at the
-/// latest: a process that is killed loses no image that was taken from the queue, and bytes of so much time.
+/// Records everything: images, lines, poses, and the bytes of both directions. A chunk is limited in bytes
+/// and time. Its data is written to the file with every image and line, and after `longest_wait` at the
+/// latest. A killed process thus loses no image taken from the queue, and at most `longest_wait` of bytes.
 class McapLog final : public Log {
  public:
   static constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
   static constexpr std::chrono::seconds longest_chunk{1};
   static constexpr std::chrono::milliseconds longest_wait{200};
-  /// A scanning head is drawn this often at most, since each of its lines changes but one of its picture.
+  /// Interval between pictures of a scanning head, because each line changes only a small part.
   static constexpr std::chrono::seconds sweep_picture_interval{1};
 
   explicit McapLog(const LogSetting& setting);
@@ -33,10 +33,10 @@ class McapLog final : public Log {
   void add(int head, TimePoint time, const PingSent& ping);
   void add(int head, TimePoint time, const PingPosed& pose);
   void add(int head, TimePoint time, const WirePassed& wire);
-  void add(int, TimePoint, const StatusSent&) {}  // is among the bytes
+  void add(int, TimePoint, const StatusSent&) {}  // is in the wire bytes
   void add(int, TimePoint, const StreamEnded&) {}
 
-  /// The same ping as Foxglove shows it.
+  /// Adds the Foxglove messages of a ping.
   void add_for_foxglove(int head, TimePoint time, const PingSent& ping);
   template <class Message>
   void add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns, const Message& message);
@@ -49,7 +49,7 @@ class McapLog final : public Log {
   std::map<std::string, std::uint16_t> schemas_;   ///< by name
   std::map<std::string, std::uint16_t> channels_;  ///< by topic
   std::map<int, PingPicture> pictures_;            ///< by head
-  std::map<int, TimePoint> drawn_at_;              ///< when a turn of a scanning head was drawn last
+  std::map<int, TimePoint> drawn_at_;              ///< when the sweep of a scanning head was last drawn
   bool image_waits_ = false;
   TimePoint flushed_at_{};
   TimePoint chunk_begun_at_{};

@@ -20,7 +20,7 @@ pcapng::ByteView view(const SharedBytes& bytes) {
 
 PcapngLog::PcapngLog(const LogSetting& setting) : Log(setting), writer_("sonard " SONARD_VERSION) {
   for (const HeadToRecord& head : setting.heads) {
-    writer_.add_interface(head.name);  // its number is the place of the head
+    writer_.add_interface(head.name);  // interface numbers are head indices
   }
 }
 
@@ -80,7 +80,7 @@ void PcapngLog::add(const RecordingEvent& event, const std::vector<pcapng::Bytes
 }
 
 void PcapngLog::flush(TimePoint) {
-  if (file().begun()) {  // before, what the writer has is the beginning of the file
+  if (file().begun()) {  // the writer's first data is the start of the file and waits for begin()
     file().append(writer_.take());
   }
 }

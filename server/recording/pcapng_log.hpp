@@ -11,8 +11,7 @@
 
 namespace sonard::server {
 
-/// An interface for each head. A stream that continues from a file before this one starts over here, with a
-/// connection of its own.
+/// One interface per head. A stream that continues from an earlier file starts a new connection in this file.
 class PcapngLog final : public Log {
  public:
   explicit PcapngLog(const LogSetting& setting);

@@ -29,12 +29,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int nice_value = 5;  // a third of the processor time of a thread that serves, where they compete
-constexpr std::chrono::milliseconds look_again{100};  // for chunks and syncs that are due without an event
+constexpr int nice_value = 5;  // about a third of the processor time of a competing serving thread
+constexpr std::chrono::milliseconds look_again{100};  // chunks and syncs may be due without an event
 constexpr std::chrono::seconds sync_period{1};
 constexpr std::chrono::seconds report_period{2};
 
-/// The right to use a folder, which ends with the process.
+/// An exclusive lock on a folder; it ends with the process.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const fs::path& directory) {
@@ -62,7 +62,7 @@ class DirectoryLock {
   int fd_ = -1;
 };
 
-/// Why no logs can begin in a folder; empty: they can.
+/// Why no logs can begin in a folder; empty if they can.
 std::string obstacle(const fs::path& directory) {
   std::error_code error;
   const fs::space_info space = fs::space(directory, error);
@@ -102,7 +102,7 @@ struct Recorder::Impl {
   std::binary_semaphore ended{0};
   std::atomic<bool> on{true};
   std::atomic<std::uint64_t> images_pushed{0}, images{0}, images_lost{0}, logs_written{0}, logs_failed{0};
-  std::mutex report;  // of the two below
+  std::mutex report;  // guards reported_at and drops_reported
   TimePoint reported_at{};
   std::uint64_t drops_reported = 0;
 
@@ -112,7 +112,7 @@ struct Recorder::Impl {
   TimePoint synced_at{};
   bool without_room = false;
 
-  std::thread thread;  // last: it uses all of the above
+  std::thread thread;  // last member: it uses all of the above
 };
 
 Recorder::Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads)
@@ -138,7 +138,7 @@ void Recorder::push(RecordingEvent event) {
   if (impl_->queue.push(std::move(event))) {
     impl_->images_pushed += image ? 1 : 0;
   } else {
-    impl_->report_drops();  // here: the recorder's thread may be waiting for the disk
+    impl_->report_drops();  // here, because the recorder's thread may be waiting for the disk
   }
 }
 
@@ -181,7 +181,7 @@ void Recorder::Impl::run() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice_value);
   for (bool last = false; !last;) {
     queue.wait(packings.empty() ? look_again : std::chrono::milliseconds{0});
-    // Both before the queue is looked at: what was pushed before stop() and turn(false) is in it.
+    // Read before the queue is taken: events pushed before stop() and turn(false) are then in it.
     last = stopping;
     const bool off = !on;
     for (RecordingEvent& event : queue.take()) {
@@ -190,9 +190,9 @@ void Recorder::Impl::run() {
       }
       record(event);
       queue.done(event);
-      event.what = StreamEnded{};  // gives its memory back now
+      event.what = StreamEnded{};  // frees its memory now
     }
-    if (off && !on) {  // else it was turned on meanwhile, and what was taken may be of new logs
+    if (off && !on) {  // else it was turned on again, and the events may belong to new logs
       end_set();
     }
     look_after_logs();
@@ -211,7 +211,7 @@ void Recorder::Impl::record(const RecordingEvent& event) {
     end_set();
   }
   if (!set) {
-    if (!on) {  // pushed by a thread that saw it turned on just before: no log is made for it
+    if (!on) {  // pushed just before it was turned off: no log is made for it
       return;
     }
     begin_set(event.time);
@@ -265,7 +265,7 @@ void Recorder::Impl::pack_slice() {
   }
 }
 
-/// Any thread; never waits.
+/// Any thread; never blocks.
 void Recorder::Impl::report_drops() {
   const std::unique_lock lock_report(report, std::try_to_lock);
   const TimePoint now = clock.now();

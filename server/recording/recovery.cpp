@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is to be done with a file.
+/// Repair of a file.
 struct Mending {
   std::uint64_t keep_size = 0;
-  std::vector<std::uint8_t> end;  ///< to be put behind that; it may repeat what whole records were there
-  std::uint64_t lost_size = 0;    ///< bytes that go: of a record that was being written
-  bool damaged = false;           ///< there is more behind keep_size than a record that was being written
+  std::vector<std::uint8_t> end;  ///< appended after keep_size; may repeat whole records that were there
+  std::uint64_t lost_size = 0;    ///< bytes of a partly written record, which are lost
+  bool damaged = false;           ///< the bytes after keep_size are more than a partly written record
 };
 
 bool copy_front(const fs::path& from, const fs::path& to, std::uint64_t size, std::error_code& error) {
@@ -112,7 +112,7 @@ std::optional<Mending> mending_of_mcap(std::span<const std::uint8_t> file) {
   return Mending{recovery->keep_size, recovery->end, recovery->lost_size, section && section->error};
 }
 
-// Every block ends with its length, so the last one tells whether the file ends with a whole one.
+// Every block ends with its length, so the last length shows whether the file ends with a whole block.
 bool ends_with_a_block(std::span<const std::uint8_t> file) {
   if (file.size() < 12) {
     return false;
@@ -141,14 +141,14 @@ std::optional<Mending> mending_of_pcapng(std::span<const std::uint8_t> file) {
   if (recovery->keep_size == file.size()) {
     return std::nullopt;
   }
-  // An error, not just an end: what follows is no block.
+  // Damaged if block_at() returns an error, not just the end: the bytes are not a block.
   return Mending{recovery->keep_size,
                  {},
                  file.size() - recovery->keep_size,
                  !pcapng::block_at(file, recovery->keep_size)};
 }
 
-// True when the .glf of a .dat is there, and the .dat was only not removed any more.
+// True if the .glf of a .dat is complete and only the removal of the .dat is missing.
 bool is_packed(const fs::path& dat, const glf::DatIndex& index) {
   const MappedFile archive(glf_path(dat.parent_path(), stem_of_dat(dat)));
   const auto packed = glf::LogView::open(archive.bytes());
@@ -161,7 +161,7 @@ bool begins_like_a_record(const fs::path& dat) {
   return !file.bytes().empty() && file.bytes().front() == '*';
 }
 
-/// True when it is to be packed, which also removes one without a whole record.
+/// Returns true if the .dat must be packed. Packing removes a .dat without a whole record.
 bool recover_dat(const fs::path& path) {
   glf::DatIndex index;
   {
@@ -193,7 +193,7 @@ void recover_file(const fs::path& path, std::vector<fs::path>& dats) {
     spdlog::info("recording: removed {}, which is empty", path.string());
     return;
   }
-  if (const MappedFile file(path); ours && file.error()) {  // not damaged: nothing is known of it
+  if (const MappedFile file(path); ours && file.error()) {  // not damaged: it cannot be read
     spdlog::warn(
         "recording: cannot read {}: {}. The log stays as it is; to recover it, give the user that "
         "runs sonard the right to read and write it",
@@ -229,7 +229,7 @@ std::vector<fs::path> recover_logs(const fs::path& directory) {
   std::vector<fs::path> dats;
   for (const fs::path& path : files) {
     if (path.string().ends_with(".glf.part")) {
-      fs::remove(path, error);  // its .dat is there
+      fs::remove(path, error);  // its .dat still exists
     } else if (fs::is_regular_file(path, error)) {
       recover_file(path, dats);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs the logs that a killed daemon has left behind (docs/logs.md, "Recording").
+// Repairs the logs of a killed daemon (docs/logs.md, "Recording").
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,11 @@
 
 namespace sonard::server {
 
-/// Repairs the logs of a folder that no program writes into. MCAP and pcapng files that do not end as they
-/// should are cut after their last whole record and ended; .dat files are returned, for GlfPacking. Where
-/// what is to be cut off is not just a record that was being written, the file is kept as it was under its
-/// name with ".damaged" behind it, and what was whole goes into a new one. Each file that was touched gets a
-/// line in the log.
-/// @return the .dat files to be packed, the oldest name first
+/// Repairs the logs of a folder that no program writes to. MCAP and pcapng files without a proper end are cut
+/// after their last whole record and ended; .dat files are returned, for GlfPacking. If the bytes to cut are
+/// more than a partly written record, the original file is kept with ".damaged" appended to its name, and its
+/// whole records go into a new file. Each changed file is logged.
+/// @return the .dat files to pack, in the order of their names
 std::vector<std::filesystem::path> recover_logs(const std::filesystem::path& directory);
 
 }  // namespace sonard::server
