@@ -20,10 +20,10 @@ constexpr std::size_t udp_header_size = 8;
 
 struct Payload {
   std::uint8_t transport = 0;
-  Bytes bytes;  ///< of UDP only
+  Bytes bytes;  ///< only for UDP
 };
 
-// IPv4 as link type RAW has it; anything else is no payload.
+// Reads IPv4 of link type RAW; for other packets the payload is empty.
 Payload payload_of(Bytes packet) {
   ByteReader reader(packet);
   const std::uint8_t version = reader.u8("version");
@@ -53,7 +53,7 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder&
   }
 }
 
-// What is wrong with packets whose blocks are readable.
+// Errors of packets whose blocks are readable.
 struct PacketFaults {
   std::uint64_t times = 0;
   std::uint64_t checksums = 0;
@@ -83,7 +83,7 @@ void add_faults(LogSummary& log, const PacketFaults& faults) {
 
 void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in) {
   std::uint64_t interfaces = 0;
-  std::uint64_t of_section = 0;  // interfaces of this section, which packets name by their number
+  std::uint64_t of_section = 0;  // interfaces of this section; packets refer to them by number
   std::uint64_t others = 0;
   PacketFaults faults;
   const auto damaged = pcapng::for_each_block(file.bytes(), [&](const pcapng::Block& block) {

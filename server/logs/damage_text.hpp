@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One phrase for each damaged part of a log, as `sonard info` and `sonard replay` print it.
+// Phrases for the damaged parts of a log, printed by `sonard info` and `sonard replay`.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace sonard::server {
 
-/// Appends a phrase for each part: where it is, how large it is, and what is lost. After ten phrases one more
-/// counts the rest.
-/// @param lost what is lost with a part, for example "3 pings are lost"
+/// Appends a phrase for each part: its place, its size, and what is lost. After ten phrases, one more counts
+/// the rest.
+/// @param lost describes the loss of a part, for example "3 pings are lost"
 template <class Part, class Lost>
 void add_damage(std::vector<std::string>& problems, const std::vector<Part>& parts, const Lost& lost) {
   constexpr std::size_t most = 10;

@@ -37,7 +37,7 @@ RecordedSettings settings_of(const glf::ImageRecord& image) {
   return settings;
 }
 
-// Other programs' logs may hold anything.
+// Logs of other programs may hold any values.
 bool makes_sense(const glf::ImageRecord& image) {
   return image.lines > 0 && image.beams > 0 && image.modulation_frequency_hz > 0 &&
          std::isfinite(image.sound_speed_mps) && image.sound_speed_mps > 0.0F;
@@ -51,8 +51,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     if (records[place].type != glf::RecordType::image) {
       continue;
     }
-    const auto image =
-        view_.image(records[place]);  // unpacked, so that problems() knows each image that is lost
+    const auto image = view_.image(records[place]);  // unpacked, so that problems() knows each lost image
     if (!image) {
       damaged_images_.push_back({records[place].offset, records[place].size, image.error()});
       continue;
@@ -65,7 +64,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
     LoggedHead& head = this->head({}, image->origin.device_id, /*scanning=*/false);
     if (head.pings.empty()) {
       head.bearings_rad.resize(image->bearings_rad.size());
-      // bearing_for_log() undoes itself, and its sign is that of our frame: port is positive.
+      // bearing_for_log() is its own inverse, and its sign is as in our frame: positive to port.
       std::ranges::copy(image->bearings_rad, head.bearings_rad.begin());
     }
     head.pings.push_back({.time_ns = *time_ns, .settings = settings_of(*image), .wire = {}, .place = place});

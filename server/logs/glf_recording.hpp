@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of a .glf or .dat.
+// Reads the images of a .glf or .dat.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace sonard::server {
 
 class GlfRecording final : public Recording {
  public:
-  /// Unpacks each image once: a damaged one is no ping, and a problem().
+  /// Unpacks each image once: a damaged image is not a ping, but a problem().
   /// @throws LogError
   explicit GlfRecording(const LogFile& file);
 
@@ -25,9 +25,9 @@ class GlfRecording final : public Recording {
  private:
   const LogFile& file_;
   std::optional<WireError>
-      archive_error_;  ///< why the archive itself is damaged; before view_, which sets it
+      archive_error_;  ///< damage of the archive itself; declared before view_, which sets it
   glf::LogView view_;
-  std::vector<Damage> damaged_images_;  ///< whole records whose image does not decode; offsets in the .dat
+  std::vector<Damage> damaged_images_;  ///< whole records with an undecodable image; offsets in the .dat
   std::uint64_t bad_images_ = 0;
 };
 

@@ -20,7 +20,7 @@ struct Start {
   LogKind kind;
 };
 
-// A .dat begins with a record, or where it has none with its terminator.
+// A .dat starts with a record, or with its terminator if it has no records.
 constexpr std::array starts{
     Start{{'P', 'K', 3, 4}, 4, LogKind::glf},
     Start{{'*', 2, 0, 0}, 2, LogKind::dat},

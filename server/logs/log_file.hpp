@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A log on disk, mapped into memory, and its format.
+// A log file, mapped into memory, and its format.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ std::string_view name_of(LogKind kind);
 /// Read-only. The bytes stay in place while the object lives (MappedFile).
 class LogFile {
  public:
-  /// Tells kinds apart by the first bytes, whatever the file is called. Unknown first bytes: by its name.
-  /// @throws LogError when it cannot be read or is none of them
+  /// Detects the kind by the first bytes, whatever the file's name. If they are unknown, by its name.
+  /// @throws LogError if the file cannot be read or is of no known kind
   explicit LogFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }

@@ -111,7 +111,7 @@ LogSummary summarise(const LogFile& file, const PingFinder& ping_in) {
 
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings) {
   head.times_ns.push_back(time_ns);
-  // Settings seldom change, and then for long.
+  // Searched from the newest: settings seldom change.
   const auto known = std::find_if(head.settings.rbegin(), head.settings.rend(),
                                   [&](const SettingsCount& count) { return count.settings == settings; });
   if (known != head.settings.rend()) {

@@ -15,31 +15,31 @@
 
 namespace sonard::server {
 
-/// All images, in a row or not, with the same settings.
+/// Number of images with the same settings, consecutive or not.
 struct SettingsCount {
   RecordedSettings settings;
   std::uint64_t pings = 0;
 };
 
-/// Times of pings: how regularly they came.
+/// Regularity of the ping times.
 struct PingRate {
-  double median_interval_s = 0.0;  ///< 0 with less than two pings
+  double median_interval_s = 0.0;  ///< 0 if there are fewer than two pings
   std::uint64_t gaps = 0;          ///< intervals of more than twice the median
-  double longest_gap_s = 0.0;      ///< 0 without gaps
+  double longest_gap_s = 0.0;      ///< 0 if there are no gaps
 
   double rate_hz() const { return median_interval_s > 0.0 ? 1.0 / median_interval_s : 0.0; }
 };
 
-/// @param times_ns rising
+/// @param times_ns in rising order
 PingRate ping_rate(const std::vector<std::int64_t>& times_ns);
 
 struct HeadSummary {
-  std::string name;                     ///< empty where the log has none
-  std::string device;                   ///< its type in the configuration; empty where the log does not say
+  std::string name;                     ///< empty if the log has no name
+  std::string device;                   ///< its type in the configuration; empty if the log does not have it
   std::uint16_t id = 0;                 ///< its ID on the wire
-  bool scanning = false;                ///< a ping is a line of one beam
+  bool scanning = false;                ///< true: a ping is a line of one beam
   std::vector<SettingsCount> settings;  ///< in order of appearance
-  std::vector<std::int64_t> times_ns;   ///< of pings, rising; the clock is that of LoggedPing
+  std::vector<std::int64_t> times_ns;   ///< of pings, in rising order; the clock is as in LoggedPing
 
   std::uint64_t pings() const { return times_ns.size(); }
 };
@@ -48,15 +48,15 @@ struct LogSummary {
   std::string path;
   LogKind kind = LogKind::glf;
   std::uint64_t size_bytes = 0;
-  std::optional<bool> closed;  ///< nullopt: logs of this kind do not say
-  bool local_time = false;     ///< times are those of an unknown zone, counted as if that were UTC
-  std::optional<std::pair<std::int64_t, std::int64_t>> span_ns;  ///< first and last time of anything
+  std::optional<bool> closed;  ///< nullopt: logs of this kind do not record it
+  bool local_time = false;     ///< true: times are of an unknown zone, counted as UTC
+  std::optional<std::pair<std::int64_t, std::int64_t>> span_ns;  ///< first and last time of any record
   std::vector<HeadSummary> heads;
-  std::vector<std::pair<std::string, std::uint64_t>> other_records;  ///< what, and how many
+  std::vector<std::pair<std::string, std::uint64_t>> other_records;  ///< kind and number
   std::vector<std::string> problems;                                 ///< one phrase each
 };
 
-/// Finds the beginning of a ping in a datagram; made by the kind of device.
+/// A ping found in a datagram by a kind of device.
 struct PingSeen {
   std::string device;
   std::uint16_t device_id = 0;
@@ -65,15 +65,15 @@ struct PingSeen {
 using PingFinder = std::function<std::optional<PingSeen>(std::span<const std::uint8_t> datagram)>;
 
 /// @param ping_in finds the pings of a .pcapng
-/// @throws LogError when the log is broken from its start
+/// @throws LogError if the log is broken at its start
 LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
 
-/// Adds a ping; times come in any order, and summarise() sorts them.
+/// Adds a ping; times may come in any order, because summarise() sorts them.
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);
-/// The head of this name, device, ID and way of pinging, which it adds where there is none.
+/// The head with this name, device, ID and way of pinging; added if it is new.
 HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& device, std::uint16_t id,
                      bool scanning);
-/// Leaves out what is no plausible_time().
+/// Extends the span of the log; ignores times that are not plausible_time().
 void include(LogSummary& log, std::int64_t time_ns);
 void count(LogSummary& log, const std::string& what, std::uint64_t records = 1);
 

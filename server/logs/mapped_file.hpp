@@ -9,18 +9,19 @@
 
 namespace sonard::server {
 
-/// The bytes stay in place while the object lives. If another process cuts the file, the next read ends this
-/// program, as with every mapped file; logs only grow while they are written.
+/// The bytes stay in place while the object lives. If another process truncates the file, the next read ends
+/// this program, as with every mapped file; logs only grow while they are written.
 class MappedFile {
  public:
-  /// Maps a regular file. On failure bytes() is empty and error() says why; an empty file is no failure.
+  /// Maps a regular file. On failure bytes() is empty and error() has the reason. An empty file is not an
+  /// error.
   explicit MappedFile(const std::filesystem::path& path);
   ~MappedFile();
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
 
   std::span<const std::uint8_t> bytes() const { return bytes_; }
-  /// EACCES, ENOENT and so on; EINVAL for what is not a regular file.
+  /// EACCES, ENOENT and so on; EINVAL if the path is not a regular file.
   const std::error_code& error() const { return error_; }
 
  private:

@@ -80,7 +80,7 @@ void McapRecording::read_pings() {
   ping_channels_ = channels_of("sonard.log.SonarImage");
   ping_channels_.insert(lines.begin(), lines.end());
   if (ping_channels_.empty()) {
-    return;  // no channel would mean all of them
+    return;  // an empty list would mean all channels
   }
   mcap::MessageCursor cursor = reader_.messages(ping_channels_);
   while (const std::optional<mcap::Message> message = cursor.next()) {
@@ -135,7 +135,7 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
   const std::optional<mcap::Bytes> unpacked =
       message.place ? reader_.data_at(*message.place) : std::optional(mcap::Bytes());
   if (!unpacked) {
-    throw file_.error("a ping cannot be read");  // it could when the log was opened
+    throw file_.error("a ping cannot be read");  // it was readable when the log was opened
   }
   const std::span<const std::uint8_t> bytes = message.place ? std::span(*unpacked) : message.bytes;
   if (message.is_line) {
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
   } else if (const auto image = log::decode<log::SonarImage>(bytes)) {
     return bytes_of(image->pixels());
   }
-  throw file_.error("a ping cannot be read");  // it could when the log was opened
+  throw file_.error("a ping cannot be read");  // it was readable when the log was opened
 }
 
 std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {

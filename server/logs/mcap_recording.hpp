@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images and scan lines of sonard's own .mcap.
+// Reads the images and scan lines of sonard's own .mcap.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class McapRecording final : public Recording {
   const mcap::Reader& reader() const { return reader_; }
 
  private:
-  /// The message of a ping: a view of the file, or where its chunk has it.
+  /// The message of a ping: a view of the file, or its place in a chunk.
   struct Message {
     std::span<const std::uint8_t> bytes;
     std::optional<mcap::MessagePlace> place;

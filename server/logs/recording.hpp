@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings of a log, whatever its format, for replay and `sonard info`.
+// The pings of a log in any format, for replay and `sonard info`.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace sonard::server {
 
-/// Within 146 years of 1970, so that differences of times cannot overflow.
+/// True within 146 years of 1970, so that differences of times cannot overflow.
 constexpr bool plausible_time(std::int64_t time_ns) {
   constexpr std::int64_t limit_ns = std::int64_t{1} << 62;
   return time_ns > -limit_ns && time_ns < limit_ns;
@@ -21,25 +21,23 @@ constexpr bool plausible_time(std::int64_t time_ns) {
 
 /// One ping of a log, without its samples.
 struct LoggedPing {
-  /// Since the Unix epoch. A .glf has local time and does not say which zone: there it counts as if that were
-  /// UTC.
+  /// Since the Unix epoch. A .glf has local time without a zone, which counts as UTC here.
   std::int64_t time_ns = 0;
   RecordedSettings settings;
   double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
-  std::vector<std::uint8_t> wire;  ///< the message without samples; empty: the log does not have it
+  std::vector<std::uint8_t> wire;  ///< the message without samples; empty: not in the log
   std::size_t place = 0;           ///< index in the Recording
 };
 
 /// A head of a log.
 struct LoggedHead {
-  std::string name;    ///< empty where the log has none
-  std::string device;  ///< its type in the configuration; empty where the log does not say
+  std::string name;    ///< empty if the log has no name
+  std::string device;  ///< its type in the configuration; empty if the log does not have it
   std::uint16_t device_id = 0;
-  bool scanning = false;          ///< a ping is a line of one beam
+  bool scanning = false;          ///< true: a ping is a line of one beam
   std::vector<LoggedPing> pings;  ///< at least one, in the order of their times
-  /// Bearings in the first ping of a multibeam head: one for each beam in the order of samples, positive to
-  /// port.
+  /// Bearings of a multibeam head's first ping: one per beam in the order of samples, positive to port.
   std::vector<double> bearings_rad;
 };
 
@@ -51,27 +49,27 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  /// In order of their first pings.
+  /// In the order of their first pings.
   const std::vector<LoggedHead>& heads() const { return heads_; }
-  /// bins * beams samples, bin after bin from the nearest on, beams from port to starboard.
-  /// @throws LogError when they cannot be unpacked
+  /// bins * beams samples, bin after bin from the nearest, beams from port to starboard.
+  /// @throws LogError if they cannot be unpacked
   virtual std::vector<std::uint8_t> samples(const LoggedPing& ping) const = 0;
   /// Problems of the log, one phrase each: cut, not closed, damaged inside.
   virtual std::vector<std::string> problems() const = 0;
-  /// Whether the log was closed properly.
+  /// True if the log was closed properly.
   virtual bool closed() const = 0;
 
  protected:
   LoggedHead& head(const std::string& name, std::uint16_t device_id, bool scanning);
-  /// To be called once all pings are there.
+  /// Call it once, when all pings are added.
   void sort_by_time();
 
  private:
   std::vector<LoggedHead> heads_;
 };
 
-/// @throws LogError when `file` is broken from its start or holds no images by its kind (.pcapng). Pings
-/// that cannot be decoded are left out. The recording views `file`, which must outlive it.
+/// @throws LogError if `file` is broken at its start or its kind holds no images (.pcapng). Undecodable pings
+/// are left out. `file` must outlive the recording.
 std::unique_ptr<Recording> open_recording(const LogFile& file);
 
 }  // namespace sonard::server
