@@ -72,7 +72,7 @@ std::optional<RecordedPing> LogPlayback::next_ping(int stream, TimePoint now) {
   const LoggedPing& ping = head(stream).played.logged->pings.at(next->image);
   return RecordedPing{.record = next->image,
                       .settings = ping.settings,
-                      .bearing_rad = -ping.bearing_rad,  // a device counts to starboard
+                      .bearing_rad = -ping.bearing_rad,  // devices count bearings to starboard
                       .bits_per_bin = ping.bits_per_bin,
                       .wire = ping.wire,
                       .due = next->due};
@@ -87,7 +87,7 @@ void LogPlayback::started(int stream, const PingJob& job) {
   schedule_.started(static_cast<std::size_t>(stream), job.transmit_time);
 }
 
-// Says it when a kind of difference first comes.
+// Logs only the first difference of each kind.
 void LogPlayback::count(Head& head, const Difference& difference) {
   const auto known =
       std::ranges::find(head.differences, difference.kind, &std::pair<std::string, std::uint64_t>::first);

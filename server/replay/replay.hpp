@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard replay`: a recording, served as the device that made it.
+// `sonard replay`: serves a recording as the device that made it.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace sonard::server {
 
-/// Serves until the last ping is sent, or a signal ends it.
+/// Serves until the last ping is sent or a signal arrives.
 /// @param config addresses and timing of the heads; nullopt: on loopback
-/// @return exit code, as serve()
+/// @return exit code of serve()
 /// @throws LogError, StartError
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing);
 

@@ -21,7 +21,7 @@ constexpr Ipv4 first_loopback_head = 0x7F000002;
 constexpr std::chrono::hours day{24};
 constexpr std::chrono::nanoseconds longest_span = 90 * day;
 
-/// The heads that scan, or those that do not: only these can stand in for each other.
+/// The scanning heads, or the others: only heads of the same sort can replace each other.
 std::vector<const LoggedHead*> alike(const std::vector<LoggedHead>& logged, bool scanning) {
   std::vector<const LoggedHead*> found;
   for (const LoggedHead& head : logged) {
@@ -32,7 +32,7 @@ std::vector<const LoggedHead*> alike(const std::vector<LoggedHead>& logged, bool
   return found;
 }
 
-// IDs of some devices are unique on a line only, names in a daemon.
+// IDs of some devices are unique only on their line; names are unique in a daemon.
 const LoggedHead* find_logged(const std::vector<LoggedHead>& logged, const HeadConfig& head, bool only_one) {
   const std::vector<const LoggedHead*> candidates = alike(logged, kind_of(head).scanning());
   if (only_one && candidates.size() == 1) {
@@ -45,7 +45,7 @@ const LoggedHead* find_logged(const std::vector<LoggedHead>& logged, const HeadC
   return found == candidates.end() ? nullptr : *found;
 }
 
-// At the slowest speed the last offset is still a time.
+// Limits the span, so that even at the slowest speed the last offset is a valid time.
 void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();
@@ -60,7 +60,7 @@ void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
   }
 }
 
-/// Adds a head that plays `logged`, if that is anything, to the heads that are served.
+/// Adds a head that plays `logged` to the served heads; only logs a warning if `logged` is null.
 void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file, ReplayConfig& replay) {
   if (logged == nullptr) {
     spdlog::warn("head={} is not served: {} has no pings of it", head.name, file.path().string());
@@ -81,7 +81,7 @@ void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file,
   replay.daemon.heads.push_back(kind.held_to_recording(head));
 }
 
-/// The kind that plays a head of a log: its own, and where the log does not say, the first that can.
+/// The kind that plays a head of a log: its own kind, or, if the log does not have it, the first that can.
 const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
   if (const DeviceKind* own = kind_of_logged(logged.device, logged.scanning, file.kind())) {
     return *own;
@@ -96,7 +96,7 @@ const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
                     logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
                     logged.device, fmt::join(types, " or ")));
   }
-  std::optional<std::string> reason;  // of the first that might have been it
+  std::optional<std::string> reason;  // of the first kind that could have been it
   for (const DeviceKind* kind : kinds) {
     if (kind->scanning() == logged.scanning) {
       const std::optional<std::string> hindrance = kind->why_not_played(logged);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which head of the network plays which head of a recording.
+// Maps heads of the network to heads of a recording.
 #pragma once
 
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace sonard::server {
 
-/// What `sonard replay` serves: DaemonConfig::heads and `played` go together, one by one.
+/// Configuration of `sonard replay`: DaemonConfig::heads and `played` have the same order and size.
 struct ReplayConfig {
   DaemonConfig daemon;
   std::vector<PlayedHead> played;
 };
 
-/// Heads on loopback where the demo has its one: 127.0.0.2 and up, first the multibeam ones, then the
-/// scanning ones, each of the kind that the log names, or whose logs these are.
-/// @throws LogError when a head is of no kind that is known
+/// Heads on loopback, from 127.0.0.2 up: first the multibeam heads, then the scanning ones. The log gives
+/// their kind, by name or by its format.
+/// @throws LogError if a head is of an unknown kind
 DaemonConfig loopback_config(const std::vector<LoggedHead>& logged, const LogFile& file);
 
-/// Gives every head of `config` the recorded one with its name, or else with its device ID, of those that are
-/// scanning as it is, or not; where both sides have one of these, that one whatever it is called. Heads
-/// without a recording are left out, with a warning, and so are poses: nothing is rendered. What clients will
-/// see wrongly is told.
-/// @throws LogError when nothing is left, a head is to play what it cannot send, or the times make no sense
+/// Gives every head of `config` the recorded head with its name, or else with its device ID, among the heads
+/// that are scanning, or not, as it is. If `config` has only one head of that sort and so has the recording,
+/// the two match whatever their names. Heads without a recording are left out, with a warning. Poses are left
+/// out, because nothing is rendered. Errors that clients will see are logged.
+/// @throws LogError if no head is left, a head cannot send its recording, or the times span too long
 ReplayConfig replay_config(DaemonConfig config, const std::vector<LoggedHead>& logged, const LogFile& file);
 
 }  // namespace sonard::server

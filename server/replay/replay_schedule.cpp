@@ -9,10 +9,10 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-// Lap of pings that all have the same time: a loop must advance.
+// Lap if all pings have the same time: a loop must advance.
 constexpr std::chrono::milliseconds shortest_lap{1};
 
-// From the last ping of a lap to the first of the next.
+// Interval from the last ping of a lap to the first of the next.
 nanoseconds usual_interval(const std::vector<nanoseconds>& offsets) {
   if (offsets.size() < 2) {
     return std::chrono::seconds{1};
@@ -87,7 +87,7 @@ void ReplaySchedule::started(std::size_t head_index, TimePoint transmit_time) {
   if (!timing_.as_asked) {
     if (!start_) {
       start_ = transmit_time;
-      *start_ -= due(head, head.next) - transmit_time;  // this ping need not be the first of all
+      *start_ -= due(head, head.next) - transmit_time;  // this ping may not be the first of all
     }
     const nanoseconds late = transmit_time - due(head, head.next);
     if (!timing_.start_now && late > most_behind) {

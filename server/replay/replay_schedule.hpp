@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When each ping of a recording is due. Pure: time is an argument.
+// Due times of the pings of a recording. Pure: time is an argument.
 #pragma once
 
 #include <chrono>
@@ -13,45 +13,44 @@
 namespace sonard::server {
 
 struct ReplayTiming {
-  double speed = 1.0;     ///< > 0; 2: twice as fast as recorded
-  bool as_asked = false;  ///< ignores the times of the recording: a ping for each that a client wants
-  bool loop = false;      ///< from the start again after the last ping; a recording of one lasts a second
-  bool start_now =
-      false;  ///< the clock runs from the start, with or without clients; else from the first ping on
+  double speed = 1.0;      ///< > 0; 2: twice as fast as recorded
+  bool as_asked = false;   ///< ignores recorded times: one ping per request of a client
+  bool loop = false;       ///< restarts after the last ping; a recording of one ping lasts a second
+  bool start_now = false;  ///< the clock starts at once, with or without clients; else with the first ping
 };
 
 /// Keeps the heads of a recording in step.
 ///
-/// The clock starts at the first ping that a client wants and waits for clients: a ping wanted late leaves
-/// late, the next ones catch up, and where it was more than `most_behind` late the clock goes on from there,
-/// so nothing is left out. With `start_now` it runs without clients too, and a ping that none wanted before
-/// the next was due, or for `most_behind`, is skipped.
+/// The clock starts at the first ping that a client requests, and waits for clients: a ping requested late is
+/// sent late, and the next ones catch up. If a ping was more than `most_behind` late, the clock shifts by
+/// that time, so nothing is left out. With `start_now` the clock runs without clients too. A ping is then
+/// skipped if no client requests it before the next one is due, or within `most_behind`.
 class ReplaySchedule {
  public:
   static constexpr std::chrono::nanoseconds most_behind = std::chrono::seconds{1};
 
   struct Ping {
-    std::size_t image = 0;         ///< index into the times of the head
-    std::optional<TimePoint> due;  ///< nullopt: as soon as a client wants it
+    std::size_t image = 0;         ///< index into the head's times
+    std::optional<TimePoint> due;  ///< nullopt: as soon as a client requests it
   };
 
-  /// @param times_ns of each head, rising, within 90 days; no head is without pings
-  /// @param now when the clock starts, for ReplayTiming::start_now
+  /// @param times_ns of each head, in rising order, within 90 days; every head has a ping
+  /// @param now start of the clock, for ReplayTiming::start_now
   ReplaySchedule(std::vector<std::vector<std::int64_t>> times_ns, const ReplayTiming& timing, TimePoint now);
 
-  /// The ping that is next at `now`; nullopt: the last one has been started or skipped.
+  /// The next ping at `now`; nullopt: the last one was started or skipped.
   std::optional<Ping> next(std::size_t head, TimePoint now);
-  /// The ping that next() named leaves at `transmit_time`.
+  /// Call it when the ping of next() leaves, at `transmit_time`.
   void started(std::size_t head, TimePoint transmit_time);
 
-  /// True when no ping of any head is left at `now`.
+  /// True if no head has pings left at `now`.
   bool over(TimePoint now);
   std::uint64_t skipped() const { return skipped_; }
 
  private:
   struct Head {
-    std::vector<std::chrono::nanoseconds> offsets;  ///< from the first ping of all
-    std::size_t next = 0;                           ///< counts on over laps
+    std::vector<std::chrono::nanoseconds> offsets;  ///< from the first ping of all heads
+    std::size_t next = 0;                           ///< keeps counting over laps
   };
 
   bool has_next(const Head& head) const { return timing_.loop || head.next < head.offsets.size(); }
@@ -60,7 +59,7 @@ class ReplaySchedule {
 
   ReplayTiming timing_;
   std::vector<Head> heads_;
-  std::chrono::nanoseconds lap_{};  ///< at the speed of the recording
+  std::chrono::nanoseconds lap_{};  ///< at recorded speed
   std::optional<TimePoint> start_;
   std::uint64_t skipped_ = 0;
 };
