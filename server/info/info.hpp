@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard info`: what is in a log.
+// `sonard info`: the contents of a log.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace sonard::server {
 struct InfoOptions {
   bool json = false;
   std::optional<std::filesystem::path> pictures;  ///< folder for thumbnails
-  std::uint64_t every = 1;                        ///< of the pings that have one
-  std::optional<double> utc_offset_h;             ///< of a .glf; nullopt: this machine's zone
+  std::uint64_t every = 1;                        ///< one picture per so many pings
+  std::optional<double> utc_offset_h;             ///< of a .glf's times; nullopt: this machine's zone
 };
 
-/// Prints to standard output, and to standard error what is wrong with the log. @throws LogError
+/// Prints the contents to standard output, and problems of the log to standard error. @throws LogError
 void info(const std::filesystem::path& log, const InfoOptions& options);
 
 }  // namespace sonard::server

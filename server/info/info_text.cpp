@@ -95,7 +95,7 @@ std::string span_text(const LogSummary& log, std::int32_t utc_offset_s) {
 
 using Json = nlohmann::ordered_json;
 
-/// null for what the log does not say.
+/// The value, or null if the log does not have it.
 Json json_known(bool known, double value) {
   return known ? Json(value) : Json();
 }

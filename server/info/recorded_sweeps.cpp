@@ -16,20 +16,20 @@ bool same_bins(const LoggedPing& a, const LoggedPing& b) {
          a.bits_per_bin == b.bits_per_bin;
 }
 
-/// The short way from one bearing to another, clockwise positive.
+/// The shorter way from one bearing to another, positive clockwise, in 1/16 gradian.
 int shortest_turn(int from, int to) {
   constexpr int turn = picture::units_per_turn;
   const int way = ((to - from) % turn + turn) % turn;
   return way > turn / 2 ? way - turn : way;
 }
 
-/// A turn as it grows.
+/// A sweep under construction.
 class GrowingSweep {
  public:
   GrowingSweep(const LoggedPing& line, std::size_t place)
       : first_(&line), begin_(place), end_(place + 1), left_(picture_bearing(line)), last_(left_) {}
 
-  /// False when the line belongs to the next one.
+  /// Returns false if the line belongs to the next sweep.
   bool take(const LoggedPing& line) {
     const int bearing = picture_bearing(line);
     const int way = shortest_turn(last_, bearing);
@@ -63,7 +63,7 @@ class GrowingSweep {
   }
 
  private:
-  /// The one that comes most often; a line that is missing makes a longer one.
+  /// The most frequent step; a missing line makes a longer one.
   int usual_step() const {
     const auto usual = std::ranges::max_element(steps_, {}, [](const auto& step) { return step.second; });
     const int step = usual == steps_.end() ? 0 : usual->first;
@@ -75,7 +75,7 @@ class GrowingSweep {
   std::size_t end_;
   int left_;     ///< bearing farthest counter-clockwise
   int last_;     ///< bearing of the last line
-  int way_ = 0;  ///< from the first line to the last, clockwise
+  int way_ = 0;  ///< sum of the steps, positive clockwise
   std::map<int, std::size_t> steps_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where one turn of a recorded scan ends and the next begins.
+// Splits a recorded scan into turns or sweeps.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,19 @@
 
 namespace sonard::server {
 
-/// Once round, or in a sector once from one limit to the other; the first and the last may be less.
+/// A full turn, or in a sector one sweep from limit to limit; the first and the last may be shorter.
 struct RecordedSweep {
-  picture::SweepShape shape;  ///< bearings are those of the vehicle, whatever side the head is mounted on
+  picture::SweepShape shape;  ///< bearings relative to the vehicle, whatever side the head is mounted on
   std::size_t begin = 0;      ///< lines [begin, end) of LoggedHead::pings
   std::size_t end = 0;
 };
 
-/// 1/16 gradian, 3200 ahead, rising to starboard, as pictures have it.
+/// Bearing as in pictures: 1/16 gradian, 3200 ahead, increasing to starboard.
 int picture_bearing(const LoggedPing& line);
 
-/// By the bearings alone: a turn ends where the head has come round or turns back, with another length or
-/// number of bins, and after as many lines as there are bearings where it stands still. Every line is in one.
+/// Uses only bearings and bins. A sweep ends when the head has come round or turns back, or when the length
+/// or number of bins changes. If the head stands still, it ends after as many lines as there are bearings.
+/// Every line is in one sweep.
 std::vector<RecordedSweep> sweeps_of(const LoggedHead& head);
 
 }  // namespace sonard::server

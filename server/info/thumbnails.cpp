@@ -19,7 +19,7 @@ namespace {
 
 constexpr picture::FanStyle thumbnail_style{.radius_px = 300, .grid = true};
 
-// Bearings of the recording are positive to port, those of pictures to starboard.
+// Bearings of the recording are positive to port, of pictures to starboard.
 picture::FanShape shape_of(const LoggedHead& head, const RecordedSettings& settings) {
   picture::FanShape shape;
   for (const double bearing_rad : head.bearings_rad) {
@@ -38,7 +38,7 @@ bool drawable(const picture::FanShape& shape, const RecordedSettings& settings) 
          bearings.front() > -quarter_turn_rad && bearings.back() < quarter_turn_rad;
 }
 
-// Names come from the log: they are no way out of the folder.
+// Names come from the log and must not lead out of the folder.
 std::string file_name(const LoggedHead& head, std::uint64_t number) {
   std::string name = head.name.empty() ? fmt::format("{}", head.device_id) : printable(head.name);
   std::ranges::replace_if(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures of the pings and turns of a log.
+// Writes small pictures of the pings and turns of a log.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace sonard::server {
 
-/// Writes each `every`-th ping of each multibeam head as a fan seen from above, and each `every`-th turn of
-/// each scanning head (recorded_sweeps.hpp): FOLDER/<name or id>_000012.png, 0 being the head's first. Makes
-/// the folder; overwrites.
-/// @return how many. @throws LogError naming the file that cannot be written or the head that cannot be drawn
+/// Writes each `every`-th ping of each multibeam head as a fan seen from above, and each `every`-th sweep of
+/// each scanning head (recorded_sweeps.hpp): FOLDER/<name or id>_000012.png, where 0 is the head's first.
+/// Creates the folder; overwrites files.
+/// @return number of files. @throws LogError naming the file that cannot be written or the head that cannot
+/// be drawn
 std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every);
 
