@@ -36,7 +36,7 @@ Json pairs_in(const std::string& line) {
       continue;
     }
     if (value.ends_with(',') || value.ends_with(';')) {
-      value.pop_back();  // of the sentence
+      value.pop_back();  // punctuation of the sentence
     }
     pairs[(*found)[2]] = number_or_text(value);
   }

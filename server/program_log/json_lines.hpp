@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of the log as JSON, for programs that collect them (docs/deploy.md).
+// Formats log lines as JSON, for log collectors (docs/deploy.md).
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace sonard::server {
 
-/// One object on one line, in this order: "time" (UTC, RFC 3339, milliseconds), "level" (trace, debug, info,
-/// warning, error, critical), "head" (of a line about one head) or "area" (what the line is about),
-/// "message", and "keys", an object of the key=value pairs of the message with numbers as numbers.
+/// One object per line, in this order: "time" (UTC, RFC 3339, milliseconds), "level" (trace, debug, info,
+/// warning, error, critical), "head" (for lines about one head) or "area" (the subject of the line),
+/// "message", and "keys", an object of the message's key=value pairs, with numbers as numbers.
 class JsonLines final : public spdlog::formatter {
  public:
   void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override;

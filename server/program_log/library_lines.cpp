@@ -11,7 +11,7 @@
 namespace sonard::server {
 namespace {
 
-/// Collects characters to lines. std::cerr flushes after each output, so a line comes in pieces.
+/// Joins characters to lines. std::cerr flushes after each output, so a line arrives in pieces.
 class LineBuffer final : public std::streambuf {
  public:
   void log(std::string_view library, std::string_view text) {

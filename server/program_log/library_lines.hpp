@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libraries print to standard error, as lines of the log.
+// Sends the standard error output of libraries to the log.
 #pragma once
 
 #include <string_view>
 
 namespace sonard::server {
 
-/// From the first call to the end of the process, lines that libraries print to std::cerr go to the log as
-/// warnings, limited in rate as by a PeerLog: peers cause most of them. Any thread may print.
+/// From the first call on, lines that libraries print to std::cerr go to the log as warnings, rate-limited
+/// like a PeerLog, because peers cause most of them. Any thread may print.
 void take_library_lines();
 
-/// Logs one line of a library in the same way. Any thread.
-/// @param library begins the line: "libprotobuf"
+/// Logs one line of a library the same way. Any thread.
+/// @param library prefix of the line: "libprotobuf"
 void log_library_line(std::string_view library, std::string_view text);
 
 }  // namespace sonard::server

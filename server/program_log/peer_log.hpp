@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Log lines that a peer can cause, limited in rate.
+// Rate-limited log lines that a peer can cause.
 #pragma once
 
 #include <chrono>
@@ -15,15 +15,15 @@
 
 namespace sonard::server {
 
-/// For one source of such lines: the clients of a port, the settings of a head. So many may come at once, and
-/// one more for every `refill`; what goes beyond is left out and counted, and the next line says how many
-/// were. The first line of each reason (Reasons) always comes. Belongs to one thread.
+/// For one source of such lines: the clients of a port, the settings of a head. `burst` lines may come at
+/// once, and one more every `refill`. Further lines are dropped and counted, and the next line gives their
+/// number. The first line of each reason (Reasons) is always logged. Belongs to one thread.
 class PeerLog {
  public:
   static constexpr int burst = 10;
   static constexpr std::chrono::seconds refill{2};
 
-  /// @param clock outlives this
+  /// @param clock must outlive this object
   explicit PeerLog(const Clock& clock = real_time()) : clock_(clock) {}
 
   template <typename... Args>

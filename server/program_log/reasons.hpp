@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often each reason for a line of the log came, so that a rare one is not lost among many of another.
+// Counts log lines by reason, so that a rare reason is not lost among many lines with another.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace sonard::server {
 
-/// The reason of a line is its text without digits and without what stands in single quotes: addresses,
-/// counts and names of peers make no new reason. Belongs to one thread.
+/// The reason of a line is its text without digits and without single-quoted text, so that addresses, counts
+/// and names of peers do not make new reasons. Belongs to one thread.
 class Reasons {
  public:
-  /// Counts a line under its reason. Beyond `most` reasons all further ones share a count: a peer that
-  /// invents new ones fills neither memory nor log.
-  /// @return how many lines with this reason came, this one included
+  /// Counts a line under its reason. All reasons beyond `most` share one count: a peer that invents reasons
+  /// must not fill memory or log.
+  /// @return number of lines with this reason, including this one
   std::uint64_t count(std::string_view text);
 
   static constexpr std::size_t most = 32;

@@ -28,7 +28,7 @@ StderrSink::StderrSink(int descriptor) : descriptor_(descriptor) {
     return;
   }
   kind_ = Kind::polled;
-  // O_NONBLOCK belongs to what was opened, which may be shared with a shell; opened again, it is ours alone.
+  // O_NONBLOCK belongs to the open file, which a shell may share. Opened again, the file is ours alone.
   const std::string path = fmt::format("/proc/self/fd/{}", descriptor);
   const int own = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
   if (own >= 0) {
@@ -61,7 +61,7 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
   }
 }
 
-/// In the form of the lines around it.
+/// Formatted like the lines around it.
 std::string StderrSink::dropped_text(const spdlog::details::log_msg& next) {
   const std::string text =
       fmt::format("{} lines of this log were dropped: nobody read them in time", dropped_);
@@ -77,7 +77,7 @@ bool StderrSink::write(std::string_view text) {
       return false;
     }
     cut_ = text.size() > PIPE_BUF;
-    text = text.substr(0, PIPE_BUF);  // that much there is room for
+    text = text.substr(0, PIPE_BUF);  // poll() guarantees that much room
   }
   ssize_t written = 0;
   do {

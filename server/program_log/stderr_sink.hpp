@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The log on standard error, which never waits for its reader.
+// Log sink for standard error that never blocks.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace sonard::server {
 
-/// Where a reader has stopped (a full pipe, a terminal that is held), lines are dropped and counted, and the
-/// next one that goes out says how many were. Any thread; a line is written whole or not at all, except that
-/// one longer than PIPE_BUF may be cut. The message of a line is printable(), whoever made up parts of it.
+/// If the reader has stopped (a full pipe, a held terminal), lines are dropped and counted, and the next line
+/// that is written gives their number. Any thread. A line is written whole or not at all, except that a line
+/// longer than PIPE_BUF may be cut. Messages pass printable(), because peers may have caused parts of them.
 class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  /// @param descriptor stays open for as long as the sink lives; it is not changed, for other processes may
-  ///   share it
+  /// @param descriptor stays open for as long as the sink lives; not modified, because other processes may
+  /// share it
   explicit StderrSink(int descriptor = 2);
   ~StderrSink() override;
   StderrSink(const StderrSink&) = delete;
@@ -25,10 +25,10 @@ class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
 
  private:
   enum class Kind : std::uint8_t {
-    file,    ///< a write never waits
-    socket,  ///< each write says that it must not wait
-    own,     ///< a pipe or terminal, opened again so that only our writes do not wait
-    polled,  ///< where that is not possible: polled for room first
+    file,    ///< a write never blocks
+    socket,  ///< each write has a flag not to block
+    own,     ///< a pipe or terminal, opened again so that only our writes do not block
+    polled,  ///< if it cannot be opened again: polled for room first
   };
 
   void sink_it_(const spdlog::details::log_msg& message) override;
@@ -38,7 +38,7 @@ class StderrSink final : public spdlog::sinks::base_sink<std::mutex> {
 
   int descriptor_;
   Kind kind_ = Kind::file;
-  bool cut_ = false;  ///< the last line was written in part
+  bool cut_ = false;  ///< only part of the last line was written
   std::uint64_t dropped_ = 0;
 };
 
