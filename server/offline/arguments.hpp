@@ -8,7 +8,7 @@
 
 #include "server/offline/options.hpp"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): not ours
+namespace CLI {  // NOLINT(readability-identifier-naming): a library's name
 class App;
 class Option;
 }  // namespace CLI
@@ -17,7 +17,7 @@ namespace sonard::server {
 
 class OfflineArguments {
  public:
-  /// Declares the options; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit OfflineArguments(CLI::App& app);
 
   const std::filesystem::path& config() const { return config_; }
@@ -30,7 +30,7 @@ class OfflineArguments {
 
   std::filesystem::path config_;
   OfflineOptions options_;
-  // As they are typed.
+  // As given on the command line.
   std::string axes_ = "enu_flu";
   std::string shard_ = "0/1";
   std::vector<std::string> bodies_;

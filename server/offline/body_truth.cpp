@@ -12,7 +12,7 @@
 namespace sonard::server {
 namespace {
 
-/// In mode `paper` a silent surface has a little echo left, sigmoid(0).
+/// In mode `paper` a silent surface still has a small echo, sigmoid(0).
 constexpr float paper_silence = 1e-5F;
 
 render::SonarSettings truth_settings(render::SonarSettings settings) {
@@ -33,8 +33,8 @@ void silence(render::Body& body) {
   }
 }
 
-/// Takes over the bins in which this body is louder than those before. Behind an echo the binning leaves
-/// roundings, some 1e-7 of it; they are no body.
+/// Takes the bins in which this body is louder than all earlier ones. Behind an echo, binning leaves rounding
+/// errors of about 1e-7 of it, which do not count.
 void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint16_t id,
                   std::vector<float>& loudest, std::vector<std::uint16_t>& ids) {
   constexpr float rounding = 1e-6F;

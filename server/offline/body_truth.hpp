@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds which body of the world echoes most in each bin of a ping.
+// Finds the body with the strongest echo in each bin of a ping.
 #pragma once
 
 #include <cstdint>
@@ -16,31 +16,30 @@
 
 namespace sonard::server {
 
-/// Renders the mean echo of each body that is near enough, with all others there but silent, and compares.
-/// What counts is what lies in a bin: beams receive nothing from beside them and pulses have no length, there
-/// are no mirror images. The sonar moves while it listens as in the request. Always by the CPU. One thread
-/// uses it.
+/// Renders the mean echo of each body that is near enough, with all other bodies present but silent, and
+/// compares them. Only the geometry of bins counts: beams have no side lobes, pulses no length, and there are
+/// no mirror images. The sonar moves during the ping as in the request. Always uses the CPU. For one thread.
 ///
-/// It takes a renderer for each body that was ever near, and the time of one echo for each that is.
+/// Needs a renderer for each body that was ever near, and the time of one echo for each body that is near.
 class BodyTruth {
  public:
   BodyTruth(render::World world, const render::RendererOptions& options);
 
-  /// By id, from 1 on.
+  /// Names of the bodies; the first has id 1.
   std::vector<std::string> bodies() const;
 
   void set_body_pose(const std::string& name, const render::Pose& T_world_body);
 
-  /// For each sample of the ping, [line * beams + beam], the id of the body that gives most of its echo; 0:
-  /// there is none.
+  /// For each sample of the ping, [line * beams + beam], the id of the body with most of its echo; 0 if no
+  /// body echoes.
   /// @throws render::RequestError, render::RendererError
   std::vector<std::uint16_t> bodies_in(const render::PingRequest& request);
 
-  /// `ids` as a table; of 8 bits where all ids of the world fit.
+  /// `ids` as a table; of 8 bits if all ids of the world fit.
   npy::Table table(int rows, int columns, const std::vector<std::uint16_t>& ids) const;
 
  private:
-  /// A ball around a body, in the world.
+  /// A sphere around a body, in the world frame.
   struct Ball {
     glm::dvec3 centre_m{0.0};
     double radius_m = 0.0;

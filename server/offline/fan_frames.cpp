@@ -29,7 +29,7 @@ std::vector<std::uint8_t> high_bytes(const std::vector<std::uint16_t>& samples) 
   return bytes;
 }
 
-/// Lays the pings out. @return how many frames they make
+/// Plans the pings. @return number of their frames
 int count_of(Survey& survey, int pings) {
   return static_cast<int>(survey.frames(pings).size()) - 1;
 }

@@ -21,7 +21,7 @@ namespace sonard::server {
 /// A frame is a ping, and has its number.
 class FanFrames final : public FrameSource {
  public:
-  /// All arguments but the survey and the options outlive this. @param truth null: not asked for
+  /// All references and `truth` must outlive this object. @param truth null: not requested
   FanFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
             const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
@@ -39,7 +39,7 @@ class FanFrames final : public FrameSource {
   std::vector<PingSent> pings(int frame, std::string_view npy) const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(frame)); }
 
-  /// What the renderer is asked for.
+  /// The request to the renderer.
   render::PingRequest request(int frame) const;
 
  private:
@@ -56,11 +56,11 @@ class FanFrames final : public FrameSource {
   std::unique_ptr<Survey> survey_;
   PingTimes times_;
   int count_;
-  PingJob job_;  ///< but for its number that of all pings
+  PingJob job_;  ///< the same for all pings, except its number
   std::vector<double> bearings_rad_;
   BodyTruth* truth_;
   picture::FanImage fan_;
-  std::optional<picture::FanImage> clean_fan_;  ///< without labels, where those are asked for
+  std::optional<picture::FanImage> clean_fan_;  ///< without labels; only if requested
 };
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a head makes of a trajectory: frames, one after the other.
+// Frames of a head along a trajectory, one after the other.
 #pragma once
 
 #include <cstdint>
@@ -18,30 +18,30 @@
 
 namespace sonard::server {
 
-/// A head as it is numbered in its configuration.
+/// Numbers of a head in its configuration.
 struct HeadPlace {
   int stream = 0;      ///< among all heads
-  int glf_number = 0;  ///< among those whose users know .glf logs
+  int glf_number = 0;  ///< among heads with .glf logs
 };
 
-/// A picture without labels, and the file that holds it.
+/// A picture without labels, and its file name.
 struct CleanPicture {
   std::string file;
   cv::Mat pixels;  ///< CV_8UC1
 };
 
-/// One ping of a fan, or one sweep of a scanning head, as the files that hold it.
+/// Contents of the files of one ping of a fan, or one sweep of a scanning head.
 struct Frame {
   std::string npy;                ///< samples
-  std::string bodies_npy;         ///< ids of bodies; empty: not asked for
+  std::string bodies_npy;         ///< ids of bodies; empty: not requested
   std::string sidecar;            ///< JSON
-  std::function<cv::Mat()> draw;  ///< the picture; of all frames one at a time
-  /// Those of OfflineOptions::clean_pictures; of all frames one at a time.
+  std::function<cv::Mat()> draw;  ///< draws the picture; for one frame at a time
+  /// Draws OfflineOptions::clean_pictures; for one frame at a time.
   std::function<std::vector<CleanPicture>()> draw_clean;
 };
 
-/// Frames depend on nothing but what a source was made of, and on the frames before, which the renderer must
-/// have rendered or passed in order: speckle evolves from ping to ping. One thread uses it.
+/// Frames depend only on the arguments of a source and on the frames before, which the renderer must have
+/// rendered or passed in order, because speckle evolves from ping to ping. For one thread.
 class FrameSource {
  public:
   FrameSource() = default;
@@ -54,28 +54,28 @@ class FrameSource {
   virtual std::string name(int frame) const = 0;
   /// @throws render::RequestError, render::RendererError
   virtual Frame render(render::SonarRenderer& renderer, int frame) = 0;
-  /// Leaves the renderer as render() does. @throws the same
+  /// Leaves the renderer in the same state as render(). @throws as render()
   virtual void pass(render::SonarRenderer& renderer, int frame) = 0;
 
-  /// The shortest time from ping to ping that the head can keep, and the one asked for.
+  /// The shortest ping period that the head can keep, and the requested period.
   virtual double natural_period_s() const = 0;
   virtual double period_s() const = 0;
 
-  /// What frames are made with, as a JSON object.
+  /// Settings of the frames, as a JSON object.
   virtual nlohmann::ordered_json settings_json() const = 0;
 
-  /// Whether frames go into a .glf.
+  /// True if frames go into a .glf.
   virtual bool makes_glf() const { return false; }
-  /// The record of a frame, of its samples as they stand in its file. @return nullopt where those are not of
-  /// this frame
+  /// The record of a frame, with the samples of its file. @return nullopt if the samples are not of this
+  /// frame
   virtual std::optional<glf::ImageRecord> record([[maybe_unused]] int frame,
                                                  [[maybe_unused]] std::string_view npy) const {
     return std::nullopt;
   }
-  /// The pings of a frame for a log, of its samples as they stand in its file; transmit times are Unix times.
-  /// Empty where those are not of this frame.
+  /// The pings of a frame for a log, with the samples of its file; transmit times are Unix times. Empty if
+  /// the samples are not of this frame.
   virtual std::vector<PingSent> pings(int frame, std::string_view npy) const = 0;
-  /// When it was sent.
+  /// Transmit time of a frame.
   virtual std::int64_t unix_ns(int frame) const = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace sonard::server {
 namespace {
 
-/// First pings of so many frames, and after the last frame the first ping that is in none.
+/// First pings of this number of frames, and the first ping after the last frame.
 std::vector<int> first_pings_of(std::size_t frames, Survey& survey) {
   std::vector<int> first_pings;
   for (int pings = static_cast<int>(frames); first_pings.size() <= frames; pings *= 2) {

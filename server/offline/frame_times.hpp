@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a head pings along a trajectory.
+// Ping times of a head along a trajectory.
 #pragma once
 
 #include "server/devices/survey.hpp"
@@ -8,9 +8,9 @@
 
 namespace sonard::server {
 
-/// At the rate asked for, else as fast as the head can. Of one frame for each pose (OfflineOptions) all pings
-/// of a frame are at the stamp of its pose.
-/// @param survey lays pings out to find out how many a frame has
+/// Times at the requested rate, or else at the head's highest rate. With one frame for each pose
+/// (OfflineOptions), all pings of a frame are at the stamp of its pose.
+/// @param survey gives the number of pings of each frame
 /// @throws TooManyPings
 PingTimes frame_times(const VehicleTrajectory& trajectory, const OfflineOptions& options, Survey& survey);
 

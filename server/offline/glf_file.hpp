@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A .glf of many pings, made in one go.
+// A .glf of many pings, made in one run.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace sonard::server {
 
-/// Records are collected in a hidden .dat, which close() packs. The same records make the same
-/// bytes: all times in the file are those of its records. Where a .dat grows too large for readers another
-/// log begins. Logs get their names at the end, the first one last: where it is, all are.
+/// Collects records in a hidden .dat, which close() packs. The same records give the same bytes: all times in
+/// the file come from its records. If a .dat becomes too large for readers, another log begins. Logs get
+/// their names at the end, the first log last: if it exists, all exist.
 class GlfFile {
  public:
-  /// Bytes of a .dat at which the next log begins; readers count in 31 bits (docs/logs.md 1.1).
+  /// Bytes of a .dat at which the next log begins; readers use 31-bit sizes (docs/logs.md 1.1).
   static constexpr std::uint64_t usual_most_dat_size = 1'000'000'000;
 
-  /// @param app_name of the writer, with its version
+  /// @param app_name of the writer, including its version
   GlfFile(const OutputFolder& folder, std::string app_name,
           std::uint64_t most_dat_size = usual_most_dat_size);
   ~GlfFile();
@@ -37,7 +37,7 @@ class GlfFile {
   const OutputFolder& folder_;
   std::string app_name_;
   std::uint64_t most_dat_size_;
-  std::unique_ptr<PartFile> dat_;  ///< null: no record yet
+  std::unique_ptr<PartFile> dat_;  ///< null: no records yet
   std::uint64_t size_ = 0;
   glf::Crc32 crc_;
   double first_time_s_ = 0.0;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double independent_share = 0.25;
 
-/// The even motion from one point to the next, in the axes of the world.
+/// The uniform motion from one point to the next, in world axes.
 struct Step {
   double seconds = 0.0;
   glm::dvec3 velocity_mps{0.0};
@@ -42,7 +42,7 @@ Step step_between(const pose::TrajectoryPoint& from, const pose::TrajectoryPoint
   return {seconds, (b.position_m - a.position_m) / seconds, turned_rad / seconds};
 }
 
-/// Whether a vehicle that made one step can go on with the next.
+/// True if a vehicle can make both steps, one after the other.
 bool continues(const Step& before, const Step& step) {
   const double between_s = (before.seconds + step.seconds) / 2.0;
   return glm::length(step.velocity_mps - before.velocity_mps) <= most_acceleration_mps2 * between_s &&
@@ -61,7 +61,7 @@ std::string speeds_text(const Step& step) {
                      glm::length(step.turn_radps) * degrees);
 }
 
-/// What changes from one step to the next, a time apart.
+/// The changes between two steps.
 std::string change_text(const Step& before, const Step& step) {
   return fmt::format("velocity changes by {:.3g} m/s and turn rate by {:.3g} deg/s within {:.3g} s",
                      glm::length(step.velocity_mps - before.velocity_mps),
@@ -73,7 +73,8 @@ bool are_many(std::size_t broken, std::size_t steps) {
   return broken > 0 && static_cast<double>(broken) >= independent_share * static_cast<double>(steps);
 }
 
-/// Whether many steps, each of shortest_compared_step_s or more, are jumps or do not continue the one before.
+/// True if many steps, each of shortest_compared_step_s or more, are jumps or do not continue the step
+/// before.
 bool many_steps_break(const std::vector<pose::TrajectoryPoint>& points, Jumps& jumps) {
   std::size_t steps = 0;
   std::size_t broken = 0;
@@ -111,7 +112,7 @@ Jumps find_jumps(const std::vector<pose::TrajectoryPoint>& points) {
       }
     }
   }
-  const bool many_break = many_steps_break(points, jumps);  // it may name the first
+  const bool many_break = many_steps_break(points, jumps);  // may set jumps.first
   jumps.independent = many_break || are_many(jumps.count, jumps.steps.size());
   return jumps;
 }

@@ -10,7 +10,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr const char* part_name = ".part-mcap";  // OutputFolder::remove_parts() removes it
+constexpr const char* part_name = ".part-mcap";  // removed by OutputFolder::remove_parts()
 
 RecordingConfig foxglove_alone() {
   RecordingConfig config;
@@ -27,7 +27,7 @@ McapFile::McapFile(const OutputFolder& folder, const std::vector<HeadConfig>& he
       heads_(recorded_heads(heads)),
       setting_{config_, heads_, {}, 0, ""},
       log_(setting_) {
-  folder_.remove(part_name);  // of a run that was interrupted
+  folder_.remove(part_name);  // from an interrupted run
   log_.file().begin(folder_.path() / part_name);
   check();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An .mcap of many pings with topics for Foxglove, made in one go.
+// An .mcap of many pings with topics for Foxglove, made in one run.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace sonard::server {
 
-/// Holds what the recorder of a daemon would have written for the same pings, without the bytes of the wire.
-/// The same pings make the same bytes. The log gets its name at the end.
+/// Has the content that a daemon's recorder would write for the same pings, without wire bytes. The same
+/// pings give the same bytes. The log gets its name at the end.
 class McapFile {
  public:
-  /// @param heads of the configuration; they outlive this
+  /// @param heads of the configuration; must outlive this object
   /// @throws OutputError
   McapFile(const OutputFolder& folder, const std::vector<HeadConfig>& heads);
 
-  /// @param head its place in the configuration
+  /// @param head index in the configuration
   /// @throws OutputError
   void add(int head, const PingSent& ping);
   /// @throws OutputError

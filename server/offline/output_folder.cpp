@@ -26,7 +26,7 @@ namespace {
 constexpr const char* manifest_name = "run.json";
 constexpr const char* part_prefix = ".part-";
 constexpr const char* lock_name = ".part-lock";
-constexpr mode_t file_mode = 0644;  // mkstemp makes files for the owner alone
+constexpr mode_t file_mode = 0644;  // mkstemp creates files that only the owner can read
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& doing) {
   throw OutputError(path, "cannot " + doing + ": " + std::generic_category().message(errno));
@@ -40,7 +40,7 @@ bool is_frame_or_log(const std::string& name) {
   return name.starts_with("ping_") || name.starts_with("scan_") || name.starts_with("log_");
 }
 
-/// Members of a manifest by their path: "settings.range_m".
+/// Members of a manifest by path: "settings.range_m".
 std::map<std::string, std::string> members_of(const std::string& manifest) {
   std::map<std::string, std::string> members;
   const auto json = nlohmann::json::parse(manifest, nullptr, false);
@@ -68,7 +68,7 @@ std::string difference(const std::string& name, const std::string& before, const
   return fmt::format("{} was {} and is {} now", name, text(before), text(now));
 }
 
-/// What two manifests do not share, the first few of it.
+/// The first differences of two manifests.
 std::string differences(const std::string& before, const std::string& now) {
   constexpr std::size_t most = 5;
   const auto was = members_of(before);
@@ -139,8 +139,8 @@ std::string PartFile::read(std::uint64_t offset, std::size_t size) const {
   return bytes;
 }
 
-// Bytes are on the disk, or at the file server, before the name says that they are: a machine that fails
-// leaves no file that looks whole.
+// Data is on the disk, or on the file server, before the file gets its name: a failing machine leaves no file
+// that only looks whole.
 void PartFile::publish(const std::string& name) {
   if (fsync(file_) != 0) {
     fail(folder_, "write a file in it");
@@ -225,8 +225,8 @@ void OutputFolder::remove_if(bool (*unwanted)(const std::string& name)) const {
   }
 }
 
-// A file that is open for writing is locked, and not the folder itself: NFS passes locks of folders to no
-// other machine. Who waited for one that was then removed as a part begins anew.
+// Locks a file that is open for writing, not the folder: NFS does not pass locks of folders to other
+// machines. If the file was removed as a part while this process waited, it tries again.
 OutputFolder::Lock::Lock(const OutputFolder& folder) {
   const std::filesystem::path path = folder.path() / lock_name;
   do {

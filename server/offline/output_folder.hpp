@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder that frames go into, shared by processes and by runs that were interrupted.
+// The folder of the frames, shared by processes and by interrupted runs.
 #pragma once
 
 #include <filesystem>
@@ -10,40 +10,40 @@
 
 namespace sonard::server {
 
-/// A file or folder cannot be made, written or read, or belongs to another run. what() is one line that
+/// A file or folder cannot be created, written or read, or belongs to another run. what() is one line that
 /// begins with the path.
 struct OutputError : std::runtime_error {
   OutputError(const std::filesystem::path& path, const std::string& what)
       : std::runtime_error(path.string() + ": " + what) {}
 };
 
-/// A file with a name of its own, which takes its real name when it is whole. Without publish() it goes.
+/// A file with a temporary name, which gets its final name when it is whole. Deleted without publish().
 class PartFile {
  public:
-  /// Made in `folder`. @throws OutputError
+  /// Creates a file in `folder`. @throws OutputError
   explicit PartFile(const std::filesystem::path& folder);
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  /// @throws OutputError, also where the disk is full
+  /// @throws OutputError, also if the disk is full
   void write(std::string_view bytes);
-  /// Reads what was written, from `offset` on, up to `size` bytes of it.
+  /// Reads up to `size` bytes that were written, from `offset` on.
   std::string read(std::uint64_t offset, std::size_t size) const;
-  /// Forces its bytes to the disk; then it replaces whatever has that name, at once. @throws OutputError
+  /// Forces the file to the disk, then atomically replaces any file of that name. @throws OutputError
   void publish(const std::string& name);
 
  private:
   std::filesystem::path folder_;
-  std::filesystem::path path_;  ///< empty once published
+  std::filesystem::path path_;  ///< empty after publish()
   int file_ = -1;
 };
 
-/// What is in the folder under its real name is whole. Any number of processes use a folder, and any number
-/// of threads write() into it; all else of an object is for one thread.
+/// Files with a final name are whole. Any number of processes can use a folder, and any number of threads can
+/// call write(); all other functions of an object are for one thread.
 class OutputFolder {
  public:
-  /// Makes the folder. @throws OutputError
+  /// Creates the folder. @throws OutputError
   explicit OutputFolder(std::filesystem::path folder);
 
   const std::filesystem::path& path() const { return folder_; }
@@ -54,16 +54,15 @@ class OutputFolder {
   std::string read(const std::string& name) const;
   void remove(const std::string& name) const;
 
-  /// Of the run whose folder it is; nullopt: of none yet. @throws OutputError
+  /// Manifest of the run that owns the folder; nullopt: no run yet. @throws OutputError
   std::optional<std::string> manifest() const;
-  /// Makes the folder that of a run, which `manifest` describes to the last byte; it becomes the file
-  /// run.json. An existing one must be equal, or with `overwrite` all frames and logs are removed. The caller
-  /// holds the lock.
-  /// @throws OutputError where it says something else
+  /// Claims the folder for a run with this manifest, written as the file run.json. An existing manifest must
+  /// be equal byte for byte; otherwise `overwrite` removes all frames and logs. The caller holds the lock.
+  /// @throws OutputError if the manifest differs, without `overwrite`
   void claim(const std::string& manifest, bool overwrite) const;
 
-  /// While it exists no other process has one, on this machine or another that shares the folder; the end of
-  /// a process ends it too. Its file in the folder is a part: remove_parts() removes it.
+  /// Only one process at a time has a lock, on this machine or another that shares the folder. It ends with
+  /// the process. Its file in the folder is a part: remove_parts() removes it.
   class Lock {
    public:
     explicit Lock(const OutputFolder& folder);
@@ -77,7 +76,7 @@ class OutputFolder {
 
     int file_ = -1;
   };
-  /// Removes the parts of files left by processes that were killed. Only while no other process writes.
+  /// Removes partial files of killed processes. Only call it while no other process writes.
   void remove_parts() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a run is, for people.
+// Progress of a run, for people.
 #pragma once
 
 #include <chrono>
@@ -8,31 +8,28 @@
 
 namespace sonard::server {
 
-/// Frames of this process.
+/// Frame counts of this process.
 struct ProgressState {
-  int frames = 0;  ///< to be there in the end
-  int found = 0;   ///< frames that existed before it began
-  int made = 0;    ///< since then
+  int frames = 0;  ///< frames when all are done
+  int found = 0;   ///< frames that existed before this run
+  int made = 0;    ///< frames made by this run
   std::chrono::nanoseconds elapsed{0};
 };
 
-/// "120 of 300 frames, 40 %, 8.1 a second, 0:22 left"; the last two as soon as there is something to tell
-/// them from.
+/// "120 of 300 frames, 40 %, 8.1 a second, 0:22 left"; the last two when the rate is known.
 std::string progress_text(const ProgressState& state);
 
-/// What a run begins with where frames of an earlier one are there: "40 of 300 frames are there; 260 to
-/// render".
+/// First line of a run that continues another: "40 of 300 frames are there; 260 to render".
 std::string found_text(int frames, int found);
-/// What one that was interrupted leaves: "interrupted: 120 of 300 frames are there; the same command goes
-/// on".
+/// Last line of an interrupted run: "interrupted: 120 of 300 frames are there; the same command goes on".
 std::string interrupted_text(const ProgressState& state);
 
-/// Shows it on standard error: on a terminal as a bar, elsewhere as a line now and then.
+/// Prints progress on standard error: a bar on a terminal, otherwise a line from time to time.
 class Progress {
  public:
   Progress(int frames, int found);
 
-  /// One more frame is done.
+  /// Counts one more frame.
   void made(std::chrono::nanoseconds now);
   /// Ends the bar, so that a line can follow.
   void end();

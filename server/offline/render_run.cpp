@@ -66,7 +66,7 @@ std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
                    fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
 }
 
-/// With the seeds of the command line, where it has them, in the place of the head's own.
+/// The configuration with the seeds of the command line, if given, instead of the head's own.
 DaemonConfig seeded(const LoadedConfig& loaded, const OfflineOptions& options) {
   DaemonConfig config = loaded.config;
   HeadConfig& head = config.heads[chosen_head(loaded, options.head)];
@@ -108,8 +108,8 @@ VehicleTrajectory trajectory_with_bodies(const OfflineOptions& options, const re
   return trajectory;
 }
 
-/// Pings in which the vehicle is taken to be at rest: all with --still, none with --no-still, else those for
-/// which the trajectory moves as no vehicle does.
+/// Sets the pings in which the vehicle counts as at rest: all with --still, none with --no-still, else pings
+/// in which no vehicle moves like the trajectory.
 VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions& options) {
   if (options.still) {
     if (*options.still) {
@@ -135,7 +135,7 @@ VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions&
   return trajectory;
 }
 
-/// A rate that the head cannot keep is rendered all the same, for a user may want more than there is.
+/// Only warns: users may want higher rates than the head can keep.
 void warn_of_rate(const FrameSource& frames, const std::string& head) {
   if (frames.period_s() < frames.natural_period_s() * (1.0 - 1e-9)) {
     spdlog::warn(
@@ -144,7 +144,7 @@ void warn_of_rate(const FrameSource& frames, const std::string& head) {
   }
 }
 
-/// Remembers the first SIGINT or SIGTERM; the next one ends the process as it would without this.
+/// Stores a SIGINT or SIGTERM; a second one of the same kind has its default effect.
 std::atomic<int> interrupted_by{0};
 void watch_for_interruption() {
   struct sigaction action {};
@@ -184,9 +184,9 @@ class RenderRun {
  public:
   RenderRun(const LoadedConfig& loaded, const OfflineOptions& options);
 
-  /// Stops between two frames when it is interrupted.
+  /// Stops between two frames if interrupted.
   void render_missing();
-  /// The log, where all frames of all processes are there.
+  /// Makes the logs if all frames of all processes exist.
   void finish();
 
  private:
@@ -216,8 +216,8 @@ class RenderRun {
   std::mutex drawing_;
 };
 
-// The self-test comes first: an engine that draws nothing must not fill a folder. All frames come from one
-// engine, since bytes that a folder already holds are not made again: where the GPU is lost, the run ends.
+// Runs the self-test first: a broken engine must not fill a folder. All frames come from one engine, because
+// existing frames are not rendered again. If the GPU is lost, the run ends.
 render::RendererOptions tested(render::RendererOptions options) {
   options.report = [](const std::string& line) {
     throw render::RendererError(line + " (all frames of a run come from one engine: run it again to go on " +
@@ -227,7 +227,7 @@ render::RendererOptions tested(render::RendererOptions options) {
   return options;
 }
 
-/// @throws StartError, pose::TrajectoryError where there are none
+/// @throws StartError, pose::TrajectoryError if there are no frames
 std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
@@ -244,7 +244,7 @@ std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, s
   return frames;
 }
 
-/// Without the vehicle where the head hides it: its body then has no parts.
+/// The world; if the head hides the vehicle, the vehicle's body has no parts.
 /// @throws StartError
 render::World world_without_hidden(DaemonConfig& config, std::size_t head) {
   render::World world = load_world_of(config);
@@ -282,8 +282,8 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
   folder_.claim(manifest(), options.overwrite);
 }
 
-// Frames of one folder come from one engine: under `auto` that of the process that made the folder, which
-// others wait for.
+// All frames of a folder come from one engine. With `auto`, it is the engine of the process that created the
+// folder; other processes wait for it.
 void RenderRun::choose_engine() {
   if (config_.engine != render::EngineKind::automatic) {
     return;
@@ -302,14 +302,15 @@ void RenderRun::choose_engine() {
   spdlog::info("engine auto: {}", describe(render::choose_engine_at_start(renderer_, first, config_.gpu)));
 }
 
-// All that the bytes of frames follow from, as far as it is not in the program; nothing of this process.
+// Everything that determines the bytes of frames, except the program itself; nothing specific to this
+// process.
 std::string RenderRun::manifest() const {
   Json json{{"program", app_name},
             {"config_crc32", fmt::format("{:08x}", crc_of(config_.file))},
             {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
             {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
             {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
-            {"bearings", "positive to port"},  // they were to starboard once: not to be mixed in one folder
+            {"bearings", "positive to port"},  // formerly to starboard; must not mix in one folder
             {"engine", render::name_of(renderer_.engine())},
             {"head", config_.heads[head_].name},
             {"settings", frames_->settings_json()},
@@ -365,7 +366,7 @@ Drawn RenderRun::draw(const std::function<Drawn()>& draw_it) {
   return draw_it();
 }
 
-// The sidecar comes last: it says that the others are there.
+// The sidecar is written last: it marks the frame as complete.
 void RenderRun::write(int frame, const Frame& made) {
   const std::string name = frames_->name(frame);
   folder_.write(npy_name(name), made.npy);
@@ -383,8 +384,8 @@ void RenderRun::write(int frame, const Frame& made) {
   folder_.write(sidecar_name(name), made.sidecar);
 }
 
-// Frames are drawn, encoded and written by threads of their own while the next ones are rendered: a picture
-// takes as long as half a ping of two cores, and longer than a ping of eight.
+// Threads draw, encode and write frames while the next ones are rendered: a picture takes half as long as a
+// ping on two cores, and longer than a ping on eight.
 void RenderRun::render_missing() {
   const std::vector<int> missing = wanted_frames();
   int of_shard = 0;
@@ -404,7 +405,7 @@ void RenderRun::render_missing() {
       progress.made(SteadyClock().now());
     }
   };
-  // No fewer than four: most of the time they wait for the disk, and it takes several files in one go.
+  // At least four, because they mostly wait for the disk, which can write several files at once.
   const std::size_t writers = std::max(4U, render::usable_cores() / 2);
   int next = 0;
   for (const int frame : missing) {
@@ -427,8 +428,8 @@ void RenderRun::render_missing() {
   }
 }
 
-// Of many processes all but the last soon find a frame that is missing. To count those would be a look at
-// every file of the folder for each process, and over a network that takes longer than to render.
+// Returns at the first missing frame. Counting all missing frames would look at every file for each process,
+// which over a network takes longer than rendering.
 bool RenderRun::all_whole() const {
   for (int frame = 0; frame < frames_->count(); ++frame) {
     if (!whole(frame)) {
@@ -498,7 +499,7 @@ int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options)
   watch_for_interruption();
   run.render_missing();
   if (interrupted_by != 0) {
-    std::raise(interrupted_by);  // the handler is gone: whoever started it sees what ended it
+    std::raise(interrupted_by);  // with the default handler, so that the parent process sees the signal
   }
   run.finish();
   return exit_clean;

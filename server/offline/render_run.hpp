@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard render`: a trajectory to files.
+// `sonard render`: renders a trajectory to files.
 #pragma once
 
 #include "server/config/loader.hpp"
@@ -7,8 +7,8 @@
 
 namespace sonard::server {
 
-/// Renders the missing frames of this process. The process that finds all frames of all processes there
-/// at its end makes the .glf of them. docs/offline.md describes the files.
+/// Renders the missing frames of this process. The process that finds all frames of all processes at its end
+/// also makes the logs. docs/offline.md describes the files.
 /// @return exit_clean
 /// @throws StartError, OutputError, pose::TrajectoryError, render::RequestError, render::RendererError
 int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options);

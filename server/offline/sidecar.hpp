@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The JSON beside a frame, and what else the sources of frames share.
+// The JSON file of a frame, and other functions that sources of frames share.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +26,10 @@ struct FrameFacts {
   int number = 0;
   std::string head;
   std::string type;           ///< of the head, as in the configuration
-  std::int64_t stamp_ns = 0;  ///< of the trajectory
+  std::int64_t stamp_ns = 0;  ///< on the clock of the trajectory
   std::int64_t unix_ns = 0;
 };
-/// What every sidecar begins with.
+/// The common beginning of all sidecars.
 Json frame_json(const FrameFacts& facts);
 
 struct Axis {
@@ -38,21 +38,21 @@ struct Axis {
 };
 /// @param name FrameSource::name()
 Json samples_json(const std::string& name, bool sixteen_bit, const Axis& rows, const Axis& columns);
-/// @param truth null: it was not asked for
+/// @param truth null: not requested
 Json truth_json(const std::string& name, const BodyTruth* truth);
 Json pose_json(const render::Pose& pose);
 
-/// Adds how pings follow each other to the settings of frames.
+/// Adds the timing of pings to the settings of frames.
 void add_times(Json& settings, const PingTimes& times, const OfflineOptions& options);
 
-/// A ping as a log takes it, with the pose that it was rendered from.
+/// A ping for a log, with the pose that it was rendered from.
 PingSent sent_ping(PingRecord record, std::int64_t unix_ns, const render::Pose& T_world_vehicle,
                    const HeadConfig& head);
 
-/// One object, a member to a line. The same values give the same text everywhere.
+/// One object, one member per line. The same values always give the same text.
 std::string sidecar_text(const Json& object);
 
-/// Samples for a picture: CV_8UC1, a row for each row.
+/// Samples for a picture: CV_8UC1, one row per row.
 cv::Mat eight_bit_matrix(const npy::Table& samples);
 
 /// Ids of bodies as a mask: CV_8UC1. Requires a table of 8 bits.
@@ -67,7 +67,7 @@ struct CleanNames {
         fan_mask(name + "_fan_bodies.png") {}
   std::string grey, fan, grey_mask, fan_mask;
 };
-/// Their files, and where bearing and range of a pixel come from.
+/// File names, and the map from pixel to bearing and range.
 Json clean_json(const std::string& name, bool with_masks, const picture::SectorGeometry& fan);
 
 // Files of a frame, by its name.

@@ -27,7 +27,7 @@ picture::SweepShape shape_of(const Survey& survey, int bins) {
   return shape;
 }
 
-/// Bins of all pings of a survey.
+/// Number of bins of the pings of a survey.
 int bins_of(const Survey& survey, const std::vector<int>& first_lines) {
   return first_lines.size() > 1 ? survey.job(0).bins() : 1;
 }

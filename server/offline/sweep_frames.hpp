@@ -18,15 +18,15 @@
 
 namespace sonard::server {
 
-/// A frame is a turn, or a sweep of the sector from one limit to the other, and of whole ones only; each of
-/// its lines is a ping with a number and a pose of its own.
+/// A frame is a turn, or a sweep of the sector from one limit to the other. Only whole frames count. Each
+/// line is a ping with its own number and pose.
 class SweepFrames final : public FrameSource {
  public:
-  /// All arguments but the survey and the options outlive this. @param truth null: not asked for
+  /// All references and `truth` must outlive this object. @param truth null: not requested
   SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
               const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
-  /// 0 where the trajectory is over before the first sweep is.
+  /// 0 if the trajectory ends before the first sweep does.
   int count() const override { return static_cast<int>(first_lines_.size()) - 1; }
   std::string name(int frame) const override;
   Frame render(render::SonarRenderer& renderer, int frame) override;
@@ -39,9 +39,9 @@ class SweepFrames final : public FrameSource {
   std::vector<PingSent> pings(int frame, std::string_view npy) const override;
   std::int64_t unix_ns(int frame) const override { return trajectory_.unix_ns(times_.at(first_line(frame))); }
 
-  /// What the renderer is asked for, by the number of the line since the beginning.
+  /// The request to the renderer, by the line's number since the start.
   render::PingRequest request(int line) const;
-  /// Lines of a frame: from its first to the first of the next.
+  /// First line of a frame; its lines end before the first of the next frame.
   int first_line(int frame) const { return first_lines_[static_cast<std::size_t>(frame)]; }
 
  private:
@@ -59,7 +59,7 @@ class SweepFrames final : public FrameSource {
   int bins_;
   BodyTruth* truth_;
   picture::SweepImage picture_;
-  std::optional<picture::SweepImage> clean_picture_;  ///< without labels, where those are asked for
+  std::optional<picture::SweepImage> clean_picture_;  ///< without labels; only if requested
 };
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What moves in the world while a vehicle follows its trajectory.
+// Moves the bodies of the world while a vehicle follows its trajectory.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace sonard::server {
 
-/// Moves the bodies that have a way of their own, and the model of the vehicle where the trajectory has one,
-/// to where they are at a time.
+/// Moves bodies with their own trajectories, and the vehicle's model if the trajectory has one, to their
+/// poses at a time.
 /// @param truth may be null
 void place_bodies(const VehicleTrajectory& trajectory, std::int64_t time_ns, render::SonarRenderer& renderer,
                   BodyTruth* truth);

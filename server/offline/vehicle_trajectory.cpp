@@ -32,7 +32,7 @@ int PingTimes::count_until(std::int64_t end_ns) const {
     throw TooManyPings(fmt::format("{:.0f} pings are too many (expected {} at most)", periods, most_pings));
   }
   auto last = static_cast<int>(periods);
-  // The quotient may be one off where a ping falls on the end.
+  // The quotient may be one off if a ping is exactly at the end.
   while (at(last + 1) <= end_ns) {
     ++last;
   }
