@@ -14,7 +14,7 @@
 namespace sonard::client {
 namespace {
 
-/// An option before the subcommand is for the device without one, and would be lost in silence.
+/// Rejects options before a subcommand: they belong to the default device and would be ignored silently.
 void refuse_options_before(const CLI::App& app, const std::string& subcommand) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line of sonarview: what the user asks of it.
+// The command line of sonarview.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace sonard::client {
 
-/// nullopt: the program ends with `status`, after --help or an error that has been printed.
+/// nullopt: the program ends with `status`, after --help or an error, which has been printed.
 std::optional<Run> parse_command_line(int argc, const char* const* argv, ExitStatus& status);
 
 }  // namespace sonard::client

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How sonarview ends, in its documentation and in scripts.
+// The exit codes of sonarview. Scripts and docs/sonarview.md rely on the values.
 #pragma once
 
 namespace sonard::client {
@@ -7,9 +7,9 @@ namespace sonard::client {
 enum class ExitStatus : int {
   ok = 0,
   system = 1,      ///< a socket or a file could not be opened or written
-  usage = 2,       ///< the command line makes no sense
-  no_head = 3,     ///< no word of a head came in time
-  incomplete = 4,  ///< lines are missing, or nothing came
+  usage = 2,       ///< invalid command line
+  no_head = 3,     ///< nothing was received from a head in time
+  incomplete = 4,  ///< lines are missing, or no ping arrived
 };
 
 }  // namespace sonard::client

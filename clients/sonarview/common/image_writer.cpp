@@ -16,7 +16,7 @@ namespace sonard::client {
 namespace {
 
 constexpr int png_level = 3;
-constexpr std::size_t most_waiting = 64;  // 20 MB of usual pings
+constexpr std::size_t most_waiting = 64;  // calls of write(); about 20 MB of ordinary pings
 
 }  // namespace
 
@@ -98,7 +98,7 @@ bool ImageWriter::save(const Picture& picture) {
     std::ofstream out(part, std::ios::binary);
     saved = out.write(png.data(), static_cast<std::streamsize>(png.size())).flush().good();
   } catch (const std::exception&) {
-    saved = false;  // no memory
+    saved = false;  // usually out of memory; finish() reports it
   }
   if (saved) {
     std::filesystem::rename(part, path, error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures, drawn and written beside the conversation with the head.
+// Draws and writes pictures on a thread of their own.
 #pragma once
 
 #include <condition_variable>
@@ -16,52 +16,51 @@
 namespace sonard::client {
 
 struct Picture {
-  std::string file;               ///< in the folder of the writer, "fan-last.png"
-  std::function<cv::Mat()> draw;  ///< called on the writer's thread, once
+  std::string file;               ///< name in the writer's folder, "fan-last.png"
+  std::function<cv::Mat()> draw;  ///< called once, on the writer's thread
 };
 
-/// Encoding a picture takes longer than a head waits for an answer, so it has a thread of its own. Pictures
-/// wait for it in a bounded queue; when that is full, the oldest are not drawn, and counted. A file takes its
-/// name when it is whole, so that whoever opens a picture while it is replaced sees the old one or the new
-/// one.
+/// Draws and writes pictures on its own thread, because encoding takes longer than a head waits for an
+/// answer. Pictures wait in a bounded queue. If it is full, the oldest are dropped and counted. A file gets
+/// its name when it is complete, so a reader sees the old or the new picture, never a part.
 class ImageWriter {
  public:
-  /// Makes the folder.
-  /// @throws std::runtime_error naming it
+  /// Creates the folder.
+  /// @throws std::runtime_error that names the folder
   explicit ImageWriter(std::filesystem::path folder);
-  /// Writes what is waiting first.
+  /// Writes the waiting pictures first.
   ~ImageWriter();
 
-  /// All pictures of one ping, or of one turn. They are drawn in this order.
+  /// Queues all pictures of one ping or sweep. They are drawn in this order.
   void write(std::vector<Picture> pictures);
 
-  /// The state of things until more is known: drawn when nothing else waits, unless a newer call of refresh()
-  /// or write() comes before. Neither written() nor skipped() counts it.
+  /// Replaces the pictures of an unfinished ping or sweep. They are drawn when the queue is empty, unless
+  /// refresh() or write() is called again first. written() and skipped() do not count them.
   void refresh(std::vector<Picture> pictures);
 
-  /// Waits until everything is written. Nothing may be written after it.
+  /// Waits until all pictures are written. Do not call write() or refresh() afterwards.
   void finish();
-  std::uint64_t written() const { return written_; }  ///< pictures of write(); after finish()
-  std::uint64_t skipped() const { return skipped_; }  ///< calls of write() without effect; after finish()
-  /// First trouble with a file; empty if there was none. After finish().
+  std::uint64_t written() const { return written_; }  ///< pictures of write(); valid after finish()
+  std::uint64_t skipped() const { return skipped_; }  ///< dropped calls of write(); valid after finish()
+  /// The first file that failed; empty if all files were written. Valid after finish().
   const std::string& error() const { return error_; }
 
  private:
   void run();
-  /// Whether it is there now, under its name.
+  /// Returns whether the file is complete under its name.
   bool save(const Picture& picture);
 
   std::filesystem::path folder_;
-  std::uint64_t written_ = 0;  ///< writer's thread, read after finish()
-  std::string error_;          ///< see error()
+  std::uint64_t written_ = 0;  ///< written by the writer's thread, read after finish()
+  std::string error_;          ///< used like written_
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::vector<Picture>> queue_;  ///< guarded by mutex_
-  std::vector<Picture> fresh_;              ///< of refresh(), guarded by mutex_; empty: none waits
+  std::vector<Picture> fresh_;              ///< of refresh(), guarded by mutex_; empty: nothing to draw
   std::uint64_t skipped_ = 0;               ///< guarded by mutex_
   bool finishing_ = false;                  ///< guarded by mutex_
-  std::thread thread_;                      ///< last member: starts when all others are there
+  std::thread thread_;                      ///< last member: starts when the others are initialised
 };
 
 }  // namespace sonard::client

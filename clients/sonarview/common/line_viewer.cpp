@@ -69,7 +69,7 @@ void LineViewer::line_opened() {
   advance();
 }
 
-/// A line that is closed each time as soon as it is open stays lost: it is back with the first byte.
+/// A line that closes right after each opening stays lost: only its first byte ends the loss.
 void LineViewer::line_speaks() {
   if (!lost_at_) {
     return;
@@ -94,7 +94,7 @@ void LineViewer::line_lost(const std::string& why) {
     lost_at_ = at;
     fmt::print(stderr, "sonarview: lost {}: {}; trying again for {:.1f} s\n", printable(line_text_),
                printable(why), seconds(options_.wait));
-  } else if (why != trouble_) {  // said once, not at each try
+  } else if (why != trouble_) {  // logged once, not at each try
     fmt::print(stderr, "sonarview: cannot open {}: {}; trying again\n", printable(line_text_),
                printable(why));
   }

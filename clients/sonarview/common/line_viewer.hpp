@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of a viewer that talks to one head over a line of bytes, whatever the head speaks.
+// The main loop of a viewer with one head on a byte stream, for any protocol.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -20,20 +20,19 @@
 
 namespace sonard::client {
 
-/// What the summary says of every device.
+/// The counters that each summary prints.
 struct RunCounters {
   std::uint64_t pings = 0;
-  double rate_hz = 0.0;  ///< from the first ping to the last
+  double rate_hz = 0.0;  ///< pings per second, from the first ping to the last
   std::uint64_t reconnects = 0;
   std::uint64_t images_written = 0;
   std::uint64_t images_skipped = 0;
 };
 
-/// Opens the line and opens it again when it is lost, says how it goes, ends when a limit is reached or a
-/// signal comes, and finishes the pictures. Everything on one thread but the drawing of pictures.
+/// Opens the line, reopens a lost line, prints progress, and finishes the pictures. It ends at a limit or a
+/// signal. All runs on one thread, except that pictures are drawn on the writer's thread.
 ///
-/// What a device's viewer knows of the conversation lives as long as the program, whatever becomes of the
-/// line: a head goes on when its client is away.
+/// The state of a device's viewer survives the loss of the line, because a head continues without its client.
 class LineViewer {
  public:
   /// @throws std::runtime_error (folder for pictures)
@@ -45,41 +44,41 @@ class LineViewer {
   ExitStatus run();
 
  protected:
-  // ---- What the viewer of a device does. `at` is now.
+  // ---- Implemented by the viewer of a device. `at` is the present time.
 
-  /// Asks for pings, and calls open_line() as soon as it is known where the head is.
+  /// Requests pings, and calls open_line() as soon as the head's address is known.
   virtual void begin(TimePoint at) = 0;
-  /// The line is open, the first time or again.
+  /// The line was opened, for the first time or again.
   virtual void on_opened() {}
   virtual void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) = 0;
-  /// Sends what is due; the line is open.
+  /// Sends the bytes that are due; the line is open.
   virtual void talk(TimePoint) {}
-  /// When talk() is next needed.
+  /// When to call talk() next; nullopt: nothing is due.
   virtual std::optional<TimePoint> next_deadline() const { return std::nullopt; }
   virtual bool head_met() const = 0;
-  /// Takes what has come, with count_ping() for each ping, until stopping().
+  /// Handles all received pings, with count_ping() for each, until stopping().
   virtual void take_received() = 0;
-  /// All that was asked for is there, or the head has stopped.
+  /// Whether everything requested has arrived, or the head has stopped.
   virtual bool finished() const = 0;
-  /// Asks for nothing more. Returns how long the head may take to answer.
+  /// Requests no more pings. Returns how long to wait for the head's last answers.
   virtual std::chrono::nanoseconds say_goodbye(TimePoint) { return {}; }
 
-  /// Pictures of what there is, for whoever looks at the folder meanwhile; each second.
+  /// Draws the data received so far; called each second.
   virtual void refresh_pictures(ImageWriter& writer) = 0;
   virtual void finish_pictures(ImageWriter& writer) = 0;
 
-  /// The line of each second. @param fresh pings since the last one
+  /// The progress line of each second. @param fresh pings since the previous line
   virtual std::string progress_text(std::uint64_t fresh) const = 0;
-  /// Why no head was met within `wait_s` though the line is open, or none is known yet.
+  /// Why no head was found within `wait_s`, if the line is open or no address is known yet.
   virtual std::string no_head_text(double wait_s) const = 0;
-  /// Why no ping came within `wait_s`.
+  /// Why no ping arrived within `wait_s`.
   virtual std::string no_ping_text(double wait_s) const = 0;
-  /// Prints the summary. Returns whether all is there.
+  /// Prints the summary. Returns whether all requested data arrived.
   virtual bool sum_up(const RunCounters& counters) = 0;
 
-  // ---- What it calls
+  // ---- Called by the viewer of a device
 
-  /// Once.
+  /// Call once.
   void open_line(const LineAddress& address);
   bool line_is_open() const { return line_ && line_->is_open(); }
   void send(std::span<const std::uint8_t> frame) { line_->send(frame); }
@@ -87,12 +86,12 @@ class LineViewer {
   std::uint64_t pings() const { return counters_.pings; }
   void stop();
   bool stopping() const { return stopping_until_.has_value(); }
-  /// fail() and stop().
+  /// Calls fail() and stop().
   void give_up(ExitStatus failure, const std::string& message);
-  /// Says what went wrong; the program ends with the first such status.
+  /// Prints the message; the program ends with the first such status.
   void fail(ExitStatus failure, const std::string& message);
   TimePoint started() const { return started_; }
-  /// Null where no pictures are wanted.
+  /// Null if no pictures are wanted.
   ImageWriter* writer() { return writer_ ? &*writer_ : nullptr; }
   boost::asio::io_context& io() { return io_; }
 
@@ -116,13 +115,13 @@ class LineViewer {
 
   const TimePoint started_;
   std::optional<TimePoint> met_at_;
-  std::optional<TimePoint> lost_at_ = started_;  ///< nothing: bytes came since
-  bool spoke_ = false;                           ///< bytes came, now or once
-  std::optional<TimePoint> retry_due_;           ///< nothing: the line is open, or being opened
-  std::string trouble_;                          ///< why the line could not be opened last
+  std::optional<TimePoint> lost_at_ = started_;  ///< nullopt: bytes have arrived since the last loss
+  bool spoke_ = false;                           ///< whether bytes ever arrived
+  std::optional<TimePoint> retry_due_;           ///< nullopt: the line is open, or being opened
+  std::string trouble_;                          ///< why the line was lost, or could not be opened
   TimePoint first_ping_at_{};
   TimePoint last_ping_at_{};
-  TimePoint waiting_since_{};  ///< for the next ping
+  TimePoint waiting_since_{};  ///< start of the wait for the next ping
   TimePoint progress_due_{};
   std::uint64_t pings_at_progress_ = 0;
   std::optional<TimePoint> stopping_until_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that say how a head on a serial line, or beside it, is reached.
+// The options for the serial line, or its device server, that leads to a head.
 #pragma once
 
 #include <string>
@@ -17,13 +17,13 @@ class LinkArguments {
  public:
   static constexpr const char* group = "Link (one of --tcp, --udp, --tty)";
 
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   void declare(CLI::App& app);
   /// @throws CLI::ValidationError
   LineAddress address() const;
 
  private:
-  // As they are typed.
+  // As typed.
   std::string tcp_;
   std::string udp_;
   std::string tty_;

@@ -26,7 +26,7 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-/// Raw mode, 8N1, no flow control, and nothing left to read. Returns 0 or an errno.
+/// Sets raw mode, 8N1, no flow control, and drops unread input. Returns 0 or an errno.
 int set_up(int tty, unsigned baud) {
   termios settings{};
   if (tcgetattr(tty, &settings) != 0) {
@@ -35,7 +35,7 @@ int set_up(int tty, unsigned baud) {
   cfmakeraw(&settings);
   settings.c_cflag |= CREAD | CLOCAL;
   settings.c_cflag &= ~(CSTOPB | CRTSCTS);
-  // The C library takes plain numbers, too, and knows which of them there are.
+  // cfsetspeed() of glibc also accepts plain numbers, and rejects unsupported rates.
   const bool done = cfsetspeed(&settings, baud) == 0 && tcsetattr(tty, TCSANOW, &settings) == 0 &&
                     tcflush(tty, TCIFLUSH) == 0;
   return done ? 0 : errno;
@@ -80,12 +80,12 @@ void SerialLine::connect(typename Protocol::resolver& resolver, typename Protoco
       return;
     }
     error_code ignored;
-    // Trying an unused port of this machine, TCP now and then connects to itself.
+    // TCP sometimes connects to itself when it tries an unused port of this machine.
     if (error || socket.local_endpoint(ignored) == socket.remote_endpoint(ignored)) {
       lose((error ? error : error_code(asio::error::connection_refused)).message());
       return;
     }
-    // Commands are small, and a head waits for each.
+    // Commands are small, and a head waits for each one.
     if constexpr (std::is_same_v<Protocol, tcp>) {
       socket.set_option(tcp::no_delay(true), ignored);
     }
@@ -164,7 +164,7 @@ void SerialLine::send(std::span<const std::uint8_t> frame) {
     return;
   }
   const int descriptor = descriptor_.native_handle();
-  [[maybe_unused]] const ssize_t taken =  // the host asks again for what is lost
+  [[maybe_unused]] const ssize_t taken =  // lost frames are requested again
       address_.way == LineAddress::Way::tty ? ::write(descriptor, frame.data(), frame.size())
                                             : ::send(descriptor, frame.data(), frame.size(), MSG_NOSIGNAL);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Something that sonarview does, as its command line knows it: talking to one kind of device, or comparing
-// images.
+// A subcommand of sonarview: the viewer of one kind of device, or the comparison of images.
 #pragma once
 
 #include <functional>
@@ -14,21 +13,21 @@ class App;
 
 namespace sonard::client {
 
-/// What the program does. @throws std::exception, whose what() is for the user
+/// Runs the program. @throws std::exception, whose what() is shown to the user
 using Run = std::function<ExitStatus()>;
-/// Makes sense of the options once they are parsed. @throws CLI::ValidationError
+/// Reads the options after parsing. @throws CLI::ValidationError
 using Prepare = std::function<Run()>;
 
 struct Subcommand {
   const char* name;
   const char* summary;
   const char* footer;
-  /// Declares its options; `app` and what is returned then live until they are parsed.
+  /// Declares the options. `app` and the returned function must live until `app` has parsed.
   Prepare (*declare)(CLI::App& app);
 };
 
-/// One for each kind of device, in the order of cmake/devices.cmake, from which the build writes this
-/// function. The first is what sonarview does without a subcommand.
+/// One per kind of device, in the order of cmake/devices.cmake; the build generates this function from it.
+/// sonarview without a subcommand runs the first.
 std::span<const Subcommand> device_subcommands();
 
 }  // namespace sonard::client

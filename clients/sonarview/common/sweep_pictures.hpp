@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns of a scanning head, and their pictures.
+// Sweeps of a scanning head, and their pictures.
 #pragma once
 
 #include <cstdint>
@@ -13,39 +13,38 @@
 
 namespace sonard::client {
 
-/// One full turn, or in a sector one way from limit to limit.
+/// A full turn, or a sector from one limit to the other.
 struct Sweep {
   std::uint64_t number = 0;  ///< 0, 1, 2, ...
   std::vector<picture::SweepLine> lines;
   std::uint64_t lines_missed = 0;
 };
 
-/// What a screen shows in the middle of a sweep: behind the lines of `before` at bearings that `sweep` has
-/// not come to, those of `sweep`.
+/// The lines of `sweep`, and lines of `before` at the bearings that `sweep` has not reached. A sonar screen
+/// shows this in the middle of a sweep.
 Sweep with_lines_before(Sweep sweep, const std::optional<Sweep>& before);
 
-/// What is the same for all turns of a scan.
+/// Values that all sweeps of a scan share.
 struct SweepForm {
   std::string title;  ///< the kind of head
-  std::string lines;  ///< what it calls them, "lines"
+  std::string lines;  ///< the head's word for its lines, "lines"
   picture::SweepShape shape;
   bool sector = false;
-  int scale = 1;  ///< of samples when they are drawn: those of 4 bits fill the palette, too
+  int scale = 1;  ///< factor for samples when drawn, so that 4-bit samples use the whole palette
   int radius_px = 0;
 };
 
-/// Has the pictures of a scan drawn: turn-<name>.png, or fan-<name>.png of a sector, and polar-<name>.png.
+/// Queues pictures of a scan: turn-<name>.png (for a sector fan-<name>.png) and polar-<name>.png.
 class SweepPictures {
  public:
-  /// @param every keep those of each n-th turn; 0: only of the last
+  /// @param every keep the pictures of each n-th turn; 0: only of the last
   SweepPictures(SweepForm form, std::uint64_t every);
 
-  /// A turn that is whole.
+  /// A complete sweep.
   void write(ImageWriter& writer, const Sweep& sweep);
-  /// For whoever looks at the folder during a turn: the lines of this turn, and those of the last one where
-  /// this one has not come yet.
+  /// Draws the lines of an unfinished sweep, and lines of the last one at the bearings not reached yet.
   void refresh(ImageWriter& writer, const Sweep& current) const;
-  /// At the end: the turn that was begun, where none was whole.
+  /// At the end of the program: draws the unfinished sweep if no sweep was completed.
   void finish(ImageWriter& writer, const Sweep& current) const;
 
  private:
@@ -54,7 +53,7 @@ class SweepPictures {
   SweepForm form_;
   std::uint64_t every_;
   std::shared_ptr<const picture::SweepImage> image_;
-  std::optional<Sweep> last_;  ///< the last whole one
+  std::optional<Sweep> last_;  ///< the last complete sweep
 };
 
 }  // namespace sonard::client

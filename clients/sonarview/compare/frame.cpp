@@ -25,7 +25,7 @@ namespace {
 
 constexpr double full_scale = 255;
 
-/// FILE and N of "FILE#N"; the whole word is the file where there is no such end.
+/// FILE and N of "FILE#N"; without "#N" the file is the whole word.
 struct Source {
   std::filesystem::path file;
   std::string number;

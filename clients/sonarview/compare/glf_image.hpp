@@ -8,10 +8,10 @@
 
 namespace sonard::client {
 
-/// An image of a .glf or .dat as a polar picture, CV_8UC1: a row for each line, near lines first, a column
-/// for each beam.
+/// Reads an image of a .glf or .dat as a polar picture, CV_8UC1: a row for each line, near lines first, a
+/// column for each beam.
 /// @param number counts the images of the file from 0
-/// @throws std::runtime_error naming the file: no such log, no such image, a damaged one
+/// @throws std::runtime_error that names the file: not such a log, no such image, a damaged image
 cv::Mat read_glf_image(const std::filesystem::path& file, std::uint64_t number);
 
 }  // namespace sonard::client

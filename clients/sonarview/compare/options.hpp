@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asks of `sonarview compare`.
+// The options of `sonarview compare`.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,13 @@ namespace sonard::client {
 struct CompareOptions {
   std::string a;  ///< a source for load_frame()
   std::string b;
-  std::filesystem::path json;  ///< file for the result; empty: none
+  std::filesystem::path json;  ///< file for the result; empty: not written
 };
 
-/// The options of the subcommand.
+/// Declares and reads the options of the subcommand.
 class CompareArguments {
  public:
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit CompareArguments(CLI::App& app);
 
   const CompareOptions& options() const { return options_; }

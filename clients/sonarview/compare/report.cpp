@@ -18,7 +18,7 @@ namespace {
 struct Row {
   const char* name;  ///< in the table
   const char* key;   ///< in JSON
-  const char* unit;  ///< of the value; empty: none
+  const char* unit;  ///< of the value; empty: dimensionless
   int identical;     ///< score of identical images
   std::optional<double> value;
   std::optional<double> score;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonarview compare`: two images go in, a table and a file come out.
+// `sonarview compare`: compares two images, prints a table and writes a JSON file.
 #pragma once
 
 #include <string>
@@ -10,17 +10,15 @@
 
 namespace sonard::client {
 
-/// The measures one below the other: name, value, score in [0, 1] and what identical images have; "-" where
-/// there is none.
+/// The table, one measure per line: name, value, score in [0, 1], score of identical images. A missing value
+/// is "-".
 std::string table_of(const Similarity& similarity);
 
 /// The measures as a JSON object: {"a": ..., "b": ..., "width": ..., "height": ..., "measures": [{"name":
-/// "mse", "value":
-/// ..., "unit": ..., "score": ..., "identical": ...}, ...]}, null where there is none.
+/// "mse", "value": ..., "unit": ..., "score": ..., "identical": ...}, ...]}. A missing value is null.
 std::string json_of(const Similarity& similarity, const CompareOptions& options, int width, int height);
 
-/// @throws std::runtime_error naming a source that cannot be read, sizes that differ, a file that cannot be
-/// written
+/// @throws std::runtime_error that names an unreadable source, differing sizes, or an unwritable file
 ExitStatus compare(const CompareOptions& options);
 
 }  // namespace sonard::client

@@ -9,8 +9,8 @@
 namespace sonard::client {
 namespace {
 
-// OpenCV scales descriptors to a length of 512. Their numbers are not negative, so that two of them are at
-// most a right angle apart.
+// OpenCV scales descriptors to length 512. Their components are not negative, so the angle between two of
+// them is at most 90 degrees.
 const double largest_distance = 512 * std::sqrt(2.0);
 constexpr double ambiguous = 0.8;  // Lowe 2004, 7.1
 
@@ -23,7 +23,7 @@ cv::Mat descriptors_of(const cv::Mat& image) {
   return descriptors;
 }
 
-/// Sum over the keypoints of `from`.
+/// Sum of the distances of all keypoints of `from`, each 0 to 1.
 double distances(const cv::Mat& from, const cv::Mat& to) {
   if (to.empty()) {
     return from.rows;

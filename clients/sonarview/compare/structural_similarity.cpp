@@ -20,7 +20,7 @@ bool has_window(const cv::Mat& image) {
   return std::min(image.rows, image.cols) >= window_px;
 }
 
-/// Weighted mean over the window around each pixel whose window lies within the image.
+/// Weighted mean over the window of each pixel; pixels whose window leaves the image are cut off.
 cv::Mat windowed(const cv::Mat& image) {
   cv::Mat blurred;
   cv::GaussianBlur(image, blurred, {window_px, window_px}, window_sd_px, window_sd_px);
@@ -30,7 +30,7 @@ cv::Mat windowed(const cv::Mat& image) {
 
 struct MeanTerms {
   double contrast_structure = 0.0;
-  double all = 0.0;  ///< times luminance, pixel by pixel
+  double all = 0.0;  ///< mean of contrast and structure times luminance, per pixel
 };
 
 MeanTerms mean_terms(const cv::Mat& a, const cv::Mat& b) {
@@ -47,7 +47,7 @@ MeanTerms mean_terms(const cv::Mat& a, const cv::Mat& b) {
   return {cv::mean(contrast_structure)[0], cv::mean(contrast_structure.mul(luminance))[0]};
 }
 
-/// Means of 2 x 2 pixels; an odd last row or column is left out.
+/// Means of 2 x 2 pixels; drops an odd last row or column.
 cv::Mat halved(const cv::Mat& image) {
   const cv::Size size(image.cols / 2, image.rows / 2);
   cv::Mat half;

@@ -48,7 +48,7 @@ int integer(const YAML::Node& object, const char* key, int least, int most) {
   return value;
 }
 
-/// An object of docs/sonarview.md, "Lines in a file". JSON is YAML.
+/// Parses an object of docs/sonarview.md, "Lines in a file". The parser reads YAML, which includes JSON.
 ScanLine parse_line(const std::string& text) {
   const YAML::Node object = YAML::Load(text);
   const int last_bearing = picture::units_per_turn - 1;

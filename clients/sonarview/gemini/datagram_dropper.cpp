@@ -7,7 +7,7 @@ DatagramDropper::DatagramDropper(double probability, std::uint64_t seed, std::ui
     : random_(2 * seed + direction), probability_(probability) {}
 
 bool DatagramDropper::drop() {
-  // The distributions of the standard library differ from one to the next; this does not.
+  // Distributions of standard libraries differ; this formula gives the same numbers everywhere.
   const bool lost = static_cast<double>(random_() >> 11) * 0x1p-53 < probability_;
   dropped_ += lost ? 1 : 0;
   return lost;

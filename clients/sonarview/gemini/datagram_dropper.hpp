@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loses datagrams on purpose, to see how head and topside take it.
+// Drops datagrams on purpose, to test head and topside on a lossy link.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,14 @@
 
 namespace sonard::client {
 
-/// One direction of a lossy link; the same seed loses the same datagrams of a sequence.
+/// One direction of a lossy link. The same seed drops the same datagrams of a sequence.
 class DatagramDropper {
  public:
-  /// `probability` 0..1; `direction` keeps the two directions of one seed apart.
+  /// @param probability 0..1
+  /// @param direction gives the two directions of a link different random numbers for the same seed
   DatagramDropper(double probability, std::uint64_t seed, std::uint64_t direction);
 
-  /// Whether the next datagram is lost.
+  /// Whether to drop the next datagram.
   bool drop();
 
   std::uint64_t dropped() const { return dropped_; }

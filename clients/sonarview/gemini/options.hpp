@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asks of sonarview for a Gemini 720i.
+// The options of sonarview for a Gemini 720i.
 #pragma once
 
 #include <cstdint>
@@ -18,26 +18,26 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 topside_address = 0;                 ///< commands leave from here; 0: from what routes to the head
-  Ipv4 bind_address = 0;                    ///< reports arrive here; 0: on all addresses
-  gemini::TopsideConfig topside;            ///< for each head with its ID in the place of sonar_id
-  std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to talk to; 0: the first whose status arrives
+  Ipv4 topside_address = 0;       ///< source address of commands; 0: the address that routes to the head
+  Ipv4 bind_address = 0;          ///< reports arrive here; 0: all addresses
+  gemini::TopsideConfig topside;  ///< template: each head gets its own sonar_id
+  std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to view; 0: the first whose status arrives
   gemini::PingSettings settings;
 
   RunOptions run;
 
-  double drop_rx = 0.0;  ///< share of datagrams lost on purpose, 0..1
+  double drop_rx = 0.0;  ///< share of datagrams dropped on purpose, 0..1
   double drop_tx = 0.0;
   std::uint64_t seed = 1;
 };
 
-/// The options of the program without a subcommand.
+/// Declares and reads the options of the program without a subcommand.
 class GeminiArguments {
  public:
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit GeminiArguments(CLI::App& app);
 
-  /// What they mean.
+  /// The parsed options, converted.
   /// @throws CLI::ValidationError
   GeminiOptions options() const;
 
@@ -47,7 +47,7 @@ class GeminiArguments {
   void declare_drops(CLI::App& app);
 
   GeminiOptions options_;
-  // As they are typed, before they have their units.
+  // As typed, before the conversion of units.
   RunArguments run_{900, 5.0};
   std::string topside_address_;
   std::string bind_address_ = "0.0.0.0";

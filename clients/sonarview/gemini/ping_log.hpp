@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sonarview says about pings, as key=value for scripts.
+// Texts about pings, as key=value for scripts.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace sonard::client {
 
-/// CRC-32 (zlib's polynomial) of the samples, line after line, port to starboard; 16-bit samples most
-/// significant byte first.
+/// CRC-32 (zlib's polynomial) of the samples, line after line, port to starboard; 16-bit samples are
+/// big-endian.
 std::uint32_t samples_crc32(const gemini::PingSamples& samples);
 
 /// "ping number=0 id=7 transmit_us=... lines=... beams=... lines_lost=... lines_repaired=... retries=...
 /// crc32=... sonar_id=...".
 std::string ping_line(const gemini::ReceivedPing& ping, std::uint16_t sonar_id);
 
-/// Pings per second, from the end of the first to the end of the newest.
+/// Pings per second, from the end of the first ping to the end of the newest.
 class PingRate {
  public:
   void add(TimePoint finished);
-  /// 0 for fewer than two pings.
+  /// 0 if there are fewer than two pings.
   double hz() const;
 
  private:
@@ -32,15 +32,15 @@ class PingRate {
   TimePoint last_{};
 };
 
-/// What the program says of a head beside the counters of its topside.
+/// Counters of a head in the summary, beside the counters of its topside.
 struct ProgramCounters {
   std::uint16_t sonar_id = 0;
   double rate_hz = 0.0;
-  std::uint64_t dropped_rx = 0;    ///< lost on purpose
-  std::uint64_t dropped_tx = 0;    ///< lost on purpose
-  std::uint64_t kernel_drops = 0;  ///< arrived when the receive buffer was full
+  std::uint64_t dropped_rx = 0;    ///< dropped on purpose
+  std::uint64_t dropped_tx = 0;    ///< dropped on purpose
+  std::uint64_t kernel_drops = 0;  ///< dropped by the kernel because the receive buffer was full
   std::uint64_t images_written = 0;
-  std::uint64_t images_skipped = 0;  ///< came faster than they could be written
+  std::uint64_t images_skipped = 0;  ///< pings whose pictures were dropped, because the writer was too slow
 };
 
 /// The last line of the program: "summary pings_complete=... ".

@@ -11,7 +11,7 @@
 namespace sonard::client {
 namespace {
 
-/// The samples in an OpenCV matrix that views them.
+/// The samples as an OpenCV matrix, without a copy.
 cv::Mat polar_of(const gemini::ReceivedPing& ping) {
   // OpenCV has no matrix of constant data; this one is only read.
   const bool eight_bit = !ping.samples.u8.empty();
@@ -28,7 +28,7 @@ std::string caption_of(const gemini::ReceivedPing& ping, double range_m) {
 
 }  // namespace
 
-/// Lives on the writer's thread.
+/// Used on the writer's thread only.
 class PingPictures::Painter {
  public:
   Painter(const picture::FanStyle& style, double sound_speed_mps)
@@ -39,7 +39,7 @@ class PingPictures::Painter {
  private:
   picture::FanStyle style_;
   double sound_speed_mps_;
-  std::optional<picture::FanImage> fan_;  ///< for the shape of the last ping
+  std::optional<picture::FanImage> fan_;  ///< for the geometry of the last ping
 };
 
 cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {

@@ -12,11 +12,11 @@
 
 namespace sonard::client {
 
-/// Makes them for one ImageWriter, on whose thread they are drawn: pings mostly have one shape, so the way
-/// from pixel to sample is kept from one to the next.
+/// Makes the pictures for one ImageWriter, whose thread draws them. Pings mostly have the same geometry, so
+/// the map from pixel to sample is reused.
 class PingPictures {
  public:
-  /// `sound_speed_mps`: in which the user counts ranges.
+  /// @param sound_speed_mps sound speed of the ranges that the user set
   PingPictures(const picture::FanStyle& style, double sound_speed_mps);
 
   /// The files fan-<name>.png and polar-<name>.png.

@@ -18,9 +18,9 @@ namespace {
 
 using boost::asio::ip::udp;
 
-constexpr int receive_buffer_bytes = 16 << 20;  // what the later libraries ask for
+constexpr int receive_buffer_bytes = 16 << 20;  // as later versions of the vendor's libraries request
 
-/// Beyond the system's limit only the privileged get what they ask for; the rest gets the limit.
+/// Only privileged processes may exceed the system's limit; others get the limit.
 void enlarge_receive_buffer(udp::socket& socket) {
   const int wanted = receive_buffer_bytes;
   if (setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0) {
@@ -68,7 +68,7 @@ udp::socket open_report_socket(boost::asio::io_context& io, std::uint32_t addres
   enlarge_receive_buffer(socket);
   const int on = 1;
   setsockopt(socket.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &on,
-             sizeof on);  // else overflows stay uncounted
+             sizeof on);  // if it fails, overflows are not counted
   return socket;
 }
 

@@ -18,14 +18,14 @@ namespace {
 using boost::asio::ip::udp;
 using boost::system::error_code;
 
-constexpr std::size_t datagram_buffer_bytes = 2048;  // as in the libraries
-constexpr int datagrams_a_turn = 256;                // then timers and signals have their turn
+constexpr std::size_t datagram_buffer_bytes = 2048;  // as in the vendor's libraries
+constexpr int datagrams_a_turn = 256;                // per call, so that timers and signals are not delayed
 
 TimePoint now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// Sockets, timer and signals of all heads that are watched.
+/// The sockets, timer and signals for all viewed heads.
 class Viewer {
  public:
   explicit Viewer(const GeminiOptions& options);
@@ -121,8 +121,8 @@ void Viewer::advance() {
   }
 }
 
-/// A timer that is due earlier stays: it looks again when it runs out. That saves arming it for each burst of
-/// lines.
+/// Keeps a timer that expires earlier: it calls advance(), which arms it again. So a burst of lines does not
+/// re-arm the timer each time.
 void Viewer::arm_timer() {
   const TimePoint at = now();
   TimePoint wake = TimePoint::max();

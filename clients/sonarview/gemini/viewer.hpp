@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program between command line and exit status, with a Gemini 720i.
+// The main loop of `sonarview gemini`.
 #pragma once
 
 #include "clients/sonarview/common/exit_status.hpp"
@@ -7,8 +7,8 @@
 
 namespace sonard::client {
 
-/// Talks to a head until the limits in `options`, SIGINT or SIGTERM; prints ping lines and the summary on
-/// standard output, everything else on standard error.
+/// Runs until a limit of `options`, SIGINT or SIGTERM. Prints ping lines and the summary to standard output,
+/// everything else to standard error.
 /// @throws SocketError, std::runtime_error (folder for pictures)
 ExitStatus view_gemini(const GeminiOptions& options);
 

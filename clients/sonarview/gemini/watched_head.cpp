@@ -61,7 +61,7 @@ void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagr
   }
 }
 
-/// Until the head that is wanted speaks.
+/// Records statuses of other heads until the wanted head is found.
 void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
   if (head_met_ || topside_.head()) {
     return;
@@ -72,7 +72,7 @@ void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
   }
 }
 
-/// What to do where no status of the wanted head came.
+/// What to do if the wanted head sent no status.
 std::string WatchedHead::advice() const {
   if (others_.empty()) {
     return "is sonard running, does it send its status to this address or broadcast it on this network, and "
@@ -140,7 +140,7 @@ void WatchedHead::take_ping(gemini::ReceivedPing ping) {
   last_ping_shown_ = false;
 }
 
-/// For whoever looks at the folder while the program runs.
+/// Shows the newest ping while the program runs.
 void WatchedHead::refresh_picture() {
   if (writer_ && last_ping_ && !std::exchange(last_ping_shown_, true)) {
     writer_->refresh(pictures_.of(*last_ping_, "last"));

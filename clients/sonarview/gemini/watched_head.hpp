@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One of the heads that sonarview talks to: its topside, its pictures, and what is said of it.
+// One of the heads that sonarview views: its topside, its pictures and its messages.
 #pragma once
 
 #include <boost/asio/ip/udp.hpp>
@@ -20,23 +20,23 @@
 
 namespace sonard::client {
 
-/// Everything on the thread of its caller but the writing of pictures.
+/// Everything runs on the caller's thread, except that pictures are drawn on the writer's thread.
 class WatchedHead {
  public:
-  /// @param number its place in GeminiOptions::sonar_ids
-  /// @param commands the socket that commands leave from; outlives this
+  /// @param number index in GeminiOptions::sonar_ids
+  /// @param commands socket for commands; must outlive this object
   /// @throws std::runtime_error (folder for pictures)
   WatchedHead(const GeminiOptions& options, std::size_t number, boost::asio::ip::udp::socket& commands);
 
   void start(TimePoint at);
-  /// A datagram of any head has come.
+  /// Handles a datagram from any head.
   void on_datagram(TimePoint at, std::span<const std::uint8_t> datagram);
-  /// Does what is due, and ends when a limit is reached.
+  /// Does the work that is due, and ends at a limit.
   void advance(TimePoint at);
-  /// Says goodbye to the head.
+  /// Stops the pings of the head. Further calls have no effect.
   void end();
   bool ended() const { return ended_; }
-  /// Where the head is; nullopt before its first status.
+  /// The address of the head; nullopt before its first status.
   std::optional<Ipv4> address() const;
   /// When to advance() next; not before `at`.
   TimePoint next_wake(TimePoint at) const;
@@ -56,7 +56,7 @@ class WatchedHead {
 
   const GeminiOptions& options_;
   const std::uint16_t sonar_id_;
-  const std::string says_;  ///< "sonarview: ", with the head where there are several
+  const std::string says_;  ///< prefix of messages: "sonarview: ", with the head's ID if there are several
   boost::asio::ip::udp::socket& commands_;
   gemini::Topside topside_;
   DatagramDropper drop_rx_, drop_tx_;
@@ -64,13 +64,13 @@ class WatchedHead {
 
   TimePoint started_{};
   std::optional<TimePoint> head_met_;
-  std::map<std::uint16_t, Ipv4> others_;  ///< heads that sent a status meanwhile, with their addresses
+  std::map<std::uint16_t, Ipv4> others_;  ///< others that sent a status before the wanted head
   TimePoint last_ping_at_{};
   TimePoint progress_due_{};
   std::uint64_t pings_at_progress_ = 0;
   PingRate rate_;
-  std::optional<gemini::ReceivedPing> last_ping_;  ///< only while its picture may be wanted
-  bool last_ping_shown_ = true;                    ///< its picture is there, or on its way
+  std::optional<gemini::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
+  bool last_ping_shown_ = true;                    ///< its picture is drawn or queued
   PingPictures pictures_;
   std::optional<ImageWriter> writer_;
   std::optional<ExitStatus> failure_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of a scan in a file.
+// A file of the lines of a scan.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,17 @@
 
 namespace sonard::client {
 
-/// JSON, an object for each line of the scan on a line of its own (docs/sonarview.md): it can be read while
-/// it grows and after a crash, without knowing how many lines there will be, and by everything; and a line
-/// of a scan has both named numbers and samples, which neither a table nor an array holds alone.
+/// Writes JSON Lines, one object for each line of the scan (docs/sonarview.md). Such a file can be read while
+/// it grows and after a crash. A line of a scan has both named numbers and samples, which do not fit a table.
 class LineFile {
  public:
-  /// Begins an empty file.
-  /// @throws std::runtime_error naming it
+  /// Creates an empty file, and replaces an existing one.
+  /// @throws std::runtime_error that names the file
   explicit LineFile(std::filesystem::path path);
 
-  /// `turn` counts turns from 0. The line is with the operating system on return.
+  /// @param sweep counts from 0. On return the operating system has the line.
   void write(const micron::ReceivedLine& line, std::uint64_t sweep);
-  /// Whether something could not be written.
+  /// Whether a write failed.
   bool failed() const { return !out_; }
   const std::filesystem::path& path() const { return path_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asks of `sonarview micron`.
+// The options of `sonarview micron`.
 #pragma once
 
 #include <cstdint>
@@ -23,18 +23,18 @@ struct MicronOptions {
   micron::HostConfig host;
   micron::ScanSettings scan;
 
-  RunOptions run;             ///< its pings are lines
-  std::uint64_t sweeps = 0;   ///< 0: without limit
-  std::filesystem::path raw;  ///< file for the lines; empty: none
+  RunOptions run;             ///< a ping is a line
+  std::uint64_t sweeps = 0;   ///< 0: no limit
+  std::filesystem::path raw;  ///< file for the lines; empty: not written
 };
 
-/// The options of the subcommand.
+/// Declares and reads the options of the subcommand.
 class MicronArguments {
  public:
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit MicronArguments(CLI::App& app);
 
-  /// What they mean.
+  /// The parsed options, converted.
   /// @throws CLI::ValidationError
   MicronOptions options() const;
 
@@ -45,7 +45,7 @@ class MicronArguments {
   micron::ScanSettings scan() const;
 
   MicronOptions options_;
-  // As they are typed, before they have their units.
+  // As typed, before the conversion of units.
   LinkArguments link_;
   RunArguments run_{500, 10.0};
   int node_ = micron::default_head_node;

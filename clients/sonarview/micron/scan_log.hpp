@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sonarview says about a scan, as key=value for scripts.
+// Texts about a scan, as key=value for scripts.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace sonard::client {
 
-/// "scan range_m=9.984 bins=400 bin_m=0.02496 ...": what the head was asked to do.
+/// "scan range_m=9.984 bins=400 bin_m=0.02496 ...": the requested settings.
 std::string scan_text(const micron::ScanSettings& settings);
 
-/// "line number=0 turn=0 bearing_deg=0.00 ...". `bin_m`: length of a bin.
+/// "line number=0 turn=0 bearing_deg=0.00 ...". @param bin_m length of a bin
 std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, double bin_m);
 
 /// The last line of the program: "summary turns=... ".

@@ -44,10 +44,10 @@ std::optional<Sweep> ScanSweeps::add_all_round(const micron::ReceivedLine& line)
   return done;
 }
 
-/// The head turns round at its limits, so the way between two lines may lead over one.
+/// The head reverses at its limits, so a limit may lie between two lines.
 std::optional<Sweep> ScanSweeps::add_in_sector(const micron::ReceivedLine& line) {
   std::optional<Sweep> done;
-  // Relative to the middle first: a head may stop short of a limit or beyond it.
+  // Measured from the middle, because a head may stop short of a limit or beyond it.
   const int place = micron::shortest_turn(left_ + length_ / 2, line.head.bearing) + length_ / 2;
   if (!begun_ && last_ && place != *last_) {
     clockwise_ = place > *last_;

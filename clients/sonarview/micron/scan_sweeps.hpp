@@ -10,24 +10,24 @@
 
 namespace sonard::client {
 
-/// Sorts lines into sweeps by their bearings (docs/protocols/micron.md 8.3). All round, a sweep begins with
-/// the first line that comes; in a sector it begins at a limit, and the way there belongs to none. Between
-/// two sweeps of a sector the line at the limit belongs to both.
+/// Sorts lines into sweeps by their bearings (docs/protocols/micron.md 8.3). A full turn begins with the
+/// first line. In a sector, a sweep begins at a limit; lines before the first limit belong to no sweep. The
+/// line at a limit belongs to both sweeps beside it.
 class ScanSweeps {
  public:
   explicit ScanSweeps(const micron::HeadCommand& parameters);
 
-  /// Adds the next line. Returns the sweep that is complete with it, or was before it.
+  /// Adds the next line. Returns a sweep if this line completes it, or shows that it ended before this line.
   std::optional<Sweep> add(const micron::ReceivedLine& line);
-  /// The head begins again, anywhere: drops the current sweep.
+  /// The head starts again at any bearing: drops the current sweep.
   void restart();
 
   const Sweep& current() const { return sweep_; }
-  /// False on the way to the first limit of a sector.
+  /// False before the first limit of a sector.
   bool begun() const { return begun_; }
-  /// Share of the sweep that is done, 0..1.
+  /// Share of the current sweep that has passed, 0..1.
   double share() const;
-  /// Lines that the head must have sent between those that came, over all.
+  /// Lines missing between received lines, in all sweeps.
   std::uint64_t lines_missed() const { return lines_missed_; }
 
  private:
@@ -41,11 +41,11 @@ class ScanSweeps {
   bool sector_;
   int step_;
   int left_ = 0;
-  int length_;               ///< of a sweep, in units
-  bool clockwise_;           ///< the way the head turns now
-  bool begun_ = true;        ///< false: on the way to the first limit
-  std::optional<int> last_;  ///< all round: bearing of the last line; sector: its place from the left limit
-  int travelled_ = 0;        ///< from the first line of the sweep to the last
+  int length_;               ///< of a sweep, in units of the head
+  bool clockwise_;           ///< present direction of the head
+  bool begun_ = true;        ///< false: before the first limit of a sector
+  std::optional<int> last_;  ///< of the last line: its bearing, or in a sector its angle from the left limit
+  int travelled_ = 0;        ///< angle from the start of the sweep to its last line
   Sweep sweep_;
   std::uint64_t lines_missed_ = 0;
 };

@@ -136,7 +136,7 @@ std::chrono::nanoseconds Viewer::say_goodbye(TimePoint) {
   return {};
 }
 
-// ---- What is said meanwhile
+// ---- Messages
 
 void Viewer::greet_head() {
   const auto& head = host_.head();

@@ -8,7 +8,7 @@
 namespace sonard::client {
 namespace {
 
-/// Rates in hertz and how a fire spells them.
+/// Ping rates in hertz, and their codes in a fire message.
 const std::map<int, std::uint8_t>& rate_codes() {
   static const std::map<int, std::uint8_t> codes{{10, 0}, {15, 1}, {40, 2}, {5, 3}, {2, 4}};
   return codes;

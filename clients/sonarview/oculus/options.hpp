@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asks of `sonarview oculus`.
+// The options of `sonarview oculus`.
 #pragma once
 
 #include <cstdint>
@@ -16,22 +16,22 @@ class App;
 namespace sonard::client {
 
 struct OculusOptions {
-  std::string head;            ///< address; empty: that of the first status
+  std::string head;            ///< address; empty: the address in the first status
   std::uint16_t port = 52100;  ///< of the head
-  Ipv4 bind_address = 0;       ///< statuses arrive here; 0: on all addresses
+  Ipv4 bind_address = 0;       ///< statuses arrive here; 0: all addresses
   std::uint16_t status_port = 52102;
   oculus::SimpleFire fire;
 
   RunOptions run;
 };
 
-/// The options of the subcommand.
+/// Declares and reads the options of the subcommand.
 class OculusArguments {
  public:
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit OculusArguments(CLI::App& app);
 
-  /// What they mean.
+  /// The parsed options, converted.
   /// @throws CLI::ValidationError
   OculusOptions options() const;
 
@@ -40,7 +40,7 @@ class OculusArguments {
   void declare_sonar(CLI::App& app);
 
   OculusOptions options_;
-  // As they are typed, before they have their units.
+  // As typed, before the conversion of units.
   RunArguments run_{900, 10.0};
   std::string bind_address_ = "0.0.0.0";
   std::string frequency_ = "low";

@@ -15,7 +15,7 @@
 namespace sonard::client {
 namespace {
 
-/// @param exponent that is taken out of the samples; 1: they stay as they came
+/// @param exponent gamma exponent of the samples, which are made linear; 1: samples stay unchanged
 cv::Mat polar_of(const oculus::PingResult& ping, double exponent = 1.0) {
   std::vector<std::uint8_t> samples = oculus::eight_bit_samples(ping);
   make_linear(samples, exponent);
@@ -34,7 +34,7 @@ picture::FanShape shape_of(const oculus::PingResult& ping) {
 
 }  // namespace
 
-/// Lives on the writer's thread.
+/// Used on the writer's thread only.
 class OculusPictures::Painter {
  public:
   explicit Painter(const picture::FanStyle& style) : style_(style) {}
@@ -52,7 +52,7 @@ class OculusPictures::Painter {
 
  private:
   picture::FanStyle style_;
-  std::optional<picture::FanImage> fan_;  ///< for the shape of the last ping
+  std::optional<picture::FanImage> fan_;  ///< for the geometry of the last ping
 };
 
 OculusPictures::OculusPictures(const picture::FanStyle& style) : painter_(std::make_shared<Painter>(style)) {}

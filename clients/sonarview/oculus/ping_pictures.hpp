@@ -12,13 +12,14 @@
 
 namespace sonard::client {
 
-/// Makes them for one ImageWriter, on whose thread they are drawn. Pings mostly have one shape, so the way
-/// from pixel to sample is kept from one to the next.
+/// Makes the pictures for one ImageWriter, whose thread draws them. Pings mostly have the same geometry, so
+/// the map from pixel to sample is reused.
 class OculusPictures {
  public:
   explicit OculusPictures(const picture::FanStyle& style);
 
-  /// The files fan-<name>.png, without the gamma of the samples, and polar-<name>.png, as they came.
+  /// The files fan-<name>.png with linear samples (without gamma) and polar-<name>.png with samples as
+  /// received.
   std::vector<Picture> of(oculus::ReceivedPing ping, const std::string& name) const;
 
  private:

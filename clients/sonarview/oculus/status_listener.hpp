@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The socket on which an Oculus tells that it is there.
+// The socket that receives the status broadcasts of an Oculus.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace sonard::client {
 
-/// Belongs to the thread that runs the io_context, and outlives its handlers.
+/// Use it on the thread of the io_context only. It must outlive its handlers.
 class StatusListener {
  public:
   using Received = std::function<void(const oculus::Status& status)>;
 
-  /// Others may listen to the same port. @throws std::runtime_error naming it
+  /// Other programs may share the port. @throws std::runtime_error that names the address
   StatusListener(boost::asio::io_context& io, const Endpoint& bind, Received received);
   void close();
 

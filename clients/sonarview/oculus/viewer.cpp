@@ -20,7 +20,7 @@
 namespace sonard::client {
 namespace {
 
-/// What a head may say of any length and with any characters.
+/// A text from a head, cut to 200 bytes and made printable.
 std::string one_line(std::string text) {
   constexpr std::size_t longest = 200;
   text.resize(std::min(text.size(), longest));
@@ -53,11 +53,11 @@ class Viewer final : public LineViewer {
   void take_ping(oculus::ReceivedPing ping);
 
   const OculusOptions options_;
-  std::optional<StatusListener> statuses_;  ///< until the head is known
-  bool connected_ = false;                  ///< now or once
+  std::optional<StatusListener> statuses_;  ///< until the head's address is known
+  bool connected_ = false;                  ///< whether the connection was ever open
   oculus::Host host_;
   OculusPictures pictures_;
-  std::optional<oculus::ReceivedPing> last_ping_;  ///< where pictures are wanted
+  std::optional<oculus::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
 };
 
 void Viewer::begin(TimePoint) {
@@ -141,7 +141,7 @@ void Viewer::finish_pictures(ImageWriter& to) {
   }
 }
 
-// ---- What is said
+// ---- Messages
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; {} missed", pings(), fresh,

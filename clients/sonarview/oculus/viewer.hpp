@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of `sonarview oculus`.
+// The main loop of `sonarview oculus`.
 #pragma once
 
 #include "clients/sonarview/common/exit_status.hpp"
@@ -7,8 +7,8 @@
 
 namespace sonard::client {
 
-/// Runs until the options or a signal end it.
-/// @throws std::exception, whose what() is for the user
+/// Runs until a limit of `options` or a signal.
+/// @throws std::exception, whose what() is shown to the user
 ExitStatus view_oculus(const OculusOptions& options);
 
 }  // namespace sonard::client

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user asks of `sonarview ping360`.
+// The options of `sonarview ping360`.
 #pragma once
 
 #include <cstdint>
@@ -17,26 +17,26 @@ namespace sonard::client {
 
 struct Ping360Options {
   LineAddress line;
-  /// Settings, sector and step; without `automatic` its pings are ordered one by one.
+  /// Settings, sector and step. Without `automatic`, pings are requested one by one.
   ping360::AutoTransmit scan;
   bool automatic = false;
   bool all_round = true;
-  int ahead = 0;  ///< the angle that is drawn upwards, gradians
+  int ahead = 0;  ///< the angle that points up in pictures, gradians
   double sound_speed_mps = 1500.0;
 
   RunOptions run;
-  std::uint64_t turns = 0;  ///< 0: without limit
+  std::uint64_t turns = 0;  ///< 0: no limit
 
   double bin_m() const { return scan.sample_period * 25e-9 * sound_speed_mps / 2.0; }
 };
 
-/// The options of the subcommand.
+/// Declares and reads the options of the subcommand.
 class Ping360Arguments {
  public:
-  /// Declares them; `app` and this object then live until it has parsed.
+  /// Declares the options. `app` and this object must live until `app` has parsed.
   explicit Ping360Arguments(CLI::App& app);
 
-  /// What they mean.
+  /// The parsed options, converted.
   /// @throws CLI::ValidationError
   Ping360Options options() const;
 
@@ -45,7 +45,7 @@ class Ping360Arguments {
   void set_scan(Ping360Options& options) const;
 
   Ping360Options options_;
-  // As they are typed, before they have their units.
+  // As typed, before the conversion of units.
   LinkArguments link_;
   RunArguments run_{500, 10.0};
   double range_m_ = 10.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where one turn of a scan ends and the next begins.
+// Divides a scan into turns.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace sonard::client {
 
-/// Sorts pings into turns by their angles alone: a turn ends where the head has come round, or turns back.
+/// Divides pings into turns by their angles only. A turn ends after a full circle, or when the head reverses.
 class SweepCollector {
  public:
-  /// @param ahead the angle that is drawn upwards, gradians
+  /// @param ahead the angle that points up in pictures, gradians
   explicit SweepCollector(bool all_round, int ahead = 0) : all_round_(all_round), ahead_(ahead) {}
 
-  /// The next ping. Returns the turn that was complete before it.
+  /// Adds the next ping. Returns the turn that ended before it; nullopt if the turn continues.
   std::optional<Sweep> add(const ping360::ReceivedPing& ping);
   const Sweep& current() const { return current_; }
 
@@ -23,8 +23,8 @@ class SweepCollector {
   bool all_round_;
   int ahead_;
   Sweep current_;
-  std::optional<int> last_;  ///< angle
-  int way_ = 0;              ///< from the first ping of the turn to the last, gradians, clockwise
+  std::optional<int> last_;  ///< angle of the last ping, gradians
+  int way_ = 0;  ///< signed angle from the first ping of the turn to the last, gradians, clockwise
 };
 
 }  // namespace sonard::client

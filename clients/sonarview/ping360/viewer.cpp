@@ -41,7 +41,7 @@ SweepForm form_of(const Ping360Options& options) {
           .radius_px = options.run.radius_px};
 }
 
-/// What goes first: a turn of pings that are ordered one by one.
+/// The first request of a scan whose pings are requested one by one.
 ping360::Transducer first_order(const ping360::AutoTransmit& scan) {
   ping360::Transducer order;
   ping360::copy_ping_settings(order, scan);
@@ -152,13 +152,13 @@ void Viewer::log_ping(const ping360::ReceivedPing& ping) const {
   std::fflush(stdout);
 }
 
-/// A head goes on scanning when its client is gone, so it is told.
+/// Stops the scan, because a head continues without its client.
 std::chrono::nanoseconds Viewer::say_goodbye(TimePoint at) {
   host_.stop(at);
   return head_met() ? stop_patience : std::chrono::milliseconds{};
 }
 
-// ---- What is said
+// ---- Messages
 
 void Viewer::greet_head() {
   const auto& information = host_.head().information;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program between command line and exit status, with a Ping360.
+// The main loop of `sonarview ping360`.
 #pragma once
 
 #include "clients/sonarview/common/exit_status.hpp"
@@ -7,8 +7,8 @@
 
 namespace sonard::client {
 
-/// Talks to a head until the limits in `options`, SIGINT or SIGTERM; prints pings and the summary on standard
-/// output, everything else on standard error.
+/// Runs until a limit of `options`, SIGINT or SIGTERM. Prints pings and the summary to standard output,
+/// everything else to standard error.
 /// @throws std::runtime_error (folder for pictures)
 ExitStatus view_ping360(const Ping360Options& options);
 
