@@ -20,7 +20,7 @@ struct Caster::Impl {
   nanoseconds time_of_tick(std::int64_t number) const {
     return nanoseconds{std::llround(static_cast<double>(number) * 1e9 / settings.rate_hz)};
   }
-  /// Of real time from the first tick to this one.
+  /// Real time from the first tick to this one.
   nanoseconds due(std::int64_t number) const {
     const double pace = settings.stamps_of_file ? settings.playback.speed : 1.0;
     return nanoseconds{std::llround(static_cast<double>(number) * 1e9 / (settings.rate_hz * pace))};

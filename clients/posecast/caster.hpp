@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays a trajectory into a pose link.
+// Plays a trajectory to a pose link.
 #pragma once
 
 #include <chrono>
@@ -15,29 +15,29 @@ namespace sonard::client {
 
 struct CastSettings {
   pose::Playback playback;
-  double rate_hz = 50.0;                             ///< poses per second of the stamps, > 0
-  bool twist = true;                                 ///< say how the vehicle moves
-  std::optional<std::chrono::nanoseconds> duration;  ///< of the stamps; without it, until the trajectory ends
-  /// True: stamps are those of the trajectory, and playback.speed changes how fast they pass. False: stamps
-  /// are those of the ticks on std::chrono::steady_clock.
+  double rate_hz = 50.0;                             ///< poses per second by their stamps, > 0
+  bool twist = true;                                 ///< also send velocities
+  std::optional<std::chrono::nanoseconds> duration;  ///< by the stamps; nullopt: until the trajectory ends
+  /// True: stamps from the trajectory; playback.speed sets how fast they pass. False: stamps are the times of
+  /// the ticks on std::chrono::steady_clock.
   bool stamps_of_file = false;
-  /// So long of real time the first pose is sent again and again before the others.
+  /// Real time during which only the first pose is sent, repeatedly.
   std::chrono::nanoseconds hold{};
 };
 
-/// Sends a pose at every tick of a fixed rate, interpolated between the points of the trajectory.
+/// Sends a pose at each tick of a fixed rate, interpolated between the points of the trajectory.
 ///
-/// With stamps of the clock, ticks that were missed (a suspended process, a receiver that does not read) are
-/// left out. With stamps of the file none is left out: every run sends the same poses, and a receiver that
-/// does not read makes the caster wait. In a loop these stamps go on rising.
+/// With stamps of the clock, missed ticks are skipped (the process was suspended, or the receiver blocked).
+/// With stamps of the file, no tick is skipped: each run sends the same poses, and the caster waits for a
+/// blocked receiver. In a loop, these stamps continue to rise.
 class Caster {
  public:
-  /// Everything given outlives the caster.
+  /// All arguments must outlive the caster.
   Caster(boost::asio::io_context& io, const pose::Trajectory& trajectory, const CastSettings& settings,
          PoseLink& link);
   ~Caster();
 
-  /// Sends the first pose at once; `on_end` is called when all is sent.
+  /// Sends the first pose at once. Calls `on_end` after the last pose.
   void start(std::function<void()> on_end);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// posecast: plays a trajectory file as a pose stream for sonard, as a simulator would send it.
+// posecast: plays a trajectory file as a pose stream for sonard, like a simulator.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,8 +25,8 @@ namespace {
 using namespace sonard;
 
 constexpr int exit_done = 0;
-constexpr int exit_network = 1;  // the receiver is unreachable, or went away
-constexpr int exit_usage = 2;    // command line or trajectory file
+constexpr int exit_network = 1;  // the receiver cannot be reached, or closed the connection
+constexpr int exit_usage = 2;    // invalid command line or trajectory file
 
 struct Arguments {
   std::string file;
@@ -111,7 +111,7 @@ client::CastSettings settings(const Arguments& arguments, const pose::Trajectory
   return settings;
 }
 
-/// Casts until the end, a signal or a failure. @return the exit status.
+/// Casts until the end, a signal or a failure. @return the exit code
 int cast(const Arguments& arguments) {
   const pose::Trajectory trajectory = pose::load_trajectory(
       arguments.file, arguments.axes == "ned_frd" ? pose::Axes::ned_frd : pose::Axes::enu_flu);
@@ -152,7 +152,7 @@ int cast(const Arguments& arguments) {
     fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
                printable(link->description()), counters.refused, counters.skipped);
   }
-  // Nothing comes back for the last datagram: there was no time.
+  // The last datagram has no refusal: there was no time for it to arrive.
   if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {
     failure = link->description() + ": nobody listens there";
   }

@@ -23,7 +23,7 @@ using asio::ip::udp;
 using boost::system::error_code;
 using OnFailure = std::function<void(const std::string&)>;
 
-/// Parts that both transports share. `Protocol` is asio::ip::udp or asio::ip::tcp.
+/// Code that both transports share. `Protocol` is asio::ip::udp or asio::ip::tcp.
 template <class Protocol>
 class ConnectedLink : public PoseLink {
  public:
@@ -76,7 +76,7 @@ class UdpLink final : public ConnectedLink<udp> {
     error_code error;
     socket_.send(asio::buffer(message), 0, error);
     if (error == asio::error::connection_refused) {
-      // The answer to the datagram before this one, delivered instead of sending this one.
+      // The refusal of the previous datagram; this one was not sent yet.
       ++counters_.refused;
       socket_.send(asio::buffer(message), 0, error);
     }
@@ -96,7 +96,7 @@ class TcpLink final : public ConnectedLink<tcp> {
   TcpLink(asio::io_context& io, const Destination& destination, OnFailure on_failure)
       : ConnectedLink(io, destination, std::move(on_failure)) {
     error_code ignored;
-    socket_.set_option(tcp::no_delay{true}, ignored);  // a pose that waits for company is late
+    socket_.set_option(tcp::no_delay{true}, ignored);  // send each pose at once
     watch_for_end();
   }
 
@@ -128,7 +128,7 @@ class TcpLink final : public ConnectedLink<tcp> {
     }
   }
 
-  // A receiver that has read all closes its end, too.
+  // When the receiver has read everything, it closes its end.
   void finish(std::function<void()> done) override {
     when_sent([this, done = std::move(done)]() mutable {
       finished_ = std::move(done);
@@ -138,7 +138,7 @@ class TcpLink final : public ConnectedLink<tcp> {
   }
 
  private:
-  /// The receiver never says anything; a read ends when it closes.
+  /// The receiver sends nothing; a read returns when the receiver closes.
   void watch_for_end() {
     socket_.async_read_some(asio::buffer(received_), [this](const error_code& error, std::size_t) {
       if (error && finished_) {
