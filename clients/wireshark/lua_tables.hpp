@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From layouts (protocol/common/layout.hpp) to the Lua of a field table: what the files of all devices share.
-// Everything appends to the text that it is given.
+// Converts layouts (protocol/common/layout.hpp) to the Lua of a field table; shared by all devices. All
+// functions append to the text in their first argument.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@
 
 namespace sonard::wireshark {
 
-/// A member that is a table of its own on the wire: its fields stand in place of it, named MEMBER_FIELD. A
-/// device specialises it for such a member, with `type`.
+/// Specialise it, with `type`, for a member that has its own table on the wire. The member is then replaced
+/// by the table's fields, named MEMBER_FIELD.
 template <class Member>
 struct InnerTable {};
 
-/// What any other member is on the wire: `count` values of `size` bytes each.
+/// The wire format of any other member: `count` values of `size` bytes each.
 template <class Member>
 struct Shape {
   static constexpr std::size_t size = WireSize<Member>::value;
@@ -32,7 +32,7 @@ struct Shape<std::array<Element, N>> {
   static constexpr std::size_t count = N;
 };
 
-// ---- One field: { offset, size, name, count }, where a count of 1 is left out
+// ---- One field: { offset, size, name, count }; a count of 1 is left out
 
 inline void append_field(std::string& lua, std::size_t offset, std::size_t size, const std::string& name,
                          std::size_t count) {
@@ -75,7 +75,7 @@ void append_message(std::string& lua, std::string_view name) {
   lua += "    } },\n";
 }
 
-/// @param number by which a message is told from others: its type, or its ID
+/// @param number identifies the message: its type or ID
 inline void append_type(std::string& lua, unsigned number, std::string_view name) {
   lua += "    [" + std::to_string(number) + "] = \"" + std::string{name} + "\",\n";
 }
@@ -84,13 +84,13 @@ template <class... Messages, class Each>
 void for_each_message(const std::variant<Messages...>*, const Each& each) {
   (each(std::type_identity<Messages>{}), ...);
 }
-/// Calls `each` with the std::type_identity of every alternative of a variant, in their order.
+/// Calls `each` with the std::type_identity of each alternative of a variant, in order.
 template <class Variant, class Each>
 void for_each_message(const Each& each) {
   for_each_message(static_cast<const Variant*>(nullptr), each);
 }
 
-/// The head of a file, up to the brace that opens its one table.
+/// The start of a file, up to the brace that opens its only table.
 inline std::string table_head(std::string_view device) {
   return "-- Made by wireshark_fields from protocol/" + std::string{device} +
          "/layout.hpp; not to be edited.\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints one of the field tables of the dissectors:
+// Prints the field table of a dissector:
 //   wireshark_fields gemini >clients/wireshark/sonard_gemini_fields.lua
 #include <algorithm>
 #include <cstdio>

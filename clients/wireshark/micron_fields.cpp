@@ -52,7 +52,7 @@ std::string_view name_of(micron::MessageType type) {
   return "unknown";
 }
 
-/// Head commands have three forms, of which the first stands for the type.
+/// Head commands have three forms. The first has the type's name.
 template <class Message>
 constexpr bool has_type_of_its_own =
     !std::is_same_v<Message, micron::Unknown> && !std::is_same_v<Message, micron::GainCommand> &&

@@ -58,7 +58,7 @@ concept HasLayout = requires {
   ping360::Layout<Message>::size;
 };
 
-/// Those with fields. @tparam Besides a message that stands already among those of the other direction
+/// Appends messages with fields. @tparam Besides a message that the other direction has appended already
 template <class Direction, class Besides = void>
 void append_messages(std::string& lua) {
   for_each_message<Direction>([&]<class Message>(std::type_identity<Message>) {

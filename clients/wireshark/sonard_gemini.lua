@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
--- Wireshark dissector for the messages of a Gemini 720i, both directions (docs/protocols/gemini.md; sections named
--- below are its own). Put all sonard_*.lua files into the folder for personal Lua plugins, or name this one:
+-- Wireshark dissector for the messages of a Gemini 720i, in both directions. Section numbers below refer to
+-- docs/protocols/gemini.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_gemini.lua -r capture.pcapng
--- UDP ports are a preference of the protocol GEMINI_SONAR.
+-- The preferences of the protocol GEMINI_SONAR set the UDP ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"
 local tables = dofile(here .. "sonard_tables.lua")
 local layouts = dofile(here .. "sonard_gemini_fields.lua")
@@ -11,7 +11,7 @@ local prefix = "gemini_sonar"
 local gemini = Proto(prefix, "Gemini imaging sonar")
 local header_size = 8
 
--- Messages that no table describes alone (3.7, 3.8, 3.11).
+-- Messages that a table cannot describe alone (3.7, 3.8, 3.11).
 local info_blocks = {
   [0] = { minimum = 28, fields = { { 16, 4, "sonar_id" }, { 20, 4, "transducer" } } },
   [1] = { minimum = 24, fields = { { 16, 4, "m_coefficient" }, { 20, 4, "c_coefficient" } } },
@@ -71,8 +71,8 @@ local unknown = ProtoExpert.new(prefix .. ".unknown_type", "Type that the protoc
                                 expert.group.UNDECODED, expert.severity.NOTE)
 gemini.experts = { malformed, bad_value, bad_line, unknown }
 
--- Heads of pings by sonar and ping, and for each frame with a line the head that came before it. Filled when a
--- capture is gone through the first time.
+-- Heads of pings by sonar and ping, and for each frame with a line the head before it. Filled in the first pass
+-- over a capture.
 local heads = {}
 local head_of_frame = {}
 function gemini.init()
@@ -90,7 +90,7 @@ local function compression_log2(byte)
   return k <= 4 and k or 0
 end
 
--- Beams that run-length coded `bytes` stand for, at most `beams` (6.8).
+-- Number of beams in the run-length coded `bytes`, at most `beams` (6.8).
 local function coded_beams(bytes, beams)
   local count, i = 0, 0
   while i < bytes:len() and count < beams do
@@ -106,7 +106,7 @@ local function coded_beams(bytes, beams)
   return count
 end
 
--- What each message has beyond its table. Each returns a text for the info column, or nil.
+-- The parts of each message beyond its table. Each function returns a text for the info column, or nil.
 local details = {}
 
 function details.status(tvb, pinfo, tree)
@@ -135,7 +135,7 @@ function details.ping_head(tvb, pinfo, tree)
   return string.format("ping %d, %d lines of %d beams", ping_id, head.lines, head.beams)
 end
 
--- Holds a line to the head of its ping.
+-- Compares a line with the head of its ping.
 local function check_line(tvb, tree, head, number, length)
   if number >= head.lines then
     tree:add_proto_expert_info(bad_line, string.format("Line %d of %d", number, head.lines))
@@ -273,7 +273,7 @@ function gemini.dissector(tvb, pinfo, root)
   end
 end
 
--- Where heads and topsides listen (1.1).
+-- UDP ports of heads and topsides (1.1).
 local udp_ports = DissectorTable.get("udp.port")
 local ports_in_use = "52900,52901"
 gemini.prefs.ports = Pref.range("UDP ports", ports_in_use, "Ports that topsides and heads listen on", 65535)

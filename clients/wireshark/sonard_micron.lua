@@ -1,9 +1,9 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
--- Wireshark dissector for the serial protocol of a Micron DST, carried over TCP or UDP, both directions
--- (docs/protocols/micron.md; sections named below are its own). Put all sonard_*.lua files into the folder for
--- personal Lua plugins, or name this one:
+-- Wireshark dissector for the serial protocol of a Micron DST, carried over TCP or UDP, in both directions. Section
+-- numbers below refer to docs/protocols/micron.md. Put all sonard_*.lua files into the folder for personal Lua
+-- plugins, or load this one:
 --   tshark -X lua_script:sonard_micron.lua -r capture.pcapng
--- Streams that begin with a frame are found on any port; ports are preferences of the protocol MICRON_SONAR.
+-- Streams that begin with a frame are found on any port. The preferences of the protocol MICRON_SONAR set ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"
 local tables = dofile(here .. "sonard_tables.lua")
 local layouts = dofile(here .. "sonard_micron_fields.lua")
@@ -11,8 +11,8 @@ local layouts = dofile(here .. "sonard_micron_fields.lua")
 local prefix = "micron_sonar"
 local micron = Proto(prefix, "Micron scanning sonar")
 local frame_header_size = 13
-local lengths_end = 7         -- start, hexadecimal length, binary length
-local length_overhead = 6     -- bytes of a frame that its length does not count
+local lengths_end = 7  -- start, hexadecimal length, binary length
+local length_overhead = 6  -- bytes of a frame that its length does not count
 local max_frame_size = 4096   -- 2.3
 
 local messages = layouts.messages
@@ -57,7 +57,7 @@ micron.experts = { malformed, bad_value, no_frame, wrong_count, unknown }
 
 -- ---- Where frames begin and end (2.3)
 
--- Both lengths of a frame at `offset`, when they agree. Requires lengths_end bytes.
+-- Size of the frame at `offset`; nil if its two lengths differ or are invalid. Requires lengths_end bytes.
 local function stated_size(tvb, offset)
   local digits = tvb:raw(offset + 1, 4)
   local length = tvb(offset + 5, 2):le_uint()
@@ -68,8 +68,8 @@ local function stated_size(tvb, offset)
   return length >= 8 and size <= max_frame_size and size or nil
 end
 
--- What is at `offset`: "frame", "garbage" or "more", and of how many bytes. "more" says how many are missing, 0 when
--- that cannot be told yet.
+-- The kind of the bytes at `offset` ("frame", "garbage" or "more") and their number. For "more", the number is the
+-- count of missing bytes, 0 if not known yet.
 local function next_piece(tvb, offset)
   local left = tvb:len() - offset
   if tvb(offset, 1):uint() == 0x40 then
@@ -91,8 +91,8 @@ local function next_piece(tvb, offset)
   return "garbage", size
 end
 
--- ---- What each message has beyond its table; `tvb` is one frame without its line feed. Each returns a text for the
--- info column, or nil.
+-- ---- The parts of each message beyond its table. `tvb` is one frame without its line feed. Each function returns a
+-- text for the info column, or nil.
 local details = {}
 
 function details.head_command(tvb, pinfo, tree)
@@ -164,7 +164,7 @@ end
 
 -- ---- Frames
 
--- One of them with a table of its own, or with none because it has no data.
+-- Adds a message: with a table of its own, or without one if it has no data.
 local function add_message(tvb, pinfo, tree, name)
   local layout = messages[name]
   if layout and name ~= "head_command" and not tables.add(tree, tvb, layout, 0) then
@@ -179,7 +179,7 @@ local function dissect_frame(tvb, pinfo, root)
   local body = tvb(0, tvb:len() - 1):tvb()
   tables.add(tree, body, messages.frame, 0)
   local length, count, type = tvb(5, 2):le_uint(), tvb(9, 1):uint(), tvb(10, 1):uint()
-  -- The host speaks as node 255 to the head; both have messages of their own.
+  -- The host sends as node 255. Messages of host and head differ.
   local from_head = tvb(7, 1):uint() ~= 0xFF
   tree:add(extra.from_head, tvb(7, 1), from_head):set_generated()
   if count ~= (length - 5) % 256 and not (type == 2 and count == 0) then
@@ -204,7 +204,7 @@ local function add_garbage(range, root)
   return "no frame"
 end
 
--- Goes through a piece of a stream, or a datagram. Of a stream, what is not whole waits for the next piece.
+-- Dissects a part of a stream, or a datagram. In a stream, an incomplete frame waits for the next part.
 local function dissect(tvb, pinfo, root, is_stream)
   pinfo.cols.protocol = "MICRON"
   local texts = {}
@@ -230,8 +230,8 @@ local function dissect(tvb, pinfo, root, is_stream)
   return tvb:len()
 end
 
--- TCP hands over ports, UDP as well: the type of the port tells which it was. The ports are those of any serial device:
--- what begins as another one's frames is handed to its dissector, which keeps the rest of that conversation.
+-- Wireshark calls this for TCP and UDP ports; the type of the port shows which. Any serial device may use the ports,
+-- so frames of another device go to its dissector, which then keeps that conversation.
 function micron.dissector(tvb, pinfo, root)
   for _, other in ipairs(tables.serial_devices) do
     if other.begins_with_frame(tvb) then
@@ -241,7 +241,7 @@ function micron.dissector(tvb, pinfo, root)
   return dissect(tvb, pinfo, root, pinfo.port_type == 2)
 end
 
--- ---- Ports: that of device servers for TCP, and the one that sonard's examples use for UDP
+-- ---- Ports: of device servers for TCP, and of sonard's examples for UDP
 
 local dissector_tables = { tcp = DissectorTable.get("tcp.port"), udp = DissectorTable.get("udp.port") }
 local ports_in_use = { tcp = "4001", udp = "4002" }
@@ -258,7 +258,7 @@ function micron.prefs_changed()
   end
 end
 
--- Any port: a start, and a length that is said twice.
+-- Whether it begins with a start and two equal lengths, on any port.
 local function begins_with_frame(tvb)
   return tvb:len() >= 14 and tvb(0, 1):uint() == 0x40 and stated_size(tvb, 0) ~= nil
 end

@@ -1,8 +1,8 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
--- Wireshark dissector for an Oculus: fires and pings over TCP, status datagrams over UDP (docs/protocols/oculus.md;
--- sections named below are its own). Put all sonard_*.lua files into the folder for personal Lua plugins, or name this one:
+-- Wireshark dissector for an Oculus: fires and pings over TCP, status datagrams over UDP. Section numbers below refer
+-- to docs/protocols/oculus.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_oculus.lua -r capture.pcapng
--- The ports are preferences of the protocol OCULUS_SONAR.
+-- The preferences of the protocol OCULUS_SONAR set the ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"
 local tables = dofile(here .. "sonard_tables.lua")
 local layouts = dofile(here .. "sonard_oculus_fields.lua")
@@ -63,7 +63,7 @@ end
 
 -- ---- Where messages begin and end (3.1)
 
--- Bytes of the message at `offset`, and whether it says so itself. Requires a header there.
+-- Size in bytes of the message at `offset`, and whether its header states this size. Requires a header there.
 local function message_size(tvb, offset)
   local id, version, payload = tvb(offset + 6, 2):le_uint(), tvb(offset + 8, 2):le_uint(), tvb(offset + 10, 4):le_uint()
   if payload == 0 and name_of(id) == "simple_fire" then
@@ -75,8 +75,8 @@ local function message_size(tvb, offset)
   return header_size + payload, true
 end
 
--- What is at `offset`: "message", "garbage" or "more", and of how many bytes. "more" says how many are missing, 0 when that
--- cannot be told yet.
+-- The kind of the bytes at `offset` ("message", "garbage" or "more") and their number. For "more", the number is the
+-- count of missing bytes, 0 if not known yet.
 local function next_piece(tvb, offset)
   local left = tvb:len() - offset
   local raw = tvb:raw(offset, math.min(left, 2))
@@ -93,7 +93,8 @@ local function next_piece(tvb, offset)
   return "garbage", found or left
 end
 
--- ---- What each message has beyond its table; `tvb` is one message. Each returns a text for the info column.
+-- ---- The parts of each message beyond its table. `tvb` is one message. Each function returns a text for the info
+-- column.
 local details = {}
 
 local function add(tree, tvb, name)
@@ -127,7 +128,7 @@ local function add_bearings(tvb, tree, offset, beams)
   tree:add(extra.last, tvb(offset + 2 * beams - 2, 2), tvb(offset + 2 * beams - 2, 2):le_int() / 100):set_generated()
 end
 
--- Where dataSize, nRanges, nBeams, imageOffset, imageSize and messageSize stand.
+-- Offsets of dataSize, nRanges, nBeams, imageOffset, imageSize and messageSize.
 local places = { [1] = { 97, 106, 108, 110, 114, 118 }, [2] = { 161, 170, 172, 190, 194, 198 } }
 
 function details.simple_ping_result(tvb, tree)
@@ -247,7 +248,7 @@ end
 function oculus.dissector(tvb, pinfo, root)
   pinfo.cols.protocol = "OCULUS"
   local texts = {}
-  -- TCP hands over ports, UDP as well: the type of the port tells which it was.
+  -- Wireshark calls this for TCP and UDP ports; the type of the port shows which.
   if pinfo.port_type == 2 then
     dissect_stream(tvb, pinfo, root, texts)
   elseif tvb:len() >= header_size and tvb:raw(0, 2) == start then

@@ -1,10 +1,10 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
--- Wireshark dissector for the Ping protocol of a Ping360, over UDP or TCP, both directions, and for the text by which
--- such heads are found (docs/protocols/ping360.md; sections named below are its own). Put all sonard_*.lua files into
--- the folder for personal Lua plugins, or name this one:
+-- Wireshark dissector for the Ping protocol of a Ping360, over UDP or TCP, in both directions, and for the text
+-- messages of its discovery. Section numbers below refer to docs/protocols/ping360.md. Put all sonard_*.lua files into
+-- the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_ping360.lua -r capture.pcapng
--- What begins with a frame is found on any port; ports are preferences of the protocols PING360_SONAR and
--- PING360_DISCOVERY.
+-- Streams and datagrams that begin with a frame are found on any port. The preferences of the protocols PING360_SONAR
+-- and PING360_DISCOVERY set ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"
 local tables = dofile(here .. "sonard_tables.lua")
 local layouts = dofile(here .. "sonard_ping360_fields.lua")
@@ -14,16 +14,16 @@ local ping360 = Proto(prefix, "Ping360 scanning sonar")
 local header_size = 8
 local checksum_size = 2
 local overhead = header_size + checksum_size
-local length_end = 4           -- of what tells how long a frame is
+local length_end = 4  -- of the bytes that give the length of a frame
 local max_payload_size = 4096  -- 1.1
-local give_up_s = 0.1          -- a frame that stops to come for so long is given up (1.1)
+local give_up_s = 0.1  -- an incomplete frame is dropped after this time without bytes (1.1)
 
 local messages = layouts.messages
 messages.frame = {
   minimum = header_size,
   fields = { { 2, 2, "payload_length" }, { 4, 2, "message_id" }, { 6, 1, "source" }, { 7, 1, "destination" } },
 }
--- Samples follow a table and their count (2.2), texts follow a table or stand alone (2.1).
+-- Messages with a rest: samples after a table and their count (2.2), texts after a table or alone (2.1).
 for _, name in ipairs({ "device_data", "auto_device_data" }) do
   local layout = messages[name]
   table.insert(layout.fields, { layout.size, 2, "data_length" })
@@ -31,7 +31,7 @@ for _, name in ipairs({ "device_data", "auto_device_data" }) do
   layout.minimum = layout.size
 end
 local has_rest = { device_data = true, auto_device_data = true, nack = true, ascii_text = true }
--- An empty message with the number of one of these is an older spelling of the request for it (2.1).
+-- An empty message with the number of one of these is an older form of the request for it (2.1).
 local asked_by_empty = { device_information = true, protocol_version = true, device_data = true }
 
 local extra = {
@@ -69,7 +69,7 @@ ping360.prefs.ahead = Pref.uint("Angle straight ahead (gradians)", 0,
 
 -- ---- Where frames begin and end (1.1)
 
--- The bytes of `tvb`, with the sum of those before each offset: every checksum is then a difference.
+-- The bytes of `tvb`, with the sum of the bytes before each offset, so that each checksum is a difference.
 local function make_stream(tvb)
   local stream = { tvb = tvb, raw = tvb:raw(), sums = { [0] = 0 } }
   for i = 1, #stream.raw do
@@ -83,7 +83,7 @@ local function u16(raw, offset)
   return low + 256 * high
 end
 
--- The size of the frame that may begin at `offset`: 0 when too little of it is there, nil when none begins.
+-- Size of the frame that may begin at `offset`; 0 if too few bytes are there to give it, nil if no frame begins.
 local function stated_size(raw, offset)
   local front = raw:sub(offset + 1, offset + length_end)
   if front == "" or front:sub(1, 2) ~= ("BR"):sub(1, #front) then
@@ -100,7 +100,7 @@ local function sum_of(stream, offset, size)
   return (stream.sums[offset + size - checksum_size] - stream.sums[offset]) % 65536
 end
 
--- Whether a whole frame with a right checksum is at `offset`.
+-- Whether a complete frame with a correct checksum is at `offset`.
 local function is_right(stream, offset)
   local size = stated_size(stream.raw, offset)
   return size ~= nil and size > 0 and offset + size <= #stream.raw and
@@ -111,7 +111,7 @@ local function payload_size(layout)
   return layout and layout.size - header_size or 0
 end
 
--- Whether a payload of `length` fits one of the messages with this number.
+-- Whether a payload of `length` bytes fits one of the messages with this number.
 local function fits(id, length)
   local command, report = layouts.commands[id], layouts.reports[id]
   if command and length == payload_size(messages[command]) then
@@ -122,13 +122,13 @@ local function fits(id, length)
          (length == least or (length == 0 and asked_by_empty[report]) or (length > least and has_rest[report])) or false
 end
 
--- Whether what begins at `offset` looks like a frame of this protocol, whole or not.
+-- Whether the bytes at `offset` look like a frame of this protocol, complete or not.
 local function is_plausible(raw, offset)
   local size = stated_size(raw, offset)
   return size ~= nil and size > 0 and offset + 6 <= #raw and fits(u16(raw, offset + 4), size - overhead)
 end
 
--- How many bytes of a frame with a wrong checksum come before another frame: all of them, if none begins inside.
+-- Bytes of a frame with a wrong checksum before the next frame; all its bytes if no frame begins inside.
 local function bytes_of_broken_frame(stream, offset, size)
   local inside = offset + 1
   while true do
@@ -144,8 +144,8 @@ local function bytes_of_broken_frame(stream, offset, size)
   end
 end
 
--- What is at `offset`: "frame", "garbage" or "more", and of how many bytes. "more" says how many are missing, 0 when
--- that cannot be told yet.
+-- The kind of the bytes at `offset` ("frame", "garbage" or "more") and their number. For "more", the number is the
+-- count of missing bytes, 0 if not known yet.
 local function next_piece(stream, offset)
   local raw = stream.raw
   local left = #raw - offset
@@ -164,8 +164,8 @@ local function next_piece(stream, offset)
   return "garbage", following - offset
 end
 
--- ---- What each message has beyond its table; `tvb` is one frame without its checksum, and whole as far as its table
--- goes. Each returns a text for the info column, or nil.
+-- ---- The parts of each message beyond its table. `tvb` is one frame without its checksum, with all bytes of its
+-- table. Each function returns a text for the info column, or nil.
 local details = {}
 
 local function name_of(id)
@@ -186,7 +186,7 @@ local function add_text(tvb, tree, offset)
   return '"' .. tvb:raw(offset, tvb:len() - offset):gsub("[^\32-\126]", "?") .. '"'
 end
 
--- The angle is at the same place in all messages that have one.
+-- All messages with an angle have it at the same offset.
 local function add_bearing(tvb, tree)
   local angle = tvb(10, 2):le_uint()
   local turn = (angle - ping360.prefs.ahead) % 400
@@ -246,7 +246,7 @@ local function is_older_request(id, length)
   return length == 0 and asked_by_empty[layouts.reports[id]]
 end
 
--- Whether a head has sent a frame: what only one side sends says so, of all else the number of the sender.
+-- Whether a head sent the frame. Most messages exist in one direction only; for others the sender's number decides.
 local function is_from_head(id, length, source)
   local command, report = layouts.commands[id], layouts.reports[id]
   if (command == nil) == (report == nil) then
@@ -255,7 +255,7 @@ local function is_from_head(id, length, source)
   return report ~= nil and not is_older_request(id, length)
 end
 
--- One of them with a table of its own, or with none because it has no fields.
+-- Adds a message: with a table of its own, or without one if it has no fields.
 local function add_message(tvb, tree, name)
   local layout = messages[name]
   if layout and not tables.add(tree, tvb, layout, 0) then
@@ -303,7 +303,7 @@ local function dissect_frame(stream, offset, size, root)
   return text
 end
 
--- What clients send that is no frame (1.1, 4.4).
+-- Bytes that clients send outside frames (1.1, 4.4).
 local function known_garbage(raw)
   if raw == "\0\255" then
     return "00 FF, as ping-cpp sends it when it opens UDP"
@@ -324,8 +324,8 @@ local function add_garbage(range, root)
   return "no frame"
 end
 
--- Goes through a stream up to its end, or up to a frame that is not whole. Returns where that begins, and how many of
--- its bytes are missing, as next_piece() has it.
+-- Dissects a stream up to its end or an incomplete frame. Returns the offset of that frame, and the number of its
+-- missing bytes as next_piece() returns it.
 local function dissect_stream(stream, root, texts)
   local offset = 0
   while offset < #stream.raw do
@@ -343,12 +343,13 @@ local function dissect_stream(stream, root, texts)
   return offset, 0
 end
 
--- ---- UDP: datagrams may cut frames anywhere (4.1, 4.2). Wireshark puts only TCP together.
+-- ---- UDP: datagrams may cut frames anywhere (4.1, 4.2). Wireshark reassembles TCP only.
 
--- By the two ends, what a datagram left unfinished: { bytes, number of the packet where it began, time }. And for each
--- packet what it goes on with, or what was given up when it came. Filled when a capture is gone through the first time.
+-- unfinished: by both ends, the incomplete frame of a datagram: { bytes, number of the packet where it began, time }.
+-- continued, given_up: by packet, the frame that it continues, or the one that was dropped when it came. Filled in the
+-- first pass over a capture.
 local unfinished, continued, given_up = {}, {}, {}
--- By the two ends, the first packet that was taken for this protocol.
+-- By both ends, the first packet that was dissected as this protocol.
 local first_packet = {}
 function ping360.init()
   unfinished, continued, given_up, first_packet = {}, {}, {}, {}
@@ -359,7 +360,7 @@ local function ends_of(pinfo)
   return source .. " " .. destination, destination .. " " .. source
 end
 
--- A datagram that begins with a whole frame begins anew.
+-- A datagram that begins with a complete frame does not continue an earlier one.
 local function note_beginning(stream, pinfo, direction)
   local before = unfinished[direction]
   unfinished[direction] = nil
@@ -425,7 +426,7 @@ function ping360.dissector(tvb, pinfo, root)
   pinfo.cols.protocol = "PING360"
   pinfo.conversation = ping360
   local texts = {}
-  -- TCP hands over ports, UDP as well: the type of the port tells which it was.
+  -- Wireshark calls this for TCP and UDP ports; the type of the port shows which.
   if pinfo.port_type == 2 then
     local offset, missing = dissect_stream(make_stream(tvb), root, texts)
     if offset < tvb:len() then
@@ -460,7 +461,7 @@ for _, field in pairs(found) do
 end
 discovery.experts = { bad_answer }
 
--- The address in "192.168.002.004", or nil.
+-- The address in a text like "192.168.002.004", or nil.
 local function address_of(text)
   local groups = { text:match("^(%d+)%.(%d+)%.(%d+)%.(%d+)$") }
   for i, group in ipairs(groups) do
@@ -481,7 +482,7 @@ local function add_ip(range, tree, text)
   end
 end
 
--- What each line of an answer holds.
+-- The contents of each line of an answer.
 local lines_of_answer = {
   function(range, tree, line) tree:add(found.device, range, line) end,
   function(range, tree, line) tree:add(found.maker, range, line) end,
@@ -510,7 +511,7 @@ local function add_answer(tvb, tree, text)
   end
 end
 
--- What a text is called, or nil when it is none of these: other protocols have the port, too.
+-- The name of a discovery message, or nil for other texts, because other protocols share the port.
 local function name_of_text(text)
   if text:match("^[%s\0]*Discovery[%s\0]*$") then
     return "discovery"
@@ -540,9 +541,9 @@ function discovery.dissector(tvb, pinfo, root)
   return tvb:len()
 end
 
--- ---- Ports. A serial line, and a stream over TCP, is found by the front of its frames.
+-- ---- Ports. Serial lines, and streams over TCP, are found by the start of their frames.
 
--- Gives the ports to `proto`, with a preference for each transport. Returns those in use, by transport.
+-- Registers `proto` for the ports, with a preference for each transport. Returns the ports in use, by transport.
 local function listen(proto, ports, description)
   local in_use, dissector_tables = {}, {}
   for transport, default in pairs(ports) do
@@ -587,7 +588,7 @@ table.insert(tables.serial_devices, {
   begins_with_frame = function(tvb) return tvb:raw(0, math.min(tvb:len(), 4)):match("^BR.?[\0-\16]?$") ~= nil end,
 })
 
--- ---- Empty datagrams (4.3), which UDP hands to nobody: a dissector that comes after all others finds them.
+-- ---- Empty datagrams (4.3). No dissector of UDP gets them, so a dissector that runs after all others finds them.
 
 local udp_length = Field.new("udp.length")
 local udp_header_size = 8

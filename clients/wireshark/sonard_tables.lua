@@ -1,14 +1,14 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
--- What the dissectors of all sonars share: fields of Wireshark from a table of fields, and a message shown by it.
--- The tables (sonard_DEVICE_fields.lua) say how each message is laid out; the dissectors load this file themselves.
+-- Code that all dissectors share: makes Wireshark fields from a table of fields, and shows a message by it. The tables
+-- (sonard_DEVICE_fields.lua) describe the layout of each message. Each dissector loads this file itself.
 local tables = {}
 
--- Runs of bytes longer than this are shown as one value.
+-- Longer runs of bytes are shown as one value.
 local most_values = 8
 
 local integers = { [1] = ProtoField.uint8, [2] = ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64 }
 
--- The field of Wireshark for one entry. `format`: "hex", "ipv4", "double", or nil for decimal.
+-- Makes the Wireshark field for one entry. `format`: "hex", "ipv4", "double", or nil for decimal.
 local function make_field(abbreviation, entry, format)
   local size, name, count = entry[2], entry[3], entry[4] or 1
   if not integers[size] or (size == 1 and count > most_values) then
@@ -23,8 +23,8 @@ local function make_field(abbreviation, entry, format)
   return integers[size](abbreviation, name, format == "hex" and base.HEX or base.DEC)
 end
 
--- Makes the fields of all `messages`, PREFIX.MESSAGE.NAME, and returns them with those of `extra` in one list for the
--- protocol. `formats` is by "MESSAGE.NAME".
+-- Makes the fields of all `messages`, PREFIX.MESSAGE.NAME. Returns them and the fields of `extra` in one list for the
+-- protocol. The keys of `formats` are "MESSAGE.NAME".
 function tables.make_fields(prefix, messages, formats, extra)
   local fields = {}
   for _, field in pairs(extra) do
@@ -41,8 +41,8 @@ function tables.make_fields(prefix, messages, formats, extra)
   return fields
 end
 
--- Shows in `tree` what `layout` says of `tvb`, offsets counted from `base`. Fields beyond layout.minimum may be
--- missing. Returns false when one before it is.
+-- Adds the fields of `layout` in `tvb` to `tree`; offsets count from `base`. Fields beyond layout.minimum may be
+-- missing. Returns false if an earlier field is missing.
 function tables.add(tree, tvb, layout, base)
   for i, entry in ipairs(layout.fields) do
     local offset, size, count = base + entry[1], entry[2], entry[4] or 1
@@ -66,8 +66,8 @@ function tables.has_bit(value, bit)
   return math.floor(value / 2 ^ bit) % 2 == 1
 end
 
--- The dissectors of devices on serial lines, which all come on the same ports: each with `begins_with_frame(tvb)` and
--- `proto`. In one list for all dissectors, although each of them loads this file for itself.
+-- Dissectors of devices on serial lines, which share their ports; each has `begins_with_frame(tvb)` and `proto`. The
+-- list is global, because each dissector loads this file for itself.
 sonard_serial_devices = sonard_serial_devices or {}
 tables.serial_devices = sonard_serial_devices
 
