@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Publishes a vehicle that drives a circle, as any simulator can (docs/poses.md). Needs Python alone."""
+"""Sends the poses of a vehicle that drives a circle, like a simulator (docs/poses.md). Needs only Python."""
 import argparse
 import math
 import os
@@ -28,5 +28,5 @@ with PosePublisher(args.to, args.port, tcp=args.tcp) as poses:
             position_m=(RADIUS_M * math.cos(angle), RADIUS_M * math.sin(angle), -DEPTH_M),
             quaternion_xyzw=(0, 0, math.sin(heading / 2), math.cos(heading / 2)),
             linear_mps=(SPEED_MPS, 0, 0),  # forward, in the vehicle's axes
-            angular_radps=(0, 0, SPEED_MPS / RADIUS_M))  # to port
+            angular_radps=(0, 0, SPEED_MPS / RADIUS_M))  # turning to port
         time.sleep(1 / RATE_HZ)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what the head of a Gemini's ping says. Its bytes come as hexadecimal numbers by standard input, as
-// tcpdump or tests/data/gemini/ping_head.hex have them.
+// Prints the head of a Gemini's ping. Reads its bytes from standard input as hexadecimal numbers, as tcpdump
+// prints them or as in tests/data/gemini/ping_head.hex.
 #include <cstdint>
 #include <iostream>
 #include <string>

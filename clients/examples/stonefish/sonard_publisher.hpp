@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends what an sf::Odometry sensor of Stonefish measures to sonard, one UDP datagram for each sample. Needs
-// protobuf and, once, the message:
+// Sends the samples of a Stonefish sf::Odometry sensor to sonard, one UDP datagram each. Needs protobuf, and
+// the message, which you generate once:
 //     protoc --proto_path=protocol/pose --cpp_out=. pose.proto
 #pragma once
 
@@ -14,9 +14,9 @@
 
 #include "pose.pb.h"
 
-/// Stonefish's world is north, east, down, and its vehicles are modelled with x forward, y to starboard, z
-/// down: a frame that sonard knows, so the numbers go as they are. `Sample` is sf::Sample; the twist of
-/// sf::Odometry is in the axes of the sensor already.
+/// Stonefish's world is north, east, down; its vehicles have x forward, y to starboard, z down. sonard
+/// supports this frame, so the numbers are sent unchanged. `Sample` is sf::Sample; the twist of sf::Odometry
+/// already is in the sensor's axes.
 template <class Sample>
 sonard::pose::PoseUpdate pose_update(const Sample& odometry) {
   sonard::pose::PoseUpdate update;
@@ -38,7 +38,7 @@ sonard::pose::PoseUpdate pose_update(const Sample& odometry) {
   return update;
 }
 
-/// A member of your sf::SimulationManager; call send() in SimulationStepCompleted().
+/// Make it a member of your sf::SimulationManager, and call send() in SimulationStepCompleted().
 class SonardPublisher {
  public:
   explicit SonardPublisher(const std::string& address = "127.0.0.1", std::uint16_t port = 14600)
@@ -53,14 +53,14 @@ class SonardPublisher {
   SonardPublisher(const SonardPublisher&) = delete;
   SonardPublisher& operator=(const SonardPublisher&) = delete;
 
-  /// The physics may run at 500 steps a second and more; only a sample with a new time is sent.
+  /// Sends only samples with a new time, because the physics may run at 500 steps per second or more.
   template <class Sample>
   void send(const Sample& odometry) {
     const sonard::pose::PoseUpdate update = pose_update(odometry);
     if (update.time_ns() != sent_ns_) {
       sent_ns_ = update.time_ns();
       const std::string bytes = update.SerializeAsString();
-      // A datagram that no one receives does no harm: the next one is newer.
+      // A lost datagram does no harm: the next one is newer.
       sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&receiver_),
              sizeof receiver_);
     }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose in Unreal's axes as a message for sonard (protocol/pose/pose.proto), without protobuf or the engine:
-// it takes any types with the members of FVector and FQuat. SonardPublisher.h uses it.
+// Converts a pose in Unreal's axes to a message for sonard (protocol/pose/pose.proto), without protobuf or
+// the engine. It accepts any types with the members of FVector and FQuat. SonardPublisher.h uses it.
 //
-// Unreal is left-handed: x forward, y right, z up, centimetres. The world's x is taken for east, so y is
-// south.
+// Unreal is left-handed: x forward, y right, z up, centimetres. The world's x is sent as east, so y is south.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 #include <string>
 
 namespace sonard_unreal {
-// Mirroring y makes these axes right-handed: x east, y north, z up; on board x forward, y to port, z up.
+// Mirroring y makes the axes right-handed: world x east, y north, z up; vehicle x forward, y to port, z up.
 struct Vector {
   double x, y, z;
 };
@@ -24,14 +23,13 @@ Vector Position(const FVectorLike& cm) {
   return {cm.X / 100, -cm.Y / 100, cm.Z / 100};
 }
 
-// From the vehicle's own axes (FQuat::UnrotateVector), cm/s.
+// In the vehicle's axes (FQuat::UnrotateVector), cm/s.
 template <class FVectorLike>
 Vector Velocity(const FVectorLike& cmPerSecond) {
   return Position(cmPerSecond);
 }
 
-// From the vehicle's own axes, rad/s. The sense of a rotation is mirrored too, so it is the other two that
-// change sign.
+// In the vehicle's axes, rad/s. Mirroring y also reverses rotations, so x and z change sign instead of y.
 template <class FVectorLike>
 Vector TurnRate(const FVectorLike& radPerSecond) {
   return {-radPerSecond.X, radPerSecond.Y, -radPerSecond.Z};
@@ -42,7 +40,7 @@ Rotation Orientation(const FQuatLike& q) {
   return {q.W, -q.X, q.Y, -q.Z};
 }
 
-// ---- The message, in protobuf's encoding. Little-endian machines, as all that Unreal runs on.
+// ---- The message, in protobuf's encoding. Requires a little-endian machine; Unreal runs on no other.
 
 inline void AppendVarint(std::string& bytes, std::uint64_t value) {
   for (; value >= 0x80; value >>= 7) {
@@ -88,7 +86,7 @@ inline std::string EncodePose(const Vector& position, const Rotation& orientatio
   return pose;
 }
 
-// A datagram. What EncodeBody() gives may be appended to it, for other things that move.
+// A datagram. Results of EncodeBody() may be appended to it, for other moving objects.
 inline std::string EncodeUpdate(double seconds, const Vector& position, const Rotation& orientation,
                                 const Vector& velocity, const Vector& turnRate) {
   std::string update;
@@ -102,7 +100,7 @@ inline std::string EncodeUpdate(double seconds, const Vector& position, const Ro
   return update;
 }
 
-// Something else, by the name of its model in sonard's world.
+// Another moving object, by the name of its model in sonard's world.
 inline std::string EncodeBody(const std::string& name, const Vector& position, const Rotation& orientation) {
   std::string body;
   AppendPart(body, 1, name);

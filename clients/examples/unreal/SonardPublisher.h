@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A component for the vehicle's actor: sends its pose to sonard in every tick. Copy it and SonardPose.h into
-// the Source folder of your module, and add "Sockets" and "Networking" to its PublicDependencyModuleNames. No
-// test compiles this file, which takes the engine; they do compile SonardPose.h, where all conversions are.
+// A component for the vehicle's actor that sends its pose to sonard in each tick. Copy it and SonardPose.h
+// into the Source folder of your module, and add "Sockets" and "Networking" to its
+// PublicDependencyModuleNames. No test compiles this file, because it needs the engine. Tests compile
+// SonardPose.h, which has all conversions.
 #pragma once
 
 #include "Components/ActorComponent.h"
