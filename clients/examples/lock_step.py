@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Moves a vehicle in lock-step with the pings: each run gives the same images (docs/ci.md). Run it beside `sonard run
-configs/lock-step.yaml`. Needs NumPy, and clients/python in the PYTHONPATH. Prints the stamp of each ping and the CRC-32
-of its samples. """
+"""Moves a vehicle in lock-step with the pings: each run gives the same images (docs/ci.md).
+
+Run it beside `sonard run configs/lock-step.yaml`. Needs NumPy, and clients/python in the PYTHONPATH. Prints the stamp of
+each ping and the CRC-32 of its samples.
+"""
 import argparse
 import time
 import zlib

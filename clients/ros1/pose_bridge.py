@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What roscast makes of ROS's messages: odometry and transforms become messages of protocol/pose/pose.proto.
+"""Converts ROS messages for roscast: odometry and transforms become messages of protocol/pose/pose.proto.
 
-Nothing here needs a roscore or a socket.
+This module needs no roscore and no socket.
 """
 import collections
 import math
@@ -13,16 +13,16 @@ import pose_pb2
 
 FRAMES = {"enu_flu": pose_pb2.FRAME_ENU_FLU, "ned_frd": pose_pb2.FRAME_NED_FRD}
 
-# More than what comes late over a network; sonard's own sources of poses draw the line there, too.
+# More than the delay of late messages in a network; sonard's own pose sources use the same limit.
 SET_BACK_NS = 250_000_000
-# What sonard refuses (protocol/pose/transform.hpp, pose_codec.hpp) is said here, to whom it concerns.
+# sonard rejects values beyond these limits (protocol/pose/transform.hpp, pose_codec.hpp). roscast reports them itself.
 MAX_COORDINATE_M = 1e8
 MAX_SPEED = 1e6
 MIN_QUATERNION_NORM, MAX_QUATERNION_NORM = 1e-3, 1e3
 
 
 def without_slash(frame):
-    """Frame names of tf's first version begin with a slash and mean the same without it."""
+    """Frame names of tf1 may begin with a slash, which has no meaning."""
     return frame[1:] if frame.startswith("/") else frame
 
 
@@ -36,7 +36,7 @@ def copy_numbers(ours, theirs, names="xyz"):
 
 
 def normalize(position, orientation):
-    """Scales the quaternion to norm 1. Returns what is wrong with the two, or None."""
+    """Scales the quaternion to norm 1. Returns the fault of the pose, or None."""
     if not all(map(math.isfinite, numbers(position))):
         return "position is not finite"
     if max(map(abs, numbers(position))) > MAX_COORDINATE_M:
@@ -53,29 +53,29 @@ def normalize(position, orientation):
 
 def fault_of_twist(twist):
     for vector in (twist.linear, twist.angular):
-        # Not a number is no more than anything.
+        # NaN fails every comparison.
         if not math.hypot(*numbers(vector)) <= MAX_SPEED:
             return "twist is not finite, or beyond 1e6"
     return None
 
 
 class FrameTree:
-    """The frames that /tf and /tf_static tell of, in tf2's own buffer, which interpolates and remembers 10 s."""
+    """The frames of /tf and /tf_static in a tf2 buffer, which interpolates and keeps 10 s."""
 
     def __init__(self):
         self._buffer = tf2_py.BufferCore()
         self._newest_ns = {}  # by child frame
 
     def insert(self, transform, is_static):
-        """Returns True when its stamp was far behind the newest one of the same frame: the clock was set back (a
-        simulation was reset), and everything from before, but for /tf_static, is forgotten."""
+        """Returns True if its stamp was far behind the newest one of the same frame. Then the clock was set back (a
+        simulation was reset), and all earlier transforms except /tf_static are dropped."""
         if is_static:
             self._buffer.set_transform_static(transform, "")
             return False
         stamp_ns = transform.header.stamp.to_nsec()
         newest_ns = self._newest_ns.get(transform.child_frame_id)
         if stamp_ns == newest_ns:
-            return False  # of a paused simulation; tf2 would refuse it, and write a line about each one
+            return False  # from a paused simulation; tf2 would reject it and print a line each time
         reset = newest_ns is not None and stamp_ns < newest_ns - SET_BACK_NS
         if reset:
             self._buffer.clear()
@@ -86,12 +86,12 @@ class FrameTree:
         return reset
 
     def newest(self, root, frame):
-        """Where `frame` is in `root` at the newest time for which the whole chain between them is known; a stamp of 0
-        says that the chain does not change at all. Raises tf2_py.TransformException."""
+        """The pose of `frame` in `root` at the newest time for which the whole chain is known. A stamp of 0 means that the
+        chain never changes. Raises tf2_py.TransformException."""
         return self._buffer.lookup_transform_core(root, frame, genpy.Time())
 
     def at(self, stamp, root, frame):
-        """Where `frame` was at that time, or at the newest time where that is not known; None without any."""
+        """The pose of `frame` in `root` at `stamp`, or at the newest time if that is not known; None if there is no pose."""
         for time in (stamp, genpy.Time()):
             try:
                 return self._buffer.lookup_transform_core(root, frame, time)
@@ -104,12 +104,12 @@ class FrameTree:
 
 
 class PoseBridge:
-    """Calls send(PoseUpdate) for each pose of the vehicle, and say(line) for a person. One thread."""
+    """Calls send(PoseUpdate) for each pose of the vehicle, and say(line) with messages for a person. Uses one thread."""
 
     def __init__(self, send, say, odometry, world_frame="world", vehicle_frame="", axes="enu_flu", bodies=()):
-        """`odometry`: whether the vehicle's pose comes from there, else from tf. `vehicle_frame`: with odometry the
-        child_frame_id that is expected, any when empty; else the vehicle's frame of tf. `bodies`: pairs of a frame of
-        tf and the body of sonard's world that follows it."""
+        """`odometry`: whether the vehicle's pose comes from odometry, else from tf. `vehicle_frame`: with odometry the
+        expected child_frame_id, empty for any; else the vehicle's frame in tf. `bodies`: pairs of a tf frame and the body
+        in sonard's world that follows it."""
         self._send_update, self._say = send, say
         self._by_odometry = odometry
         self._world_frame = without_slash(world_frame)
@@ -117,14 +117,14 @@ class PoseBridge:
         self._axes = axes
         self._bodies = [(without_slash(frame), body) for frame, body in bodies]
         self._tree = FrameTree()
-        self._newest_ns = 0  # of the vehicle by tf, as far as sent
+        self._newest_ns = 0  # newest stamp of the vehicle sent from tf
         self._said = set()
-        # poses: handed on; wrong_frame: odometry in or of another frame than expected; no_stamp: no time to put the
-        # pose at; bad_value: not finite, no rotation, beyond every limit; clock_resets.
+        # poses: sent; wrong_frame: odometry with an unexpected frame; no_stamp: stamp of 0; bad_value: not finite, no
+        # rotation, or beyond the limits; clock_resets.
         self.counters = collections.Counter()
 
     def _drop(self, counter, line):
-        """What would be said for every message is said once."""
+        """Counts each dropped message, and prints each line only once."""
         self.counters[counter] += 1
         if line not in self._said:
             self._said.add(line)
@@ -151,7 +151,7 @@ class PoseBridge:
                 self._send(message.header, child, pose.position, pose.orientation, twist)
 
     def on_transforms(self, transforms, is_static):
-        """All transforms of one message of /tf (False) or /tf_static (True)."""
+        """Handles all transforms of one message of /tf (False) or /tf_static (True)."""
         for transform in transforms:
             child = transform.child_frame_id = without_slash(transform.child_frame_id)
             transform.header.frame_id = without_slash(transform.header.frame_id)
@@ -170,20 +170,20 @@ class PoseBridge:
         try:
             vehicle = self._tree.newest(self._world_frame, self._vehicle_frame)
         except tf2_py.TransformException:
-            return  # the rest of the chain may come in another message; why_no_vehicle() is for who waits in vain
+            return  # the rest may come in another message; why_no_vehicle() reports a chain that stays broken
         stamp_ns = vehicle.header.stamp.to_nsec()
         if stamp_ns == 0:
             self._drop("no_stamp", f"nothing between '{self._world_frame}' and '{self._vehicle_frame}' ever changes: "
                        "give this pose as poses.initial")
             return
-        # Other frames bring no news of the vehicle. The same time again is that of a paused simulation.
+        # Other frames do not change the vehicle's pose. A paused simulation sends the same time again.
         again = stamp_ns == self._newest_ns and self._vehicle_frame in changed_frames
         if stamp_ns > self._newest_ns or again:
             self._newest_ns = stamp_ns
             self._send(vehicle.header, self._vehicle_frame, vehicle.transform.translation, vehicle.transform.rotation)
 
     def _send(self, header, child, position, orientation, twist=None):
-        """Numbers go as they are: sonard knows both axes, and the twist of Odometry is in the vehicle's own."""
+        """Sends the numbers unchanged: sonard supports both axes, and the twist of Odometry is in the vehicle's axes."""
         update = pose_pb2.PoseUpdate(time_ns=header.stamp.to_nsec(), frame=FRAMES[self._axes])
         copy_numbers(update.vehicle.position_m, position)
         copy_numbers(update.vehicle.orientation, orientation, "wxyz")
@@ -205,7 +205,7 @@ class PoseBridge:
         self._send_update(update)
 
     def why_no_vehicle(self):
-        """Why tf gives no pose of the vehicle: tf2's reason and the frames that there are. One line."""
+        """Why tf has no pose of the vehicle: tf2's reason and the known frames, in one line."""
         problem = ""
         try:
             self._tree.newest(self._world_frame, self._vehicle_frame)

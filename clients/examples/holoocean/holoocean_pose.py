@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Converts the state of a HoloOcean agent to a message for sonard (docs/simulators/unreal.md).
+
 The agent needs a PoseSensor and should have a VelocitySensor and an IMUSensor. Attach all to one socket; its pose is
 sent. Needs python3-protobuf and the message module beside this file, which you make once:
     protoc --proto_path=protocol/pose --python_out=clients/examples/holoocean pose.proto

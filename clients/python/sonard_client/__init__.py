@@ -7,7 +7,7 @@
         ping = sonar.ping(range_m=20)
     print(ping.samples.shape, ping.ranges_m[-1], ping.bearings_rad[[0, -1]])
 
-PosePublisher and encode_pose() need no NumPy; all else does, when it is first asked for.
+PosePublisher and encode_pose() need no NumPy. All other names do, when they are first used.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the readers of logs report what they cannot read."""
+"""How the readers of logs report damage."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class DamagedLog(UserWarning):
-    """Part of a log cannot be read. The reader skips that part and goes on with the next one."""
+    """Part of a log cannot be read. The reader skips that part and continues with the next one."""
 
 
 def warn(path: Any, what: str) -> None:

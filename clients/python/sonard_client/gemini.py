@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A topside for a Tritech Gemini 720i, written from docs/protocols/gemini.md, whose sections the comments name."""
+"""A topside for a Tritech Gemini 720i. Section numbers in comments refer to docs/protocols/gemini.md."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .ping import Array, NoHead, NoPing, Ping
 REPORT_PORT, COMMAND_PORT = 52900, 52901  # 1.1
 LINE_RATE_HZ = 90422.0  # 6.7
 STATUS, PING_HEAD, PING_LINE, PING_TAIL = 0x40, 0x41, 0x42, 0x43
-_BUFFER_BYTES = 16 << 20  # several pings; the kernel gives what it may
+_BUFFER_BYTES = 16 << 20  # several pings; the kernel may give less
 _KEEP_ALIVE_S = 1.0  # the head forgets a topside after 3 s (1.5)
 _RETRIES = 6
 
 
 @dataclass(frozen=True)
 class Status:
-    """What is used of a status (3.3)."""
+    """The values of a status (3.3) that this module uses."""
 
     sonar_id: int
     address: str
@@ -35,7 +35,7 @@ class Status:
 
 @dataclass
 class _Arriving:
-    """A ping of which not all has come (6)."""
+    """A ping that has not arrived completely (6)."""
 
     head: bytes
     lines: dict[int, bytes] = field(default_factory=dict)
@@ -57,7 +57,7 @@ class _Arriving:
             self.tail = True
 
     def gaps(self) -> list[tuple[int, int]]:
-        """First and count of the lines that are missing, one after the other."""
+        """First line and number of lines of each gap, in order."""
         gaps: list[tuple[int, int]] = []
         for line in range(self.count):
             if line in self.lines:
@@ -74,7 +74,7 @@ class _Arriving:
         for line, data in self.lines.items():
             if line >= self.count:
                 continue
-            if not eight_bit:  # most significant byte first (6.6)
+            if not eight_bit:  # big-endian (6.6)
                 row = np.frombuffer(data[: 2 * self.beams], ">u2")
             elif self.rle:
                 row = _run_length_decoded(data, self.beams)
@@ -85,7 +85,7 @@ class _Arriving:
 
 
 def _run_length_decoded(data: bytes, beams: int) -> Array:
-    """6.8."""
+    """Decodes a line (6.8)."""
     row = np.zeros(beams, np.uint8)
     beam = at = 0
     while at < len(data) and beam < beams:
@@ -100,14 +100,14 @@ def _run_length_decoded(data: bytes, beams: int) -> Array:
 
 
 def bearings_rad(beams: int) -> Array:
-    """Evenly spaced in the sine over 120 degrees (6.5); positive to port."""
+    """Bearings of the beams, evenly spaced in the sine over 120 degrees (6.5); positive to port."""
     bearings: Array = -np.arcsin((2 * np.arange(beams) + 1 - beams) / beams * math.sin(math.radians(60)))
     return bearings
 
 
 def _ping_config(sonar_id: int, range_m: float, gain_percent: float, sound_speed_mps: float, compression: int,
                  bits: int, interval_s: Optional[float]) -> bytes:
-    """0x21, filled in as the early library does (5)."""
+    """A ping configuration, 0x21, filled in as the vendor's early library does (5)."""
     line_m = sound_speed_mps / (2 * LINE_RATE_HZ)
     lines = min(max(math.floor(range_m / line_m + 0.5), 32), 20000 if bits == 8 else 10000)
     cycles = 4 if range_m < 10 else 4 + math.floor(28 * (range_m - 10) / 40) if range_m < 50 else \
@@ -133,10 +133,10 @@ def _address(number: int) -> str:
 
 
 class Gemini:
-    """Talks to one head. One thread at a time.
+    """A client of one head. Use it from one thread at a time.
 
-    sonar_id  the head to talk to; None: the first whose status arrives
-    local     the address of this machine that commands leave from and the head answers to; None: the one that routes
+    sonar_id  the ID of the head; None: the first whose status arrives
+    local     the address of this machine that commands are sent from and the head answers to; None: the one that routes
               to the head
     bind      the address on which reports arrive, "" for all
     """
@@ -159,16 +159,16 @@ class Gemini:
         self.close()
 
     def close(self) -> None:
-        """Says goodbye to the head."""
+        """Ends the conversation with the head and closes the sockets."""
         self._send(_header(0xC8, self.status.sonar_id) + b"\0\0")
         self._reports.close()
         self._commands.close()
 
     def ping(self, range_m: float = 20.0, gain_percent: float = 50.0, sound_speed_mps: float = 1500.0,
              compression: int = 0, bits: int = 8) -> Ping:
-        """One ping. `compression` averages 2^n lines into one, n = 0..4.
+        """Requests one ping. `compression` averages 2^n lines into one, n = 0..4.
 
-        Raises NoPing where none comes: the head has no pose, say, or is out of the water.
+        Raises NoPing if no ping arrives, e.g. because the head has no pose or is out of the water.
         """
         config = _ping_config(self.status.sonar_id, range_m, gain_percent, sound_speed_mps, compression, bits, None)
         self._send(config)
@@ -176,7 +176,7 @@ class Gemini:
 
     def pings(self, interval_s: float, range_m: float = 20.0, gain_percent: float = 50.0,
               sound_speed_mps: float = 1500.0, compression: int = 0, bits: int = 8) -> Iterator[Ping]:
-        """Pings that the head makes by itself, until the iterator is closed. The head is asked for them at once."""
+        """Pings that the head sends on its own, until the iterator is closed. The request is sent at once."""
         config = _ping_config(self.status.sonar_id, range_m, gain_percent, sound_speed_mps, compression, bits, interval_s)
         self._send(config)
 
@@ -203,7 +203,7 @@ class Gemini:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             probe.connect((self.status.address, COMMAND_PORT))
             local = str(probe.getsockname()[0])
-        # On loopback every address routes to itself; the head's own is taken.
+        # On loopback, each address routes to itself; use the head's own address.
         return "127.0.0.1" if local == self.status.address else local
 
     def _send(self, message: bytes) -> None:
@@ -211,7 +211,7 @@ class Gemini:
         self._commands.sendto(message, (self.status.address, COMMAND_PORT))
 
     def _next(self, until_s: float) -> Optional[bytes]:
-        """The next datagram of the head; None when time is up."""
+        """The next datagram of the head; None if the time is over."""
         left_s = until_s - time.monotonic()
         if left_s <= 0:
             return None
@@ -242,9 +242,9 @@ class Gemini:
         retries = 0
         while True:
             if time.monotonic() - self._last_command_s > _KEEP_ALIVE_S:
-                # Without a head within a second the command was lost, or the head was (1.6).
+                # If no PING_HEAD arrives within a second, the command or the PING_HEAD was lost (1.6).
                 self._send(_header(0x20, self.status.sonar_id) if ping else config)
-            # The head holds its next ping back for 10 ms after a request (7.3).
+            # The head delays its next ping by 10 ms after a request (7.3).
             patience_s = _KEEP_ALIVE_S if ping is None else 0.008 if ping.tail else 0.1
             wait_s = min(until_s, time.monotonic() + patience_s)
             datagram = self._next(wait_s)

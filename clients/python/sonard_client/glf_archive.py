@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The .dat in the ZIP archive of a .glf, also in a damaged archive or in one without its end (docs/logs.md 1.2)."""
+"""Finds the .dat in the ZIP archive of a .glf, also if the archive is damaged or truncated (docs/logs.md 1.2)."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Any, Iterator, Optional
 LOCAL_SIGNATURE = b"PK\x03\x04"
 _CENTRAL_SIGNATURE, _END_SIGNATURE = b"PK\x01\x02", b"PK\x05\x06"
 _STORED, _DEFLATED = 0, 8
-_BLOCK_BYTES = 65531  # of sonard's own archives
+_BLOCK_BYTES = 65531  # in sonard's own archives
 
 
 class Pieces:
-    """Bytes that lie in pieces, read as if they were one."""
+    """Bytes in several pieces, read as one sequence."""
 
     def __init__(self, pieces: list[Any]) -> None:
         self._pieces = pieces
@@ -25,7 +25,7 @@ class Pieces:
         self.size = self._starts[-1]
 
     def read(self, at: int, size: int) -> bytes:
-        """Raises EOFError beyond the end."""
+        """Returns `size` bytes at `at`. Raises EOFError beyond the end."""
         if at + size > self.size:
             raise EOFError("a record beyond the end")
         return b"".join(self._parts(at, size))
@@ -46,7 +46,7 @@ class Pieces:
         return low
 
     def find(self, what: bytes, at: int) -> int:
-        """Where `what` begins at `at` or behind it; -1 if nowhere."""
+        """The first offset of `what` at or after `at`; -1 if it does not occur."""
         while at < self.size:
             window = self.read(at, min(1 << 16, self.size - at))
             found = window.find(what)
@@ -65,11 +65,11 @@ class Pieces:
 @dataclass(frozen=True)
 class Dat:
     content: Pieces
-    crc: Optional[int]  # as the archive states it; None of an archive that does not
+    crc: Optional[int]  # from the archive; None if the archive does not give it
 
 
 def find_dat(data: Any) -> Optional[Dat]:
-    """By its local header, or else by the directory."""
+    """Finds the .dat by its local header, or else by the directory."""
     at = 0
     while (at := data.find(LOCAL_SIGNATURE, at)) >= 0:
         if at + 30 <= len(data):
@@ -78,7 +78,7 @@ def find_dat(data: Any) -> Optional[Dat]:
                 directory = _from_directory(data)
                 start = at + 30 + name + extra
                 if directory is not None:
-                    _, _, crc, stored = directory  # local ones may be missing
+                    _, _, crc, stored = directory  # the local header may lack them
                 return Dat(_content(data, start, method, stored), crc if directory is not None else None)
         at += 4
     directory = _from_directory(data)
@@ -89,7 +89,7 @@ def find_dat(data: Any) -> Optional[Dat]:
 
 
 def _from_directory(data: Any) -> Optional[tuple[int, int, int, int]]:
-    """Where the content lies if its local header is like the directory's, method, CRC and stored size."""
+    """Offset of the content (if the local header has the directory's lengths), method, CRC and stored size."""
     end = data.rfind(_END_SIGNATURE)
     if end < 0 or end + 22 > len(data):
         return None
@@ -111,7 +111,7 @@ def _content(data: Any, start: int, method: int, stored: int) -> Pieces:
 
 
 def _stored_blocks(data: memoryview) -> list[memoryview]:
-    """Blocks that deflate stores as they are. A damaged header is stepped over if another one follows."""
+    """Blocks that deflate stores uncompressed. Skips a damaged header if another one follows."""
     pieces = []
     at = before = 0
     while (header := _block_header(data, at)) is not None:
@@ -140,7 +140,7 @@ def _is_stored(header: tuple[int, int, int]) -> bool:
 
 
 def _inflated(data: memoryview) -> bytes:
-    """As far as it can be read."""
+    """Decompresses up to the end or the first error."""
     unpacker = zlib.decompressobj(-zlib.MAX_WBITS)
     parts = []
     try:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pings of .glf logs and of the .dat logs in them, as sonard and Tritech's programs write them: docs/logs.md says
-more of them."""
+"""Reads pings of .glf logs, and of the .dat logs in them, as sonard and Tritech's programs write them
+(docs/logs.md)."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ _HEADER_BYTES = 21
 _IMAGE, _STATUS = 0, 3
 _STATUS_BYTES = 218
 _ZLIB = 0
-_MOST_BYTES = 1 << 26  # of one image: far beyond any head's
+_MOST_BYTES = 1 << 26  # of one image; images of heads are far smaller
 
 
 def pings_of_glf(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:
-    """`data` is the file as bytes or as a memory map, `path` is for messages."""
+    """`data` is the file as bytes or as a memory map; `path` is for messages."""
     entry = glf_archive.find_dat(data)
     if entry is None:
         raise ValueError(f"{path} holds no .dat log")
@@ -51,7 +51,7 @@ def _pings(records: Iterator[tuple[int, bytes]], path: Any, zone: Optional[tzinf
 
 
 def _records(dat: Pieces, path: Any) -> Iterator[tuple[int, bytes]]:
-    """Whole images with their offsets, up to the end or the record that is being written."""
+    """Whole images with their offsets, up to the end or an unfinished last record."""
     at = 0
     while at < dat.size and not (dat.size - at == 2 and dat.read(at, 2) == _TERMINATOR):
         try:
@@ -60,7 +60,7 @@ def _records(dat: Pieces, path: Any) -> Iterator[tuple[int, bytes]]:
             following = _next_record(dat, at)
             if following is None:
                 closed = dat.size >= 2 and dat.read(dat.size - 2, 2) == _TERMINATOR
-                if closed or not isinstance(error, EOFError):  # else it is the record that is being written
+                if closed or not isinstance(error, EOFError):  # else the record is still being written
                     warn_of_bytes(path, at, dat.size - at, str(error), "what follows is lost")
                 return
             warn_of_bytes(path, at, following - at, str(error), "the images in them are lost")
@@ -76,7 +76,7 @@ def _records(dat: Pieces, path: Any) -> Iterator[tuple[int, bytes]]:
 
 
 def _end(dat: Pieces, at: int) -> int:
-    """Where the record at `at` ends. Raises EOFError beyond the data, ValueError where there is no record."""
+    """Offset of the end of the record at `at`. Raises EOFError beyond the data, ValueError if there is no record."""
     head = dat.read(at, _HEADER_BYTES)
     if head[:1] != b"*":
         raise ValueError(f"a record begins with the bytes {head[:2].hex(' ')}")
@@ -92,7 +92,7 @@ def _end(dat: Pieces, at: int) -> int:
 
 
 def _end_of_image(dat: Pieces, at: int) -> int:
-    """By what the image itself says: other programs write something else into the header of the record."""
+    """End of an image by its own sizes, because other programs write other values into the header of the record."""
     _, tag, version, first_row, end_row, _, first_beam, end_beam = struct.unpack("<HHHIIHII", dat.read(at + 21, 24))
     if tag != 0xEFEF or end_row < first_row or end_beam < first_beam:
         raise ValueError(f"an image with rows {first_row} to {end_row}, beams {first_beam} to {end_beam}")
@@ -106,7 +106,7 @@ def _end_of_image(dat: Pieces, at: int) -> int:
 
 
 def _end_if_image(dat: Pieces, at: int) -> Optional[int]:
-    """The end of a record that is an image by all but its type."""
+    """The end of a record whose content is an image, whatever its type; None if it is not an image."""
     try:
         return _end_of_image(dat, at)
     except (EOFError, ValueError):
@@ -114,7 +114,7 @@ def _end_if_image(dat: Pieces, at: int) -> Optional[int]:
 
 
 def _next_record(dat: Pieces, at: int) -> Optional[int]:
-    """Where the next whole image, or a status with something behind it, starts."""
+    """Offset of the next whole image, or of the next status with a record or the end behind it."""
     while (at := dat.find(MAGIC_OF_DAT, at + 1)) >= 0:
         try:
             head = dat.read(at, _HEADER_BYTES)
@@ -128,7 +128,7 @@ def _next_record(dat: Pieces, at: int) -> Optional[int]:
 
 
 def _ping(record: bytes, zone: Optional[tzinfo]) -> LoggedPing:
-    """An image record."""
+    """Decodes an image record."""
     seconds, _, device = struct.unpack_from("<dBH", record, 6)
     _, _, version, first_row, end_row, _, first_beam, end_beam = struct.unpack_from("<HHHIIHII", record, 21)
     rows, beams = end_row - first_row, end_beam - first_beam
@@ -146,7 +146,7 @@ def _ping(record: bytes, zone: Optional[tzinfo]) -> LoggedPing:
         unpacker = zlib.decompressobj()
         samples = unpacker.decompress(samples, rows * beams + 1)
         if not unpacker.eof and len(samples) == rows * beams:
-            unpacker.decompress(unpacker.unconsumed_tail, 1)  # its checksum
+            unpacker.decompress(unpacker.unconsumed_tail, 1)  # reads the checksum of the stream
             if not unpacker.eof:
                 raise ValueError("samples without their checksum")
     if len(samples) != rows * beams:

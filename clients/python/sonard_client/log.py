@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pings of recorded logs, whatever the format."""
+"""Reads pings of recorded logs in any format."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .ping import LoggedPing
 
 
 def read_log(path: Union[str, PathLike[str]], glf_zone: Optional[tzinfo] = timezone.utc) -> Iterator[LoggedPing]:
-    """The pings of an .mcap, .glf or .dat file in the order in which they were recorded, also of an .mcap or .dat that is
-    still being written.
+    """The pings of an .mcap, .glf or .dat file in the order of recording, also of an .mcap or .dat that is still being
+    written.
 
-    glf_zone: of the clock of a .glf or .dat, which does not say it. sonard writes UTC unless it is told otherwise; None is
-    the zone of this machine. Checksums are checked. A damaged part costs its own pings and is reported as a DamagedLog
+    glf_zone: time zone of the clock of a .glf or .dat, which the file does not state. sonard writes UTC by default; None is
+    the zone of this machine. Checksums are checked. The pings of a damaged part are lost, and it is reported as a DamagedLog
     warning (`warnings.simplefilter("error", DamagedLog)` makes it an exception). Raises ValueError if the file is no log.
     """
     with open(path, "rb") as file:
@@ -38,7 +38,7 @@ _FORMS = {".mcap": mcap_log.MAGIC, ".glf": glf_log.MAGIC_OF_GLF, ".dat": glf_log
 
 
 def _form(begins: bytes, name: str) -> Optional[str]:
-    """By the first bytes. Where one of them is damaged, the name decides, as it does for an empty .dat."""
+    """The format by the first bytes. If one of them is damaged, or a .dat is empty, the name decides."""
     for form, magic in _FORMS.items():
         if begins.startswith(magic):
             return form

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pings of sonard's .mcap logs. The container is that of mcap.dev/spec, messages those of protocol/log/sonard_log.proto, whose
-field numbers stand below; the wire format is Protocol Buffers'."""
+"""Reads pings of sonard's .mcap logs. The container is specified at mcap.dev/spec, the messages in
+protocol/log/sonard_log.proto, whose field numbers are used below; the wire format is Protocol Buffers."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from .ping import Array, LoggedPing
 MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _ATTACHMENT, _STATISTICS, _METADATA, _DATA_END = (
     1, 2, 3, 4, 5, 6, 7, 9, 11, 12, 15)
-# Bytes of a record, and how many fields with a length of their own follow them.
+# Fixed bytes of a record, and the number of fields with a length that follow them.
 _FORMS = {_HEADER: (0, 2), _FOOTER: (20, 0), _SCHEMA: (2, 3), _CHANNEL: (4, 3), _MESSAGE_INDEX: (2, 1),
           _STATISTICS: (42, 1), _METADATA: (0, 2), _DATA_END: (4, 0)}
 _AFTER_DATA = (_FOOTER, _STATISTICS, _DATA_END)
-# The front of a chunk with a compression that there is, of a schema of ours, and of a message index below 16 MiB.
+# The start of a chunk with a known compression, of a schema of sonard, and of a message index below 16 MiB.
 _READABLE = re.compile(rb"\x06(?=.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))|\x03(?=.{14}sonard\.log\.)"
                        rb"|\x07(?=.{3}\x00{5}.{5}\x00)", re.DOTALL)
 _MOST_BYTES = 1 << 30  # of one chunk
@@ -32,23 +32,23 @@ class _Damaged(Exception):
 
 
 def pings(data: Any, path: Any) -> Iterator[LoggedPing]:
-    """`data` is the file as bytes or as a memory map, `path` is for messages."""
+    """`data` is the file as bytes or as a memory map; `path` is for messages."""
     yield from _Reader(data, path).pings()
 
 
 class _Reader:
-    """Goes over a file, from record to record and over damaged parts."""
+    """Reads a file record by record, and skips damaged parts."""
 
     def __init__(self, data: Any, path: Any) -> None:
         self._data, self._path = data, path
         self._schemas: dict[int, str] = {}
         self._channels: dict[int, int] = {}
-        self._lost_chunk: Optional[tuple[int, int, str]] = None  # place, size and reason; its message indexes may follow
-        self._lost_messages: dict[int, int] = {}  # by channel, as these say
+        self._lost_chunk: Optional[tuple[int, int, str]] = None  # offset, size and reason; its message indexes may follow
+        self._lost_messages: dict[int, int] = {}  # by channel, counted from these indexes
 
     def pings(self) -> Iterator[LoggedPing]:
         for kind, body in self._records():
-            # Only those in chunks have a checksum, and they come first.
+            # Records in chunks have a checksum and come first, so they take precedence.
             if kind == _SCHEMA and len(body) >= 6:
                 self._schemas.setdefault(struct.unpack_from("<H", body)[0], _text(body, 2))
             elif kind == _CHANNEL and len(body) >= 4:
@@ -68,7 +68,7 @@ class _Reader:
         return self._schemas.get(self._channels.get(channel, 0), "")
 
     def _records(self) -> Iterator[tuple[int, bytes]]:
-        """Records outside and inside of chunks, up to the end of the data or the record that is being written."""
+        """Records outside and inside of chunks, up to the end of the data or an unfinished last record."""
         data = self._data
         at: Optional[int] = len(MAGIC)
         while at is not None and at < len(data):
@@ -95,12 +95,12 @@ class _Reader:
         self._tell_lost_chunk()
 
     def _behind_damage(self, at: int, end: Optional[int], why: str) -> Optional[int]:
-        """Where reading goes on; None if nowhere."""
+        """Reports damage at `at`. Returns where to continue; None if there is no place."""
         self._tell_lost_chunk()
         data = self._data
         following = _next_readable(data, at, end)
         if following is None and end is None and not data[-len(MAGIC):] == MAGIC:
-            return None  # the record that is being written
+            return None  # the record is still being written
         size = (len(data) if following is None else following) - at
         if _was_chunk(data, at):
             self._lost_chunk = at, size, why
@@ -109,7 +109,7 @@ class _Reader:
         return following
 
     def _count_lost(self, index: bytes) -> None:
-        """`index` is a message index, of a chunk that is lost if there is one."""
+        """Counts the messages of `index`, a message index, if its chunk is lost."""
         if self._lost_chunk is not None:
             channel, size = struct.unpack_from("<HI", index)
             self._lost_messages[channel] = self._lost_messages.get(channel, 0) + size // 16
@@ -125,7 +125,7 @@ class _Reader:
 
 
 def _end(data: Any, at: int) -> Optional[int]:
-    """Where the record at `at` ends; None beyond the data."""
+    """The end of the record at `at`; None if it is beyond the data."""
     if at + 9 > len(data):
         return None
     end: int = at + 9 + struct.unpack_from("<Q", data, at + 1)[0]
@@ -133,7 +133,7 @@ def _end(data: Any, at: int) -> Optional[int]:
 
 
 def _sizes_agree(data: Any, at: int) -> bool:
-    """The content of the record has the sizes of a chunk, whatever its type says."""
+    """Whether the sizes inside the record are those of a chunk, for any type byte."""
     end = _end(data, at)
     if end is None or end < at + 49:
         return False
@@ -142,7 +142,7 @@ def _sizes_agree(data: Any, at: int) -> bool:
 
 
 def _has_form(data: Any, at: int, kind: int) -> bool:
-    """The lengths in the record are those of a record of that kind, whatever its type says."""
+    """Whether the lengths inside the record fit a record of this kind, for any type byte."""
     end = _end(data, at)
     if end is None or kind not in _FORMS:
         return False
@@ -156,13 +156,13 @@ def _has_form(data: Any, at: int, kind: int) -> bool:
 
 
 def _was_chunk(data: Any, at: int) -> bool:
-    """A record that cannot be read is a chunk: its length or its type is right, as one bit is wrong."""
+    """Whether an unreadable record is a chunk. Assumes that one bit is wrong, so its length or its type is right."""
     return _sizes_agree(data, at) or (data[at] == _CHUNK and not any(_has_form(data, at, kind) for kind in _FORMS))
 
 
 def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
-    """Behind a record whose content fits its length, so that this is right; else at the next chunk, message index or
-    schema."""
+    """Where to continue: after the record if its content fits its length, which then is right; else at the next chunk,
+    message index or schema."""
     if end is not None and (_sizes_agree(data, at) or any(_has_form(data, at, kind) for kind in _FORMS)):
         return end
     for match in _READABLE.finditer(data, at + 1):
@@ -248,7 +248,7 @@ def _fields(data: bytes) -> dict[int, Any]:
 
 
 def _numbers(data: bytes, order: tuple[int, ...]) -> Array:
-    """Fields of a Vector3 or Quaternion; those that are 0 are left out of the message."""
+    """Fields of a Vector3 or Quaternion; a missing field is 0."""
     values = _fields(data)
     return np.array([values.get(number, 0.0) for number in order])
 
@@ -258,7 +258,7 @@ def _ranges_m(first_m: float, step_m: float, count: int) -> Array:
 
 
 def _multibeam_ping(image: dict[int, Any]) -> LoggedPing:
-    """SonarImage."""
+    """Decodes a SonarImage."""
     rows, beams = image.get(5, 0), image.get(6, 0)
     return LoggedPing(samples=np.frombuffer(image.get(7, b""), np.uint8).reshape(rows, beams),
                       ranges_m=_ranges_m(image.get(9, 0.0), image.get(10, 0.0), rows),
@@ -268,7 +268,7 @@ def _multibeam_ping(image: dict[int, Any]) -> LoggedPing:
 
 
 def _scan_line(line: dict[int, Any]) -> LoggedPing:
-    """ScanLine."""
+    """Decodes a ScanLine."""
     bins = np.frombuffer(line.get(6, b""), np.uint8)
     return LoggedPing(samples=bins[:, None], ranges_m=_ranges_m(line.get(7, 0.0), line.get(8, 0.0), bins.size),
                       bearings_rad=np.array([line.get(5, 0.0)]), transmit_us=None,

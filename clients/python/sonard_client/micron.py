@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A host for a Tritech Micron behind a device server (TCP), written from docs/protocols/micron.md, whose sections the
-comments name."""
+"""A host for a Tritech Micron behind a device server (TCP). Section numbers in comments refer to
+docs/protocols/micron.md."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _MISSES = 5
 
 
 def _frame(message_type: int, data: bytes = b"") -> bytes:
-    """2.1."""
+    """Encodes a frame (2.1)."""
     length = 8 + len(data)
     head = b"@%04X" % length + struct.pack("<HBB", length, _HOST, _HEAD)
     return head + struct.pack("<BBBB", (length - 5) & 0xFF, message_type, 0x80, _HEAD) + data + b"\n"
 
 
 def _frames(buffer: bytearray) -> Iterator[bytes]:
-    """Takes whole frames out of what has arrived (2.3)."""
+    """Removes whole frames from the received bytes (2.3)."""
     while len(buffer) >= 7:
         (length,) = struct.unpack_from("<H", buffer, 5)
         try:
@@ -58,7 +58,7 @@ def _bearing_rad(units: int) -> float:
 
 
 class Micron:
-    """Talks to one head at HOST:PORT. One thread at a time."""
+    """A client of one head at HOST:PORT. Use it from one thread at a time."""
 
     def __init__(self, host: str = "127.0.0.1", port: int = 4001, patience_s: float = 5.0) -> None:
         try:
@@ -84,7 +84,7 @@ class Micron:
 
     def turn(self, range_m: float = 20.0, bins: int = 400, step_deg: float = 1.8, gain_percent: float = 50.0,
              sound_speed_mps: float = 1500.0) -> Ping:
-        """The lines of one turn, from where the head is, clockwise. `bearings_rad` has the bearing of each."""
+        """The lines of one full turn, clockwise from the head's present bearing. `bearings_rad` has the bearing of each."""
         lines: list[Ping] = []
         turned = 0.0
         for line in self.lines(range_m, bins, step_deg, gain_percent, sound_speed_mps):
@@ -98,11 +98,11 @@ class Micron:
 
     def lines(self, range_m: float = 20.0, bins: int = 400, step_deg: float = 1.8, gain_percent: float = 50.0,
               sound_speed_mps: float = 1500.0, sector_rad: Optional[tuple[float, float]] = None) -> Iterator[Ping]:
-        """Line after line, each a ping of one beam, until the iterator is closed.
+        """Yields line after line, each as a ping of one beam, until the iterator is closed.
 
-        sector_rad  two bearings, the more port one first, between which the head scans to and fro; None: all round.
+        sector_rad  two bearings, the port one first; the head scans to and fro between them. None: full turns.
 
-        Raises NoPing where lines stay away.
+        Raises NoPing if no lines arrive.
         """
         interval = min(max(round(2 * range_m / sound_speed_mps / bins / _AD_INTERVAL_S), 1), 0xFFFF)
         parameters = self._parameters(interval, bins, step_deg, gain_percent, range_m, sector_rad)
@@ -110,8 +110,8 @@ class Micron:
         self._set(parameters)
         misses = 0
         while True:
-            # After each line: in half duplex a request brings one, in full duplex two, of which the head owes no more
-            # than four (8.1, 8.2).
+            # One request after each line. In half duplex, a request returns one line; in full duplex, it returns two,
+            # and the head owes at most four (8.1, 8.2).
             self._socket.sendall(_frame(_SEND_DATA, struct.pack("<I", 0)))
             frame = self._next(_HEAD_DATA, _LINE_WAIT_S)
             if frame is None:
@@ -133,7 +133,7 @@ class Micron:
     @staticmethod
     def _parameters(interval: int, bins: int, step_deg: float, gain_percent: float, range_m: float,
                     sector_rad: Optional[tuple[float, float]]) -> bytes:
-        """5.3, with 8-bit bins."""
+        """The head command (5.3), for 8-bit bins."""
         left, right = (0, _TURN - 1) if sector_rad is None else (_units(sector_rad[0]), _units(sector_rad[1]))
         control = 0x2305 | (2 if sector_rad is None else 0)  # 5.4
         gain = round(2.1 * gain_percent)
@@ -144,14 +144,14 @@ class Micron:
     # ---- The stream
 
     def _greet(self, patience_s: float) -> None:
-        """As the device wants it: an alive, version, user blocks (9)."""
+        """The start-up that the device expects: an alive, version, user blocks (9)."""
         if self._next(_ALIVE, patience_s) is None:
             raise NoHead(f"no alive within {patience_s} s: is it a Micron, and is it on?")
         self._socket.sendall(_frame(_SEND_VERSION))
         self._socket.sendall(_frame(_SEND_USER_BLOCKS))
 
     def _set(self, parameters: bytes) -> None:
-        """Until an alive says that the head has them (7.2)."""
+        """Sends the parameters until an alive confirms them (7.2)."""
         for _ in range(_MISSES):
             self._socket.sendall(_frame(_HEAD_COMMAND, parameters))
             until_s = time.monotonic() + _LINE_WAIT_S
@@ -161,7 +161,7 @@ class Micron:
         raise NoHead("the head does not take its parameters")
 
     def _next(self, message_type: int, wait_s: float) -> Optional[bytes]:
-        """The next message of a type; others are thrown away. None when time is up."""
+        """The next message of this type; others are dropped. None if the time is over."""
         until_s = time.monotonic() + wait_s
         while True:
             while self._ready:

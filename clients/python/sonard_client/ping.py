@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One ping, whichever sonar it is of."""
+"""One ping of any sonar."""
 
 from dataclasses import dataclass, field
 from typing import Any, Optional
@@ -11,23 +11,23 @@ Array = npt.NDArray[Any]
 
 
 class NoHead(TimeoutError):
-    """No head is there, or it does not answer."""
+    """No head was found, or it does not answer."""
 
 
 class NoPing(TimeoutError):
-    """A ping did not come, or not whole."""
+    """A ping did not arrive, or not completely."""
 
 
 @dataclass(frozen=True)
 class Ping:
-    """What a sonar has sent of one ping.
+    """The data of one ping.
 
-    samples       (bins, beams), uint8 or uint16: row after row from near to far; of a multibeam head beams from port to
-                  starboard, of a scanning head one for each line, in the order in which they came
-    ranges_m      (bins,): the middle of each row, from the speed of sound that was asked for
-    bearings_rad  (beams,): of each beam: 0 ahead, positive to port as in REP-103
-    transmit_us   when it was sent, by the clock of the head since its start; None of a head that does not say it
-    missing       rows that never came, which are 0
+    samples       (bins, beams), uint8 or uint16: row after row from near to far. Beams of a multibeam head are ordered
+                  from port to starboard. A scanning head has one for each line, in the order of arrival
+    ranges_m      (bins,): the middle of each row, for the requested speed of sound
+    bearings_rad  (beams,): 0 ahead, positive to port as in REP-103
+    transmit_us   transmit time by the clock of the head since its start; None if the head does not send it
+    missing       number of rows that never arrived; their samples are 0
     """
 
     samples: Array
@@ -43,12 +43,12 @@ def _unknown(size: int) -> Array:
 
 @dataclass(frozen=True)
 class LoggedPing(Ping):
-    """A ping, or a line of a scanning head, as it was recorded.
+    """A recorded ping, or a line of a scanning head.
 
     head                   its name in the configuration; in a .glf the number of the sonar
-    time_ns                when it was sent, since the Unix epoch
-    sonar_position_m       of the sonar in the world, (3,); not a number in a .glf, which has none
-    sonar_quaternion_xyzw  likewise; the real part last
+    time_ns                transmit time since the Unix epoch
+    sonar_position_m       position of the sonar in the world, (3,); NaN in a .glf, which has no poses
+    sonar_quaternion_xyzw  orientation of the sonar in the world, (4,), real part last; NaN in a .glf
     """
 
     head: str = ""

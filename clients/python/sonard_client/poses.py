@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Poses for sonard as messages of protocol/pose/pose.proto, written by hand so that no protobuf library is needed.
+"""Encodes and sends poses for sonard as messages of protocol/pose/pose.proto, without a protobuf library.
 
-Numbers of fields are those of pose.proto; the limits are those of sonard, which refuses what lies beyond them.
+Field numbers are those of pose.proto. The limits are sonard's, which rejects values beyond them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _MIN_NORM, _MAX_NORM = 1e-3, 1e3
 
 
 def _varint(value: int) -> bytes:
-    value &= (1 << 64) - 1  # protobuf writes negative numbers as their two's complement in 64 bits
+    value &= (1 << 64) - 1  # protobuf encodes negative numbers as their two's complement in 64 bits
     data = bytearray()
     while value > 0x7F:
         data.append(value & 0x7F | 0x80)
@@ -43,7 +43,7 @@ def _doubles(values: Sequence[float]) -> bytes:
 
 def _vector(name: str, values: Sequence[float], highest: float) -> bytes:
     numbers = [float(value) for value in values]
-    # Not a number is no more than anything.
+    # NaN fails every comparison.
     if len(numbers) != 3 or not all(abs(number) <= highest for number in numbers):
         raise ValueError(f"{name} is {numbers}, expected three numbers within {highest:g}")
     return _doubles(numbers)
@@ -61,18 +61,18 @@ def _quaternion(values: Sequence[float]) -> bytes:
 def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
                 linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
                 axes: str = "enu_flu") -> bytes:
-    """One PoseUpdate of the vehicle.
+    """Encodes one PoseUpdate of the vehicle.
 
-    time_ns          when the pose was true, on any clock of the publisher
+    time_ns          time of the pose, on any clock of the publisher
     position_m       of the vehicle's origin in the world
-    quaternion_xyzw  takes vectors from the vehicle's axes to the world's; it need not be of unit length
+    quaternion_xyzw  rotates vectors from the vehicle's axes to the world's; its norm need not be 1
     linear_mps, angular_radps
-                     velocities in the vehicle's axes. One alone: the other is 0. None of both: the pose holds until
-                     the next one
+                     velocities in the vehicle's axes. If only one is given, the other is 0. If both are missing, the pose
+                     holds until the next one
     axes             enu_flu: world x east, y north, z up, vehicle x forward, y to port, z up, as in ROS;
                      ned_frd: world x north, y east, z down, vehicle x forward, y to starboard, z down
 
-    Raises ValueError, which names the argument, where sonard would refuse a number.
+    Raises ValueError, which names the argument, if sonard would reject a number.
     """
     if not -_MAX_TIME_NS <= time_ns <= _MAX_TIME_NS:
         raise ValueError(f"time_ns is {time_ns}, expected a number within 4e18")
@@ -90,13 +90,13 @@ def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequ
 
 
 class PosePublisher:
-    """Sends poses to sonard. One thread at a time.
+    """Sends poses to sonard. Use it from one thread at a time.
 
-    host, port  where sonard listens: `poses.udp.bind` of its configuration, or `poses.tcp.bind`
+    host, port  address of sonard: `poses.udp.bind` of its configuration, or `poses.tcp.bind`
     tcp         connect by TCP. No pose is lost then, and in lock-step (`poses.clock: lock_step`) send() waits while
                 sonard still renders the pings of earlier poses
 
-    Raises OSError where nobody listens by TCP.
+    Raises OSError if nothing listens (TCP).
     """
 
     def __init__(self, host: str = "127.0.0.1", port: int = 14600, tcp: bool = False) -> None:
@@ -117,8 +117,8 @@ class PosePublisher:
     def send(self, time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
              linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
              axes: str = "enu_flu") -> None:
-        """One pose, as encode_pose() takes it; 20 a second or more. Raises OSError where the host has no address or
-        no route, and by TCP where sonard closed the connection; by UDP it is not known whether sonard listens."""
+        """Sends one pose (arguments of encode_pose()); send at least 20 per second. Raises OSError if the host has no
+        address or no route, and by TCP if sonard closed the connection. UDP does not report whether sonard listens."""
         message = encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes)
         if self._tcp:
             self._socket.sendall(_varint(len(message)) + message)
@@ -126,7 +126,7 @@ class PosePublisher:
             self._socket.sendto(message, self._receiver)
 
     def finish(self, timeout_s: Optional[float] = None) -> None:
-        """Ends the stream; by TCP waits until sonard has taken all poses. Raises TimeoutError."""
+        """Ends the stream; by TCP waits until sonard has read all poses. Raises TimeoutError."""
         if self._tcp:
             self._socket.shutdown(socket.SHUT_WR)
             self._socket.settimeout(timeout_s)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Both nodes: poses to sonard, and the pings of its head back. Each of their parameters is an argument.
+"""Starts both nodes: poses go to sonard, pings of its head come back. Each parameter of the nodes is an argument.
 
     ros2 launch sonard_ros2 sonard.launch.py topic:=/rov/odometry range_m:=30
 """
@@ -17,7 +17,7 @@ def _argument(parameter):
 
 
 def _value(parameter):
-    """A text stays one, even "1"; what else is given is a number, read as YAML."""
+    """Keeps a text parameter as text, even "1"; reads any other value as YAML."""
     value_type = str if isinstance(parameter.default, str) else None
     return ParameterValue(LaunchConfiguration(parameter.name), value_type=value_type)
 

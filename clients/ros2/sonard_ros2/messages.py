@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pings as messages of ROS 2. `stamp` and `frame_id` go into the header.
+"""Converts pings to ROS 2 messages. `stamp` and `frame_id` are for the header.
 
-Arrays go in as array.array, which the messages take over; what is no array they check number by number, and a ping has
-half a million.
+Arrays are passed as array.array, which messages take unchanged. Messages check the numbers of any other sequence one by
+one, and a ping has half a million.
 """
 
 import math
@@ -26,12 +26,12 @@ def _floats(numbers: Iterable[float]) -> "array[float]":
 
 
 def _little_endian(ping: Ping) -> "array[int]":
-    """Row after row."""
+    """The samples as little-endian bytes, row after row."""
     return array("B", ping.samples.astype(ping.samples.dtype.newbyteorder("<")).tobytes())
 
 
 def projected_sonar_image(ping: Ping, stamp: Time, frame_id: str, sound_speed_mps: float) -> ProjectedSonarImage:
-    """A ping of a Gemini in the frame that this message defines: z ahead, x up, y to starboard (beams_frame())."""
+    """A Gemini ping in the frame that ProjectedSonarImage defines: z ahead, x up, y to starboard (beams_frame())."""
     message = ProjectedSonarImage()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -46,13 +46,13 @@ def projected_sonar_image(ping: Ping, stamp: Time, frame_id: str, sound_speed_mp
     message.image.is_bigendian = False
     message.image.dtype = SonarImageData.DTYPE_UINT16 if ping.samples.itemsize == 2 else SonarImageData.DTYPE_UINT8
     message.image.beam_count = beams
-    message.image.data = _little_endian(ping)  # all beams of the nearest range, then those of the next
+    message.image.data = _little_endian(ping)  # all beams of the nearest range, then all beams of the next
     return message
 
 
 def beams_frame(stamp: Time, frame_id: str, beams_frame_id: str) -> TransformStamped:
-    """Where the frame of ProjectedSonarImage is in the head's frame of REP-103: half a turn about the line between x and
-    z, which exchanges these two."""
+    """The frame of ProjectedSonarImage in the head's frame of REP-103: half a turn about the line between x and z, which
+    exchanges x and z."""
     transform = TransformStamped()
     transform.header.stamp = stamp
     transform.header.frame_id = frame_id
@@ -63,7 +63,7 @@ def beams_frame(stamp: Time, frame_id: str, beams_frame_id: str) -> TransformSta
 
 
 def image(ping: Ping, stamp: Time, frame_id: str) -> Image:
-    """A row for each range, the nearest first; a column for each beam, port first."""
+    """An image with a row for each range, the nearest first, and a column for each beam, port first."""
     message = Image()
     message.header.stamp = stamp
     message.header.frame_id = frame_id
@@ -76,8 +76,8 @@ def image(ping: Ping, stamp: Time, frame_id: str) -> Image:
 
 
 def line_scan(line: Ping, stamp: Time, frame_id: str) -> LaserScan:
-    """A line of a scanning head. Every "ray" has the line's bearing, for angle_increment is 0: `ranges` are the middles of
-    the bins and `intensities` their samples, so that RViz shows each bin as a point where it is."""
+    """A line of a scanning head. All "rays" have the line's bearing, because angle_increment is 0. `ranges` are the middles
+    of the bins, and `intensities` are their samples, so RViz shows each bin as a point at its position."""
     message = LaserScan()
     message.header.stamp = stamp
     message.header.frame_id = frame_id

@@ -13,8 +13,8 @@ Value = Union[str, int, float]
 
 @dataclass(frozen=True)
 class Parameter:
-    """Numbers are within `lowest` to `highest`, texts one of `choices`, where these are given. The names of both nodes
-    differ, so that the arguments of one launch file can have them."""
+    """A parameter of a node. If given, `lowest` and `highest` limit a number, and `choices` a text. The two nodes use
+    different names, so that one launch file can have all of them as arguments."""
 
     name: str
     default: Value
@@ -24,7 +24,7 @@ class Parameter:
     choices: Sequence[Value] = ()
 
     def checked(self, value: Value) -> Value:
-        """The value, in the type of the default. Raises ValueError where it is none that is meant."""
+        """Returns the value in the type of the default. Raises ValueError if it is not allowed."""
         if self.choices and value not in self.choices:
             raise ValueError(f"parameter {self.name} is '{value}', expected {' or '.join(map(str, self.choices))}")
         if self.lowest is not None and self.highest is not None:
@@ -64,8 +64,8 @@ SONAR_BRIDGE = (
 
 
 def declare(node: Node, parameters: Sequence[Parameter]) -> SimpleNamespace:
-    """Their values, by name. They are read at the start alone, so ROS is told to refuse later changes. A whole number will
-    do for one with decimals. Raises ValueError."""
+    """Declares the parameters and returns their values by name. ROS must reject later changes, because they are read only
+    at the start. An integer is accepted for a float. Raises ValueError."""
     values = {}
     for parameter in parameters:
         descriptor = ParameterDescriptor(description=parameter.meaning, read_only=True,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node that passes the vehicle's pose on to sonard, from nav_msgs/Odometry, geometry_msgs/PoseStamped or tf2.
+"""A node that sends the vehicle's pose to sonard, from nav_msgs/Odometry, geometry_msgs/PoseStamped or tf2.
 
     ros2 run sonard_ros2 pose_bridge --ros-args -p source:=odometry -p topic:=/rov/odometry
 
-Numbers go as they are: sonard knows the axes of ROS, and the twist of Odometry is in the vehicle's own.
+Numbers are sent unchanged: sonard supports the axes of ROS, and the twist of Odometry is in the vehicle's axes.
 """
 
 from typing import Optional, Sequence, Tuple
@@ -29,19 +29,19 @@ def _nanoseconds(stamp: Stamp) -> int:
 
 
 def _xyz(vector) -> Tuple[float, float, float]:
-    """Of a Vector3 or a Point."""
+    """The components of a Vector3 or a Point."""
     return vector.x, vector.y, vector.z
 
 
 class PoseBridge(Node):
-    """Raises ValueError where a parameter (parameters.POSE_BRIDGE) is wrong."""
+    """Raises ValueError if a parameter (parameters.POSE_BRIDGE) is invalid."""
 
     def __init__(self) -> None:
         super().__init__("pose_bridge")
         self._options = parameters.declare(self, parameters.POSE_BRIDGE)
         self._poses = PosePublisher(self._options.host, self._options.port)
-        self._last_stamp_ns: Optional[int] = None  # of tf
-        # Best effort and short, which any publisher's quality of service goes with: an old pose is of no use.
+        self._last_stamp_ns: Optional[int] = None  # used for source tf
+        # Best effort with a short queue fits the quality of service of any publisher, and an old pose is useless.
         if self._options.source == "odometry":
             self.create_subscription(Odometry, self._options.topic, self._on_odometry, qos_profile_sensor_data)
         elif self._options.source == "pose":
@@ -76,7 +76,7 @@ class PoseBridge(Node):
             self._complain(str(error))
             return
         stamp_ns = _nanoseconds(found.header.stamp)
-        if stamp_ns != self._last_stamp_ns:  # tf may know nothing newer than the last time
+        if stamp_ns != self._last_stamp_ns:  # tf may have no newer transform than last time
             self._last_stamp_ns = stamp_ns
             self._send(found.header, _xyz(found.transform.translation), found.transform.rotation)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Start and end of a node, the same for both."""
+"""Start and end of both nodes."""
 
 import sys
 from typing import Callable
@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 
 def run(make_node: Callable[[], Node]) -> int:
-    """Until ROS is shut down. The exit code: 1 where a parameter is wrong."""
+    """Runs the node until ROS is shut down. Returns the exit code: 1 if a parameter is invalid."""
     rclpy.init()
     try:
         node = make_node()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node that is a client of one head, sonard's or a real one, and publishes its pings.
+"""A node that is a client of one head, emulated or real, and publishes its pings.
 
     ros2 run sonard_ros2 sonar_bridge --ros-args -p device:=gemini -p range_m:=20.0
 
-Pings of a Gemini are published on `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `image` (sensor_msgs/Image), lines
-of a Micron on `scan` (sensor_msgs/LaserScan).
+Pings of a Gemini are published on `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `image` (sensor_msgs/Image),
+lines of a Micron on `scan` (sensor_msgs/LaserScan).
 """
 
 import threading
@@ -21,14 +21,14 @@ from tf2_ros import StaticTransformBroadcaster
 from . import messages, parameters
 from .running import run
 
-_QUEUE = 5  # messages; reliable, which subscribers of either kind can be connected to
+_QUEUE = 5  # messages; reliable, which fits any subscriber
 _RETRY_S = 1.0
 _COMPLAINT_EVERY_S = 10.0
 _END_S = 1.0
 
 
 class SonarBridge(Node):
-    """A thread of its own talks to the head. Raises ValueError where a parameter (parameters.SONAR_BRIDGE) is wrong."""
+    """Its own thread talks to the head. Raises ValueError if a parameter (parameters.SONAR_BRIDGE) is invalid."""
 
     def __init__(self) -> None:
         super().__init__("sonar_bridge")
@@ -49,24 +49,24 @@ class SonarBridge(Node):
         self._thread.start()
 
     def destroy_node(self) -> None:
-        """A thread that waits for a silent head is left to the end of the process; it touches the node no more."""
+        """A thread that waits for a silent head ends with the process; it does not use the node any more."""
         self._ended.set()
         self._thread.join(_END_S)
         super().destroy_node()
 
     def _talk(self, talk) -> None:
-        """Again and again, for heads come and go."""
+        """Retries until the end, because heads may restart."""
         while self._running():
             try:
                 talk()
             except (NoHead, NoPing, OSError) as error:
                 self._complain(str(error))
-            except Exception:  # a fault of this program; without a word the node would seem to work
+            except Exception:  # a fault of this program; without this line, the node would seem to work
                 self._complain(traceback.format_exc())
             self._ended.wait(_RETRY_S)
 
     def _running(self) -> bool:
-        """Nothing may be published or logged any more once ROS has been shut down."""
+        """False after ROS was shut down, when nothing may be published or logged."""
         return not self._ended.is_set() and self.context.ok()
 
     def _complain(self, why: str) -> None:
@@ -100,8 +100,8 @@ class SonarBridge(Node):
             self.get_logger().info(f"pings of {head}")
 
     def _transmit_stamp(self, ping: Ping) -> Stamp:
-        """When the ping was sent, as far as a client knows: now, less the time that sound took to the last bin and back.
-        The time that the data took on the network is not known."""
+        """The transmit time as a client can estimate it: now, less the travel time of sound to the last bin and back. The
+        delay of the network is not known."""
         travel_ns = round(2e9 * float(ping.ranges_m[-1]) / self._options.sound_speed_mps)
         return Time(nanoseconds=max(0, self.get_clock().now().nanoseconds - travel_ns)).to_msg()
 
