@@ -8,7 +8,7 @@
 namespace sonard {
 
 std::string value_text(const std::string& type) {
-  constexpr std::size_t longest_limit = 6;  // 1e+06 and 2^53 say nothing to a reader
+  constexpr std::size_t longest_limit = 6;  // longer limits, like 1e+06 or 2^53, do not help a reader
   static const std::regex range(R"(in \[(\S+) - (\S+)\])");
   std::smatch found;
   if (const std::size_t brace = type.find('{'); brace != std::string::npos) {
@@ -27,11 +27,11 @@ std::string value_text(const std::string& type) {
 
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
   if (option->get_type_size() == 0) {
-    return "";  // a flag
+    return "";  // flags have no value
   }
   std::string text = " " + value_text(option->get_type_name());
   if (const std::string& value = option->get_default_str(); !value.empty()) {
-    text += value.starts_with('[') ? " " + value : " [" + value + "]";  // a list has brackets
+    text += value.starts_with('[') ? " " + value : " [" + value + "]";  // lists have brackets already
   }
   if (option->get_expected_min() > 1) {
     text += fmt::format(" x {}", option->get_expected_min());

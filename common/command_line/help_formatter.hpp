@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How `--help` names the values of an option.
+// Names of option values in `--help`.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace sonard {
 
-/// Prints "NUMBER", "0..100" or "{auto,gpu,cpu}" where CLI11 prints its own names of types and validators.
+/// Prints "NUMBER", "0..100" or "{auto,gpu,cpu}" instead of CLI11's names of types and validators.
 class HelpFormatter final : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override;
 };
 
-/// @param type what CLI11 calls the values: "FLOAT:FLOAT in [0 - 100]"
+/// Returns the name of an option's values. @param type CLI11's name: "FLOAT:FLOAT in [0 - 100]"
 std::string value_text(const std::string& type);
 
 }  // namespace sonard
