@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# sonard_build_info: a header, and a module of Python, with what --version prints. They are written anew when the commit has
-# changed, and only the files with main() include the header.
+# sonard_build_info: a header, and a Python module, with the text of --version. They are rewritten when the commit has
+# changed, and only files with main() include the header.
 set(SONARD_FEATURES "")
 if(GEOGRAPHICLIB_FOUND)
   list(APPEND SONARD_FEATURES GeographicLib)
@@ -20,4 +20,4 @@ install(FILES ${PROJECT_BINARY_DIR}/share/sonard/python/sonard_version.py DESTIN
 add_library(sonard_build_info INTERFACE)
 target_include_directories(sonard_build_info INTERFACE ${PROJECT_BINARY_DIR}/build_info)
 add_dependencies(sonard_build_info sonard_write_build_info)
-add_dependencies(sonard_pose_python sonard_write_build_info)  # roscast wants both modules
+add_dependencies(sonard_pose_python sonard_write_build_info)  # roscast needs both modules

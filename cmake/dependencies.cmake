@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every library that the project uses, found here once for all folders. docker/packages.txt has the packages, and
-# docs/platforms.md says what was built with which versions.
+# Finds all libraries of the project once, for all folders. docker/packages.txt lists the packages, and
+# docs/platforms.md the versions that were built.
 
 # ---- needed -----------------------------------------------------------------------------------------------------
 include(GNUInstallDirs)
@@ -26,17 +26,17 @@ pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 
-# Versions 3 and 4 differ in how rays are asked for; renderer/spatial_index knows both.
+# Versions 3 and 4 have different functions for rays; renderer/spatial_index supports both.
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)
 endif()
 
-# Debian keeps OpenCVConfig.cmake in libopencv-dev, which drags in the whole desktop; a few libraries are enough.
+# Debian has OpenCVConfig.cmake in libopencv-dev, which depends on desktop packages; a few libraries are enough.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 set(parts core imgproc features2d)
 if(SONARD_TESTS)
-  list(APPEND parts imgcodecs)  # reads what the programs write; it brings GDAL and a hundred libraries more
+  list(APPEND parts imgcodecs)  # tests read written files with it; it depends on GDAL and a hundred libraries more
 endif()
 foreach(part IN LISTS parts)
   find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
@@ -46,15 +46,15 @@ foreach(part IN LISTS parts)
     INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
 endforeach()
 
-# ---- optional: the daemon says the same when it is asked for what is missing --------------------------------------
+# ---- optional: the daemon prints a similar message if a missing library is needed ----------------------------------
 pkg_check_modules(GEOGRAPHICLIB QUIET IMPORTED_TARGET geographiclib)
 if(NOT GEOGRAPHICLIB_FOUND)
   message(STATUS "Without GeographicLib (libgeographiclib-dev): world.origin, maps at their place on Earth and "
                  "GLOBAL_POSITION_INT are refused")
 endif()
 
-# Gazebo's transport, newest first: numbers of transport and messages of one release. Until Fortress its headers and
-# namespaces were called ignition.
+# Gazebo's transport, newest first: version numbers of transport and messages of one release. Until Fortress, its
+# headers and namespaces were called ignition.
 foreach(release "gz;15;12" "gz;14;11" "gz;13;10" "gz;12;9" "ignition;11;8")
   list(GET release 0 name)
   list(GET release 1 transport)

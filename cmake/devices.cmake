@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# The kinds of device, one line each: the only place that names them all. A kind NAME has
+# The only list of the kinds of device, one per line. A kind NAME has
 #   protocol/NAME             library sonard_NAME: its bytes and its state machine
 #   server/devices/NAME       library sonard_device_NAME with `const DeviceKind& NAME_kind()` in kind.hpp
 #   clients/sonarview/NAME    library sonard_view_NAME with `const Subcommand& NAME_subcommand()` in subcommand.hpp
 #   clients/wireshark         NAME_fields.cpp with `std::string NAME_field_tables()`, and the dissector sonard_NAME.lua with
 #                             its sonard_NAME_fields.lua
-# docs/adding-a-device.md tells the way.
+# docs/adding-a-device.md explains how to add one.
 set(SONARD_DEVICES
   gemini
   micron

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DOUT=FILE -DFOLDER=FOLDER -DFILES=A;B -P embed_files.cmake: writes find_asset() of server/web/assets.hpp with
-# these files of the folder.
+# these files from the folder.
 set(types ".html=text/html" ".css=text/css" ".js=text/javascript" ".svg=image/svg+xml" ".json=application/json")
 set(arrays "")
 set(table "")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What makes memory errors harder to exploit, in every target (docs/security.md, "Builds"). Sanitizers replace it.
+# Compiler options that make memory errors harder to exploit, for all targets (docs/security.md, "Builds"). Sanitizers
+# replace them.
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
 include(CheckLinkerFlag)
@@ -10,8 +11,8 @@ if(NOT SONARD_HARDENING OR SONARD_SANITIZE)
   return()
 endif()
 
-# Compilers of most distributions make PIEs by default, of code that is faster than that of CMake's static libraries
-# for shared ones (-fPIC).
+# Compilers of most distributions make PIEs by default. Their code is faster than with -fPIC, which CMake uses for
+# static libraries.
 check_cxx_source_compiles("
   #ifndef __PIE__
   #error
@@ -30,7 +31,7 @@ foreach(flag -fstack-protector-strong -fcf-protection)
   endif()
 endforeach()
 
-# Level 3 also checks sizes that are known only when the program runs. It needs optimisation.
+# Level 3 also checks sizes that are known at run time only. It needs optimisation.
 check_cxx_source_compiles("
   #if !__has_builtin(__builtin_dynamic_object_size)
   #error

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The message module of poses for Python, which publishers import: ours, those of tests, and whoever has sonard installed.
+# The Python message module of poses for publishers: ours, test programs, and programs of users with an installed
+# sonard.
 
 set(SONARD_POSE_PYTHON ${PROJECT_BINARY_DIR}/share/sonard/python)
 add_custom_command(

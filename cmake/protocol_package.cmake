@@ -3,16 +3,16 @@
 include(CMakePackageConfigHelpers)
 
 # sonard_protocol_package(ROOMS...): each room's library is sonard::protocol_ROOM of the CMake package sonard-protocol,
-# and sonard-protocol-ROOM of pkg-config. What it needs is read from what its target links.
+# and sonard-protocol-ROOM of pkg-config. Its dependencies come from the links of its target.
 function(sonard_protocol_package)
   set(include_folder ${CMAKE_INSTALL_INCLUDEDIR}/sonard)
   set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sonard-protocol)
   set(component COMPONENT protocol EXCLUDE_FROM_ALL)
   set(rooms_of_package "")
-  # From the folder of a .pc file up to the prefix, so that the folder can be moved.
+  # From the folder of a .pc file to the prefix, so that the folder can be moved.
   file(RELATIVE_PATH PREFIX_FROM_PC /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
   string(REGEX REPLACE "/$" "" PREFIX_FROM_PC ${PREFIX_FROM_PC})
-  add_custom_target(sonard_protocol)  # builds all that is installed
+  add_custom_target(sonard_protocol)  # builds everything that is installed
 
   foreach(room IN LISTS ARGN)
     set(targets sonard_${room})

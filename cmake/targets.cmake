@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# How every target of this project is compiled. Third-party headers are included as SYSTEM.
+# Compiler options of all targets of this project. Third-party headers are included as SYSTEM.
 add_library(sonard_flags INTERFACE)
 target_include_directories(sonard_flags INTERFACE ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR})
 target_include_directories(sonard_flags SYSTEM INTERFACE ${PROJECT_SOURCE_DIR}/cmake/compile_once)
 target_compile_options(sonard_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Wformat=2 -Werror
-  # A multiply-add where the machine has one would make images depend on the machine (renderer/simd.hpp).
+  # With fused multiply-add, images would depend on the machine (renderer/simd.hpp).
   -ffp-contract=off
-  # Loops with a square root, or a choice between floats, can be vectorised so. No code asks for errno or traps of them.
+  # Allows vectorised loops with a square root or a choice between floats. No code uses errno or traps of them.
   -fno-math-errno -fno-trapping-math
   # GCC before 14 reports false positives of these in optimised standard library code.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized -Wno-error=array-bounds -Wno-error=stringop-overflow>)
@@ -17,16 +17,16 @@ if(SONARD_SIMD)
   target_compile_definitions(sonard_flags INTERFACE SONARD_SIMD_ONLY="${SONARD_SIMD}")
 endif()
 if(CMAKE_UNITY_BUILD)
-  # It takes a source that another one includes for a header, and what one source keeps to itself for a global of all,
-  # which clang's -Wshadow cannot leave out.
+  # In unity builds, GCC takes a source that another source includes for a header, and names local to one source for
+  # globals of all. clang's -Wshadow cannot exclude such names.
   target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage -Wshadow=local>)
 else()
   target_compile_options(sonard_flags INTERFACE -Wshadow)
 endif()
 if(SONARD_SANITIZE)
   target_compile_options(sonard_flags INTERFACE -fsanitize=${SONARD_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  # That check opens a pipe to see whether memory can be read, so it fails where no descriptor is left: a case the
-  # tests of the serial link try on purpose.
+  # This check opens a pipe to test whether memory is readable, so it fails if no descriptor is left. Tests of the
+  # serial link cause this on purpose.
   target_compile_options(sonard_flags INTERFACE -fno-sanitize=vptr)
   # GCC's thread sanitizer does not model the fences around Boost.Asio's handlers, which also synchronise by mutex.
   target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)
@@ -36,7 +36,7 @@ endif()
 # sonard_library(NAME SOURCES...) and sonard_program(NAME SOURCES...)
 function(sonard_library name)
   add_library(${name} STATIC ${ARGN})
-  # Who links an installed library has warnings of their own.
+  # Users of an installed library choose their own warnings.
   target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:sonard_flags>)
 endfunction()
 
@@ -53,8 +53,7 @@ function(sonard_fuzzed name)
 endfunction()
 
 # sonard_proto_library(NAME PROTO IMPORTED...): the generated code of PROTO.proto, a path in the source tree, and the
-# libraries of the files that it imports. It compiles under its own rules, so it stays apart and its header is a
-# SYSTEM one.
+# libraries of the files that it imports. It is a separate target without our warnings, and its header is SYSTEM.
 function(sonard_proto_library name proto)
   set(generated ${PROJECT_BINARY_DIR}/generated)
   add_custom_command(

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-# How every test of this project is registered. A label (unit, gl, system, deep, soak, logs, simulators, cluster) is a part of ./test; the target
-# LABEL_tests builds all that the tests of one label start.
+# Registers all tests of this project. A label (unit, gl, system, deep, soak, logs, simulators, cluster) is a part of
+# ./test. The target LABEL_tests builds all programs that the tests of this label start.
 
 foreach(label unit gl system deep soak logs simulators cluster)
   add_custom_target(${label}_tests)
 endforeach()
 
-# Debian's interpreter, which sees the Python packages of docker/packages.txt; the first in the path may be another one.
+# Debian's interpreter, which sees the Python packages of docker/packages.txt; the first in PATH may be another one.
 find_program(SONARD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(SONARD_PYTHON python3 REQUIRED)
 
-# Quicker to compile than -O2 by a quarter, and hardly slower to run: what takes its time lies in the libraries.
-# Sanitized, -O0 would save less of compiling than it takes to run.
+# Compiles in a quarter less time than -O2, and runs hardly slower, because most time is spent in the libraries. With
+# sanitizers, -O0 would save less compile time than it costs at run time.
 set(SONARD_TEST_OPTIMISATION -O1)
 
-# What all test programs include is compiled once for all of them. Sources name their headers all the same.
+# Compiles headers that all test programs include only once. Sources still include the headers that they use.
 file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp CONTENT "")
 add_library(sonard_test_pch OBJECT ${PROJECT_BINARY_DIR}/generated/test_pch.cpp)
 target_link_libraries(sonard_test_pch PRIVATE sonard_flags GTest::gmock)
@@ -24,7 +24,7 @@ target_precompile_headers(sonard_test_pch PRIVATE
   <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <numeric> <optional> <span>
   <string> <utility> <variant> <vector>)
 
-# sonard_patience(TEST): sanitized, it may take five times as long.
+# sonard_patience(TEST): with sanitizers, allows five times the time.
 function(sonard_patience test)
   if(SONARD_SANITIZE)
     get_test_property(${test} TIMEOUT seconds)
@@ -33,8 +33,8 @@ function(sonard_patience test)
   endif()
 endfunction()
 
-# sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program, which is one case of CTest: to start a process takes
-# longer than most of its cases.
+# sonard_test(NAME LABEL SOURCES... LIBS libs...): one test program as one case of CTest, because starting a process
+# takes longer than most of its cases.
 function(sonard_test name label)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBS")
   sonard_program(${name} ${arg_UNPARSED_ARGUMENTS})
@@ -48,8 +48,8 @@ function(sonard_test name label)
   sonard_patience(${name})
 endfunction()
 
-# sonard_python_cases(OUT SCRIPT): the cases of a script of unittest, each as Class.test_method, read from its text. A
-# case that is inherited from a class of another file is not seen.
+# sonard_python_cases(OUT SCRIPT): the cases of a unittest script, each as Class.test_method, read from its text. Cases
+# inherited from a class in another file are not found.
 function(sonard_python_cases out script)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${script})
   file(STRINGS ${script} lines REGEX "^(class [A-Za-z0-9_]+|    def test_[A-Za-z0-9_]+)")
@@ -66,9 +66,9 @@ endfunction()
 
 # sonard_python_test(PREFIX LABEL SCRIPT [WHOLE] [ARGUMENTS args...] [CASES | EXCEPT cases...] [DEPENDS targets...]
 #                    [PROPERTIES properties...])
-# A test in Python. Each of its cases, all or CASES or all EXCEPT some, is one case of CTest, so that a failure has a
-# name: PREFIX.Class.test_method, without the class where the script has but one. WHOLE makes it one case, PREFIX, where
-# starting it costs more than its cases. DEPENDS is what it starts.
+# A test in Python. Each case (all, or CASES, or all EXCEPT some) is one case of CTest, so that a failure has a name:
+# PREFIX.Class.test_method, without the class if the script has only one. WHOLE makes one case, PREFIX, for scripts
+# whose start takes longer than their cases. DEPENDS lists the programs that the test starts.
 function(sonard_python_test prefix label script)
   cmake_parse_arguments(PARSE_ARGV 3 arg "WHOLE" "" "ARGUMENTS;CASES;EXCEPT;DEPENDS;PROPERTIES")
   if(arg_UNPARSED_ARGUMENTS)
@@ -111,9 +111,9 @@ function(sonard_python_test prefix label script)
   endforeach()
 endfunction()
 
-# sonard_npm(NAME LABEL FOLDER FILES... [OPTIONS options...]): copies FILES into FOLDER of the build tree, where the test
-# NAME_npm_install installs the packages that their package-lock.json pins, from whatever registry npm is set up for.
-# Tests that need them say FIXTURES_REQUIRED NAME_node_modules.
+# sonard_npm(NAME LABEL FOLDER FILES... [OPTIONS options...]): copies FILES into FOLDER of the build tree. There, the
+# test NAME_npm_install installs the packages that their package-lock.json pins, from the registry that npm is
+# configured for. Tests that need the packages set FIXTURES_REQUIRED NAME_node_modules.
 function(sonard_npm name label folder)
   cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "OPTIONS")
   foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)

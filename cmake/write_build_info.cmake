@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Run at every build: -D SOURCE -D OUT -D PYTHON -D VERSION -D COMMIT -D FEATURES. Without git, as from a tarball, no commit is named.
+# Runs at each build: -D SOURCE -D OUT -D PYTHON -D VERSION -D COMMIT -D FEATURES. Without git, as in a tarball, the
+# text has no commit.
 if(NOT COMMIT)
   execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*
                   OUTPUT_VARIABLE COMMIT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comes before the header of fmt 9 of the same name, and adds one declaration: its formatting is in the
-// library. spdlog calls vformat_to(), which is a template, so that each file that logs compiled all of it
-// anew, for 3 s. g++ only: clang gives the function another name than the library, which g++ compiled.
+// Comes before the header of fmt 9 of the same name, and adds one declaration: the library contains the
+// formatting code. spdlog calls vformat_to(), a template, so without this each file that logs compiles it
+// again (3 s). g++ only: clang mangles the function's name differently from the library, which g++ compiled.
 #pragma once
 
 #include_next <fmt/format.h>
