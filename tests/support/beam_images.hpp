@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images whose every bin follows from a formula.
+// Images whose bins all follow from a formula.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace sonard::test {
 /// Echo between two azimuths (the smaller first) from ranges [r1, r2).
 using BeamEcho = std::function<double(double psi_from, double psi_to, double r1, double r2)>;
 
-/// `echo` for every bin of the ping. Called from several threads.
+/// Computes `echo` for each bin of the ping, on several threads.
 inline render::EchoImage image_of_beams(const render::SonarSettings& settings, const BeamEcho& echo) {
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   const render::RangeLines& range = settings.range;
@@ -38,7 +38,7 @@ inline render::EchoImage image_of_beams(const render::SonarSettings& settings, c
     helpers.emplace_back(fill_beams);
   }
   fill_beams();
-  helpers.clear();  // joins: the image is complete
+  helpers.clear();  // joins the threads; then the image is complete
   return image;
 }
 

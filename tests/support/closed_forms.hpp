@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Echoes that can be written down: the truth for tests of the renderer. Independent of renderer/: double
-// precision, no code shared. Formulas: docs/physics.md 3.2.
+// Echoes in closed form: the truth for tests of the renderer. Double precision, and no code shared with
+// renderer/. Formulas: docs/physics.md 3.2.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ inline double cos4_integral(double u) {
   return 3 * u / 8 + std::sin(2 * u) / 4 + std::sin(4 * u) / 32;
 }
 
-/// Integral of `density` over azimuth, midpoint rule: many nodes, since range lines make kinks.
+/// Integral of `density` over azimuth, by the midpoint rule with many nodes, because range lines make kinks.
 template <class Density>
 double azimuth_integral(Density density, double psi_from, double psi_to, int nodes) {
   const double step = (psi_to - psi_from) / nodes;
@@ -25,8 +25,8 @@ double azimuth_integral(Density density, double psi_from, double psi_to, int nod
   return sum;
 }
 
-/// A plane at perpendicular distance `distance_m`, unit normal (nx, ny, nz) pointing from the sonar to it, mu
-/// = 1, alpha = 0 (T1; T2 and T3 are its special cases).
+/// A plane at perpendicular distance `distance_m`, mu = 1, alpha = 0 (T1; T2 and T3 are its special cases).
+/// The unit normal (nx, ny, nz) points from the sonar to the plane.
 struct PlaneTruth {
   double distance_m, nx, ny, nz;
   double elevation_limit_rad;
@@ -36,12 +36,12 @@ struct PlaneTruth {
     return density(psi, r1, r2, -elevation_limit_rad, elevation_limit_rad);
   }
 
-  /// The same from elevations [theta_low, theta_high) alone, where other things hide the rest.
+  /// Echo per unit azimuth of the elevations [theta_low, theta_high) only, for planes that are partly hidden.
   double density(double psi, double r1, double r2, double theta_low, double theta_high) const {
     const double horizontal = nx * std::cos(psi) + ny * std::sin(psi);
     const double amplitude = std::hypot(horizontal, nz);
     const double centre = std::atan2(nz, horizontal);
-    // r = D / (A cos u), u = theta - centre: each range is at two elevations, one on either side of the foot
+    // r = D / (A cos u), u = theta - centre: each range has two elevations, one on each side of the foot
     // point.
     const double inner = u_of_range(amplitude, r1);
     const double outer = u_of_range(amplitude, r2);
@@ -82,8 +82,8 @@ inline double sphere_echo(double radius_m, double centre_m, double r1, double r2
   return std::acos(-1.0) / (2 * radius_m * centre_m) * (primitive(high) - primitive(low));
 }
 
-/// T5: an upright cylinder of radius a that fills the height of the fan, its axis at horizontal distance R0
-/// dead ahead. Echo per unit azimuth from ranges [r1, r2).
+/// T5: an upright cylinder of radius a that fills the height of the fan, with its axis straight ahead at
+/// horizontal distance R0. Echo per unit azimuth from ranges [r1, r2).
 inline double cylinder_density(double radius_m, double axis_m, double elevation_limit_rad, double psi,
                                double r1, double r2) {
   const double across = axis_m * std::sin(psi) / radius_m;
@@ -99,7 +99,7 @@ inline double cylinder_density(double radius_m, double axis_m, double elevation_
 }
 
 /// T7: a wide thin wall of height H across the axis at horizontal distance x, on a flat bed at depth h > H
-/// below an untilted sonar. The wall lies over the bed in front of it and hides the bed behind it.
+/// below a level sonar. The wall's echo overlaps the bed in front of it; the wall hides the bed behind it.
 struct ShadowTruth {
   double altitude_m, wall_height_m, wall_m, elevation_limit_rad;
 
@@ -116,7 +116,7 @@ struct ShadowTruth {
   }
 };
 
-/// Lambert's law and facets (docs/physics.md 2.4).
+/// Lambert's law plus facets (docs/physics.md 2.4).
 struct FacetLaw {
   double reflection;  ///< R
   double slope;       ///< m
@@ -130,18 +130,18 @@ struct FacetLaw {
     return lambert_mu * c2 +
            reflection * reflection / (8 * std::acos(-1.0) * m2 * c2 * c2) * std::exp(-tan2 / (2 * m2));
   }
-  /// What a surface echoes, relative to one of mu = 1.
+  /// Echo of a surface, relative to a surface with mu = 1.
   double relative(double cos_incidence) const {
     const double cosine = std::min(cos_incidence, 1.0);
     return cosine > 0 ? strength(cosine) / (cosine * cosine) : 0.0;
   }
 };
 
-/// Echo of ranges [r1, r2) of a surface that echoes a share which depends on the range alone, as where sound
-/// of one range meets it at one incidence.
-/// @param echo of ranges [from, to) without that share
-/// @param share of a range
-/// @param nearest_m the first range: shares are smooth in the root of what a range has beyond
+/// Echo of ranges [r1, r2), weighted with a share that depends on range only, because all sound of one range
+/// has the same incidence.
+/// @param echo echo of ranges [from, to) without the share
+/// @param share share at a range
+/// @param nearest_m the first range; shares are smooth in sqrt(range - nearest_m)
 template <class Echo, class Share>
 double weighted_echo(const Echo& echo, const Share& share, double nearest_m, double r1, double r2,
                      int steps) {

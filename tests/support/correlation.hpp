@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How alike two series of numbers are.
+// Correlation of two series of numbers.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace sonard::test {
 
-/// Pearson's coefficient. @param b as long as a
+/// Pearson's coefficient. @param b must be as long as `a`
 inline double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   double mean_a = 0, mean_b = 0, sum = 0, square_a = 0, square_b = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small trajectory to render with `sonard render`, and what lies in a folder of frames."""
+"""A small trajectory to render with `sonard render`, and the contents of a folder of frames."""
 
 import hashlib
 import pathlib
@@ -32,12 +32,12 @@ def sums(folder):
 
 
 def frames(folder):
-    """{name: (inode, time)} of the frames that are whole."""
+    """{name: (inode, time)} of the complete frames."""
     return {path.name: (path.stat().st_ino, path.stat().st_mtime_ns) for path in pathlib.Path(folder).glob("ping_*.json")}
 
 
 class Files(unittest.TestCase):
-    """Tests with a folder for each, which holds config.yaml and trajectory.csv."""
+    """Base of tests; each gets a folder with config.yaml and trajectory.csv."""
 
     RENDER = ["--rate", "10", "--range", "6", "--picture-every", "4"]
 
@@ -56,6 +56,6 @@ class Files(unittest.TestCase):
                 *(more or self.RENDER)]
 
     def render_whole(self, programs):
-        """By one process, into the folder `whole`: the truth for all others."""
+        """Renders with one process into the folder `whole`, as the truth for all other runs."""
         subprocess.run([programs / "sonard", "render", *self.arguments("whole")], check=True, capture_output=True, timeout=600)
         self.assertEqual(len(frames(self.folder / "whole")), FRAMES)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixture for tests of the image: each runs on every engine. On `gpu` they skip with a reason where there
-// is no OpenGL; with SONARD_REQUIRE_GL set, as in CI, they fail instead, so that coverage is never lost
-// silently. On `cpu` they always run.
+// Fixture for tests of images, which run on each engine. Without OpenGL, tests of `gpu` are skipped with a
+// reason; with SONARD_REQUIRE_GL set, as in CI, they fail, so that coverage is not lost silently. Tests of
+// `cpu` always run.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace sonard::test {
 
-/// Why engine `gpu` cannot run here; empty when it can.
+/// Why engine `gpu` cannot run here; empty if it can.
 inline const std::string& gl_problem() {
   static const std::string problem = [] {
     try {
@@ -29,7 +29,7 @@ inline const std::string& gl_problem() {
   return problem;
 }
 
-/// Begins a test, or the SetUp() of a fixture, that needs OpenGL.
+/// Call it first in a test, or in a fixture's SetUp(), that needs OpenGL.
 inline void require_gl() {
   if (gl_problem().empty()) {
     return;
@@ -48,7 +48,7 @@ class EngineTest : public ::testing::TestWithParam<render::EngineKind> {
     }
   }
 
-  /// For SonarRenderer.
+  /// Options for SonarRenderer.
   static render::RendererOptions options() { return {GetParam(), 0}; }
 };
 
@@ -66,7 +66,7 @@ inline render::Pose looking(const glm::dvec3& position_m, double yaw_deg, double
                           glm::angleAxis(glm::radians(down_deg), glm::dvec3(0, 1, 0))};
 }
 
-/// A body of one mesh, at the world's origin.
+/// A body with one mesh, at the world's origin.
 inline render::Body make_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 1.0) {
   render::BodyPart part;
   part.mesh = std::make_shared<const render::TriangleMesh>(std::move(mesh));

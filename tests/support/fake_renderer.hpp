@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A renderer without GL: the samples of a ping are a simple function of its number, so a test knows them.
+// A renderer without GL. The samples of a ping follow from its number by a simple formula that tests can use.
 #pragma once
 
 #include <atomic>
@@ -15,18 +15,19 @@
 
 namespace sonard::test {
 
-/// What a FakeRenderer was asked, and how it shall behave. Shared with the test; may be read while it runs.
+/// Records the requests to a FakeRenderer and sets its behaviour. Shared with the test, which may read it
+/// during a run.
 struct FakeRendererControl {
   /// Called before each ping on the render thread; may throw or block.
   std::function<void(const render::PingRequest&, int stream)> before_ping;
-  /// Called for each ping that nobody gets, on the render thread; may throw.
+  /// Called for each warm-up ping on the render thread; may throw.
   std::function<void(const render::PingRequest&, int stream)> warming_up;
-  std::string engine = "fake";  ///< PingRenderer::description(); to be changed on the render thread alone
-  /// Streams of the pings that came next, each time; to be read when the service has ended.
+  std::string engine = "fake";  ///< PingRenderer::description(); change it on the render thread only
+  /// Streams of each call of begin_pings(); read it only after the service has ended.
   std::vector<std::vector<int>> begun;
-  std::atomic<int> attempts{0};   ///< pings asked for
+  std::atomic<int> attempts{0};   ///< pings requested
   std::atomic<int> pings{0};      ///< pings rendered
-  std::atomic<int> forgotten{0};  ///< streams that were to be forgotten
+  std::atomic<int> forgotten{0};  ///< calls of forget()
   std::atomic<bool> destroyed{false};
 
   void record(const render::PingRequest& request) {
@@ -38,7 +39,7 @@ struct FakeRendererControl {
     bodies.push_back(name);
     body_poses[name] = T_world_body;
   }
-  /// Where a body was put last.
+  /// The last pose of a body.
   render::Pose pose_of_body(const std::string& name) const {
     const std::lock_guard lock(mutex);
     return body_poses.at(name);
@@ -59,7 +60,7 @@ struct FakeRendererControl {
   std::map<std::string, render::Pose> body_poses;
 };
 
-/// Sample at (line, beam) of a ping.
+/// The sample at (line, beam) of a ping.
 inline std::uint8_t fake_sample(std::uint64_t ping_number, int line, int beam) {
   return static_cast<std::uint8_t>(7 * ping_number + 3 * static_cast<std::uint64_t>(line) +
                                    static_cast<std::uint64_t>(beam));

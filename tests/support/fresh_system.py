@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Debian of this machine's release in a folder, from this machine's mirror. Needs root and debootstrap."""
+"""Creates a Debian of this machine's release in a folder, from this machine's mirror. Needs root and debootstrap."""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ import subprocess
 
 
 def make_fresh_system(root):
-    """Fills the folder `root`, with this machine's way to names and certificates."""
+    """Installs Debian in the folder `root`, with this machine's name resolution and certificates."""
     name = re.search("^VERSION_CODENAME=(.*)$", pathlib.Path("/etc/os-release").read_text(encoding="utf-8"), re.MULTILINE).group(1)
     subprocess.run(["debootstrap", "--variant=minbase", "--include=ca-certificates", name, root, apt_mirror(name)], check=True,
                    stdout=subprocess.DEVNULL)
@@ -19,7 +19,7 @@ def make_fresh_system(root):
 
 
 def apt_mirror(codename):
-    """The address from which this machine's apt takes Debian's main packages."""
+    """The address of Debian's main packages in this machine's apt."""
     listed = subprocess.run(["apt-get", "indextargets", "--format", "$(CODENAME) $(COMPONENT) $(REPO_URI)", "Created-By: Packages"],
                             check=True, capture_output=True, text=True).stdout
     for line in listed.splitlines():

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The images of a Gemini as a client has them: the head's job makes the settings, the head sends the samples,
-// and a topside puts the image together. No sockets: nothing is lost between them.
+// Images of a Gemini as a client receives them: the head's job gives the settings, the head sends the
+// samples, and a topside assembles the image. There are no sockets, so nothing is lost.
 #pragma once
 
 #include <chrono>
@@ -27,7 +27,7 @@ namespace sonard::test {
 struct GeminiImage {
   int lines = 0;
   double line_m = 0;
-  std::vector<double> codes;  ///< [line * gemini::beam_count + beam], of 8 or 16 bits
+  std::vector<double> codes;  ///< [line * gemini::beam_count + beam], 8 or 16 bits
 
   double at(int line, int beam) const {
     return codes[static_cast<std::size_t>(line * gemini::beam_count + beam)];
@@ -36,7 +36,7 @@ struct GeminiImage {
 
 class GeminiClient {
  public:
-  /// What stands for the renderer: from a request, with settings and the numbers of the ping, to samples.
+  /// Replaces the renderer: returns samples for a request with settings and the numbers of the ping.
   using Render = std::function<render::PingSamples(const render::PingRequest&)>;
 
   GeminiClient(server::HeadConfig head, const gemini::PingConfig& config, Render render)
@@ -118,7 +118,7 @@ class GeminiClient {
   double line_m_ = 0;
 };
 
-/// In place of a renderer: the receiver, and the same mean echo in every beam and line.
+/// Replaces the renderer by the receiver alone: all beams and lines have the same mean echo.
 class EvenEcho {
  public:
   explicit EvenEcho(float intensity) : intensity_(intensity) {}

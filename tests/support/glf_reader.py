@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads Tritech .glf and .dat logs, written from docs/logs.md without our C++ code: a second opinion on every byte.
+"""Reads Tritech .glf and .dat logs. Written from docs/logs.md without our C++ code, so that it checks each byte.
 
     log = glf_reader.read(path)    # a .glf, or the .dat of one
     log.images[0].pixels           # bytes, line after line
 
-Strict on purpose: whatever a log of ours never holds raises GlfError.
+The reader is strict: it raises GlfError for contents that our logs never have.
 """
 
 import dataclasses
@@ -27,7 +27,7 @@ def need(holds, what, offset):
 
 @dataclasses.dataclass
 class Header:
-    """21 bytes in front of every record (1.3)."""
+    """The 21 bytes before each record (1.3)."""
 
     offset: int
     length: int
@@ -38,18 +38,18 @@ class Header:
 
     @property
     def unix_s(self):
-        """For logs whose zone is UTC."""
+        """Unix time, for logs in UTC."""
         return self.time_s + SECONDS_1970_TO_1980
 
 
 @dataclasses.dataclass
 class Image:
-    """1.4"""
+    """An image record (1.4)."""
 
     header: Header
     lines: int
     beams: int
-    range_compression: int  # 2 to the power of this of the head's lines in one
+    range_compression: int  # one line has 2 to this power lines of the head
     compression: str
     data_size: int
     pixels: bytes
@@ -79,7 +79,7 @@ class Image:
 
 @dataclasses.dataclass
 class Status:
-    """1.5"""
+    """A status record (1.5)."""
 
     header: Header
     version: int
@@ -104,7 +104,7 @@ class Status:
 
 @dataclasses.dataclass
 class Log:
-    records: list  # Image and Status in the order of the file
+    records: list  # Image and Status, in file order
     creation_time_s: float | None = None
     close_time_s: float | None = None
     app_name: str | None = None
@@ -173,7 +173,7 @@ def _status(dat, header):
 
 
 def parse_dat(dat):
-    """All records of a closed .dat."""
+    """Returns all records of a closed .dat."""
     records = []
     offset = 0
     while dat[offset:] != b"\xde\xde":
@@ -185,7 +185,7 @@ def parse_dat(dat):
 
 
 def _check_container(raw, archive):
-    """What other readers insist on beyond what makes a ZIP (1.2)."""
+    """Checks requirements of other readers beyond a valid ZIP (1.2)."""
     names = [entry.filename for entry in archive.infolist()]
     need([name[-4:] for name in names] == [".cfg", ".dat"], f"entries are {names}", 0)
     for entry in archive.infolist():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes Tritech .glf and .dat logs, from docs/logs.md without our C++ code, for tests that read or play logs.
+"""Writes Tritech .glf and .dat logs for tests that read or play logs. Written from docs/logs.md without our C++ code.
 
     images = glf_writer.noise(count=20, lines=482, device_id=513)
     glf_writer.write_glf(path, images)
@@ -33,7 +33,7 @@ class Image:
 
 
 def noise(count, lines, device_id=513, start_s=1_479_651_753.25, interval_s=0.05, **settings):
-    """Images that differ in every byte, the same for the same arguments."""
+    """Images of random bytes; the same arguments give the same images."""
     draw = random.Random(f"{device_id} {count} {lines}")
     return [Image(start_s + number * interval_s, draw.randbytes(lines * settings.get("beams", 256)), lines,
                   device_id=device_id, **settings)
@@ -45,12 +45,12 @@ def _record(kind, image_time_s, device_id, body):
 
 
 def bearings_rad(beams):
-    """Those of a 720i (docs/protocols/gemini.md 6.5), from port, which is positive in a log, to starboard."""
+    """The bearings of a 720i (docs/protocols/gemini.md 6.5), from port (positive in a log) to starboard."""
     return [-math.asin((2 * beam + 1 - beams) / beams * math.sin(math.radians(60))) for beam in range(beams)]
 
 
 def image_record(image):
-    """1.4"""
+    """An image record (1.4)."""
     packed = zlib.compress(image.pixels, 1)
     raw = len(packed) >= len(image.pixels)
     data = image.pixels if raw else packed
@@ -62,7 +62,7 @@ def image_record(image):
 
 
 def status_record(time_s, device_id=513):
-    """1.5, with nothing in it."""
+    """A status record (1.5) without values."""
     return _record(3, time_s, device_id, struct.pack("<5H", 1, 0, 0, 0, device_id) + bytes(208))
 
 
@@ -76,7 +76,7 @@ def write_dat(path, images, statuses=()):
 
 
 def write_glf(path, images, statuses=()):
-    """1.2: stored blocks, which is what zlib makes at level 0."""
+    """A .glf (1.2) with stored blocks, as zlib makes them at level 0."""
     config = (f"<genesisLog><logHeader><creationTime>{images[0].time_s}</creationTime></logHeader><logTerminator>"
               f"<closeTime>{images[-1].time_s}</closeTime></logTerminator></genesisLog>")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=0) as archive:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a program lacks of the protections of docs/security.md ("Builds"), read from its file by readelf."""
+"""Reads with readelf which protections of docs/security.md ("Builds") a program lacks."""
 
 import platform
 import re
@@ -11,7 +11,7 @@ def readelf(*arguments):
 
 
 def missing_protections(program):
-    """Names of protections that the program does not have; empty if it has all."""
+    """Names of the missing protections; empty if the program has all."""
     header, dynamic = readelf("--file-header", program), readelf("--dynamic", program)
     segments, symbols = readelf("--program-headers", program), readelf("--dyn-syms", program)
     stack = re.search(r"^\s*GNU_STACK\s.*?\s([RWE]{1,3})\s", segments, re.MULTILINE)
@@ -29,8 +29,8 @@ def missing_protections(program):
 
 
 def has_landing_pads(program):
-    """Whether functions begin with ENDBR64 (-fcf-protection). The ELF note that says so needs start files of the
-    distribution that are compiled with it, too, and these hold fewer than ten."""
+    """Whether functions begin with ENDBR64 (-fcf-protection). The ELF note for this is no use, because it also requires
+    start files of the distribution with this option. These files have fewer than ten ENDBR64."""
     offset, size = re.search(r"\s\.text\s+PROGBITS\s+[0-9a-f]+\s+([0-9a-f]+)\s+([0-9a-f]+)", readelf("--section-headers", program)).groups()
     with open(program, "rb") as file:
         file.seek(int(offset, 16))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Looking into a head from a test.
+// Reads counters of a head in tests.
 #pragma once
 
 #include <algorithm>

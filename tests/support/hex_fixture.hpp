@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages as bytes, from the hexadecimal files in tests/data.
+// Loads messages as bytes from the hexadecimal files in tests/data.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@ namespace sonard::testing {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The bytes of tests/data/`folder`/`name`.hex. Throws std::runtime_error when there is no such file or it
-/// holds anything but hexadecimal bytes.
+/// The bytes of tests/data/`folder`/`name`.hex.
+/// @throws std::runtime_error if the file does not exist or holds other text than hexadecimal bytes
 Bytes load_hex_fixture(const std::string& folder, const std::string& name);
 
-/// Names of all fixtures of a folder, sorted.
+/// Names of all fixtures in a folder, sorted.
 std::vector<std::string> hex_fixture_names(const std::string& folder);
 
 }  // namespace sonard::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integrals of functions that are smooth but for kinks at known places.
+// Integrals of functions that are smooth except for kinks at known places.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace sonard::test {
 
-/// Integral of `density` over [from, to], smooth inside: midpoint rule in a variable that stands still at
-/// both ends, so that roots which start or end there become smooth.
+/// Integral of `density`, smooth inside [from, to], by the midpoint rule. The variable is substituted by one
+/// with zero slope at both ends, so that square roots that start or end there become smooth.
 template <class Density>
 double smooth_integral(const Density& density, double from, double to, int nodes = 32) {
   double sum = 0;
@@ -22,7 +22,7 @@ double smooth_integral(const Density& density, double from, double to, int nodes
   return sum * (to - from) / nodes;
 }
 
-/// The same with kinks: those inside (from, to) divide it, others and NaN are ignored.
+/// Integral of `density` with kinks: splits at the kinks inside (from, to), and ignores other values and NaN.
 template <class Density>
 double kinked_integral(const Density& density, double from, double to, const std::vector<double>& kinks) {
   std::vector<double> edges{from, to};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MAVLink frames as the guide describes them, made without our codec: a second opinion on every byte.
+// MAVLink frames by the MAVLink guide, made without our codec, so that they check each byte of it.
 #pragma once
 
 #include <algorithm>
@@ -13,22 +13,22 @@ namespace sonard::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// One step of the checksum, in the form that the guide ("CRC-16/MCRF4XX") gives as C: by halves of a byte,
-/// without a table.
+/// One step of the checksum, as the C code in the guide ("CRC-16/MCRF4XX"): by halves of a byte, without a
+/// table.
 inline std::uint16_t mavlink_crc(std::uint16_t crc, std::uint8_t byte) {
   std::uint8_t tmp = static_cast<std::uint8_t>(byte ^ (crc & 0xFFU));
   tmp = static_cast<std::uint8_t>(tmp ^ (tmp << 4U));
   return static_cast<std::uint16_t>((crc >> 8U) ^ (tmp << 8U) ^ (tmp << 3U) ^ (tmp >> 4U));
 }
 
-/// A field of a message definition: type, name, elements (0: no array).
+/// A field of a message definition: type, name, number of elements (0: no array).
 struct MavlinkField {
   std::string type;
   std::string name;
   int elements = 0;
 };
 
-/// CRC_EXTRA by the rule of the guide: the checksum of the name and the base fields in wire order, folded.
+/// CRC_EXTRA by the guide: the folded checksum of the name and the base fields in wire order.
 inline std::uint8_t mavlink_seed(const std::string& message, const std::vector<MavlinkField>& fields) {
   std::uint16_t crc = 0xFFFF;
   const auto add = [&](const std::string& text) {
@@ -48,7 +48,7 @@ inline std::uint8_t mavlink_seed(const std::string& message, const std::vector<M
 }
 
 template <class Value>
-void append(Bytes& bytes, Value value) {  // little-endian hosts only, as all of ours are
+void append(Bytes& bytes, Value value) {  // little-endian hosts only
   std::uint8_t raw[sizeof(Value)];
   std::memcpy(raw, &value, sizeof(Value));
   bytes.insert(bytes.end(), raw, raw + sizeof(Value));
@@ -67,13 +67,13 @@ inline Bytes operator+(Bytes front, const Bytes& back) {
   return front;
 }
 
-/// What a frame says beside its payload.
+/// The values of a frame beside its payload.
 struct MavlinkSender {
   int version = 2;
   std::uint8_t system_id = 1;
   std::uint8_t component_id = 1;
   std::uint8_t incompatible_flags = 0;
-  bool trims_zeros = true;  ///< of version 2 only
+  bool trims_zeros = true;  ///< for version 2 only
 };
 
 inline Bytes mavlink_frame(std::uint32_t id, std::uint8_t seed, Bytes payload,
@@ -118,7 +118,7 @@ inline Bytes position_frame(std::uint32_t time_boot_ms, float x, float y, float 
   return mavlink_frame(32, 185, payload + floats({x, y, z, 0, 0, 0}), sender);
 }
 
-/// At rest, heading north.
+/// A vehicle at rest, heading north.
 inline Bytes odometry_frame(std::uint64_t time_usec, float x, float y, float z, std::uint8_t frame_id = 1,
                             const MavlinkSender& sender = {}) {
   Bytes payload;

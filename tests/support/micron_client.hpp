@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of a Micron as a client has them, through the settings of a job, the receiver and the codec.
+// Lines of a Micron as a client receives them: through the settings of a job, the receiver and the codec.
 #pragma once
 
 #include <cmath>
@@ -16,15 +16,15 @@
 
 namespace sonard::test {
 
-/// The world is an even echo.
+/// A client in a world with the same echo everywhere.
 class MicronClient {
  public:
   explicit MicronClient(const server::HeadConfig& head, double bin_m = 0.05, int bin_count = 500)
       : gain_db(server::micron_config(head).nominal_gain_db), head_(head), bin_m_(bin_m), bins_(bin_count) {}
 
-  double gain_db;  ///< the client's: 80 dB are 100 %
+  double gain_db;  ///< of the client; 80 dB are 100 %
 
-  /// The next line, as decoded.
+  /// The next line, decoded.
   std::vector<std::uint8_t> line(float intensity, bool transmit = true, double bearing_rad = 0) {
     PingJob job;
     job.bearing_rad = bearing_rad;
@@ -59,7 +59,7 @@ class MicronClient {
 };
 
 inline double decibels_of(std::uint8_t code) {
-  return std::ceil(code * 160 / 255.0) / 2;  // code = floor(k 255 / 160), k half decibels
+  return std::ceil(code * 160 / 255.0) / 2;  // inverse of code = floor(k 255 / 160), k half decibels
 }
 
 }  // namespace sonard::test

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads captures of IPv4 packets, written from draft-ietf-opsawg-pcapng and RFC 791, 768, 9293: a second opinion.
+"""Reads captures of IPv4 packets. Written from draft-ietf-opsawg-pcapng and RFC 791, 768, 9293 without our C++ code.
 
     for packet in pcapng_reader.read(path): packet.interface, packet.time_ns, packet.payload ...
 
-Strict on purpose: whatever a capture of ours never holds raises PcapngError.
+The reader is strict: it raises PcapngError for contents that our captures never have.
 """
 
 import dataclasses
@@ -29,7 +29,7 @@ class Packet:
     source: tuple  # address, port
     target: tuple
     payload: bytes
-    sequence: int = 0  # of TCP
+    sequence: int = 0  # TCP only
     flags: int = 0
 
 

@@ -16,7 +16,7 @@
 namespace sonard::test {
 namespace {
 
-/// A file without a name that takes what the program writes; a pipe could fill up and block it.
+/// An unnamed file for the output of the program. A pipe could fill up and block the program.
 class Capture {
  public:
   Capture() : file_(std::tmpfile(), &std::fclose) {
@@ -52,7 +52,7 @@ pid_t start(const std::vector<std::string>& command, const Capture& out, const C
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&files, out.descriptor(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, err.descriptor(), STDERR_FILENO);
-  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);  // it gets no socket of the test's
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);  // no socket of the test is inherited
   pid_t pid = -1;
   const int error = posix_spawnp(&pid, arguments.front(), &files, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);

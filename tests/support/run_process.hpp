@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Running a program to its end, from a test.
+// Runs a program to its end, for tests.
 #pragma once
 
 #include <chrono>
@@ -9,14 +9,14 @@
 namespace sonard::test {
 
 struct ProcessResult {
-  int exit_code = -1;      ///< 128 + the signal when one ended it
-  bool timed_out = false;  ///< it was killed at the deadline
+  int exit_code = -1;      ///< 128 + the signal if a signal ended it
+  bool timed_out = false;  ///< killed at the deadline
   std::string out;
   std::string err;
 };
 
-/// Runs `command` (found along PATH), its input empty, and waits until it ends or the time is up.
-/// @throws std::system_error when it cannot be started
+/// Runs `command` (found in PATH) with empty input, and waits until it ends or the time is over.
+/// @throws std::system_error if it cannot be started
 ProcessResult run_process(const std::vector<std::string>& command,
                           std::chrono::milliseconds deadline = std::chrono::seconds{60});
 

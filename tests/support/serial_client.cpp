@@ -61,7 +61,7 @@ Client Client::tty(const std::string& path) {
 }
 
 bool Client::try_write(std::span<const std::uint8_t> bytes) const {
-  // A socket that the link has closed must fail the test, not kill it.
+  // A socket closed by the link must fail the test, not kill it with SIGPIPE.
   ssize_t written = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (written < 0 && errno == ENOTSOCK) {
     written = ::write(fd_, bytes.data(), bytes.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other end of a serial line, with nothing between it and the system calls.
+// The other end of a serial line, by plain system calls.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +14,11 @@ namespace sonard::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A descriptor that never blocks. Moves, and closes what it owns.
+/// Owns a non-blocking descriptor and closes it. Movable.
 class Client {
  public:
-  /// Connected, or an exception.
-  /// @param receive_buffer_bytes 0: as the kernel likes
+  /// Connects, or throws.
+  /// @param receive_buffer_bytes 0: the system's default
   static Client tcp(const Endpoint& to, Ipv4 from = 0x7F000001, int receive_buffer_bytes = 0);
   static Client udp(const Endpoint& to, Ipv4 from = 0x7F000001);
   static Client tty(const std::string& path);
@@ -28,19 +28,19 @@ class Client {
   Client& operator=(Client&&) = delete;
   ~Client() { close(); }
 
-  /// False when not all of it was taken.
+  /// Returns false if the system did not take all bytes.
   bool try_write(std::span<const std::uint8_t> bytes) const;
-  /// All of it, or a failure of the test.
+  /// Writes all bytes, or fails the test.
   void write(std::span<const std::uint8_t> bytes) const;
-  /// What one read() of up to 4096 bytes finds; empty when there is nothing, or nothing any more.
+  /// Bytes of one read() of up to 4096 bytes; empty if there are no bytes or the other end has closed.
   Bytes read_once() const;
-  /// What can be read now, added to what was read before.
+  /// Reads the available bytes and returns all bytes read so far by this function.
   const Bytes& heard();
-  /// True once the other end has closed the connection and all is read.
+  /// True if the other end has closed the connection and all bytes are read.
   bool closed_by_peer();
-  /// Bytes that wait to be read.
+  /// Number of bytes that can be read.
   std::size_t readable() const;
-  /// Our own address.
+  /// The local address.
   Endpoint endpoint() const;
   void close();
   /// Closes a TCP connection with a reset.

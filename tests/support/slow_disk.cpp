@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disk that takes SLOW_DISK_BYTES_PER_S, for a program that is started with this library in LD_PRELOAD: its
+// Simulates a disk with SLOW_DISK_BYTES_PER_S, for a program started with this library in LD_PRELOAD:
 // pwrite() returns late. The library prints a line when the program ends by exit().
 #include <sys/syscall.h>
 #include <unistd.h>

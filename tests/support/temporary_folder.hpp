@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder of its own that goes when the test ends.
+// A temporary folder that is deleted when the test ends.
 #pragma once
 
 #include <stdlib.h>
@@ -31,7 +31,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Names of the files in it that end so, sorted.
+  /// Names of the files in it with this suffix, sorted.
   std::vector<std::string> names(const std::string& suffix = "") const {
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) {

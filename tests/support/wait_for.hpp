@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Waiting with a deadline: a test that would hang fails instead.
+// Waits with a deadline, so that a test fails instead of hanging.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace sonard::test {
 
-/// True as soon as the condition holds, false when it does not within the time.
+/// Returns true as soon as the condition holds, false if it does not hold within the time.
 inline bool wait_for(const std::function<bool()>& condition,
                      std::chrono::milliseconds limit = std::chrono::seconds{10}) {
   const auto deadline = std::chrono::steady_clock::now() + limit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test without the rights of root, whom no mode of a file stops.
+// Runs a test without root's rights, because file modes do not restrict root.
 #pragma once
 
 #include <unistd.h>
@@ -8,7 +8,7 @@
 
 namespace sonard::test {
 
-/// While it lives, the process is the user nobody if it was root. Make and remove files outside of its life.
+/// During its lifetime, a root process is the user nobody. Create and delete files outside of it.
 class WithoutRights {
  public:
   WithoutRights() {
