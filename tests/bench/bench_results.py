@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the flat list that sonard_bench writes."""
+"""Reads the results that sonard_bench writes."""
 
 import collections
 import json
@@ -23,18 +23,18 @@ class Results:
         return sorted({engine for _, engine, _ in self.points})
 
     def of(self, scene, engine):
-        """{preset: {metric: value}} in the order they were measured."""
+        """{preset: {metric: value}} in the order of measurement."""
         return {p: values for (s, b, p), values in self.points.items() if (s, b) == (scene, engine)}
 
     def curve(self, scene, engine, start, x=None, y="bin_rms"):
-        """[(x, y, preset)] of the presets whose name starts with `start`, by growing x; of None: the time."""
+        """[(x, y, preset)] of the presets whose names start with `start`, sorted by x; x=None is the time."""
         x = x or self.time
         return sorted((values[x], values[y], preset) for preset, values in self.of(scene, engine).items()
                       if preset.startswith(start) and values.get(x, 0) > 0 and values.get(y, 0) > 0)
 
 
 def pareto(points):
-    """Those of [(x, y, ...)] that no other beats in both, by growing x."""
+    """The points [(x, y, ...)] that no other point beats in both x and y, sorted by x."""
     front = []
     for point in sorted(points):
         if not front or point[1] < front[-1][1]:

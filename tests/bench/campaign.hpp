@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A series of scenes measured on every engine there is.
+// Measures a series of scenes on all available engines.
 #pragma once
 
 #include <filesystem>
@@ -23,36 +23,36 @@ struct Reference;
 struct PlannedPoint {
   Point point;
   Repetition repetition;
-  std::optional<render::EngineKind> only = std::nullopt;  ///< where any engine gives the same answer
+  std::optional<render::EngineKind> only = std::nullopt;  ///< set if all engines give the same result
 };
 
-/// The whole receiver, timed at the default preset.
+/// The complete receiver, timed at the default preset.
 struct PlannedReceiver {
   int lines;
   std::string metric;
   Repetition repetition;
-  std::function<void(render::PhysicalModel&)> change = [](render::PhysicalModel&) {};  ///< of the default
+  std::function<void(render::PhysicalModel&)> change = [](render::PhysicalModel&) {};  ///< of defaults
 };
 
-/// What to measure in one scene.
+/// The measurements of one scene.
 struct Plan {
   std::vector<PlannedPoint> points;
   std::vector<PlannedReceiver> receivers;
-  std::optional<Repetition> reception = std::nullopt;  ///< of array and pulse, at preset `fast`
-  bool bodies_drift = false;                           ///< all bodies but the first, every ping
-  unsigned threads = 0;                                ///< as render::RendererOptions
+  std::optional<Repetition> reception = std::nullopt;  ///< array and pulse, at preset `fast`
+  bool bodies_drift = false;                           ///< all bodies except the first move before each ping
+  unsigned threads = 0;                                ///< as in render::RendererOptions
 };
 
 class Campaign {
  public:
   Campaign(std::vector<render::EngineKind> engines, std::filesystem::path references);
 
-  /// Measures `scene` on each engine, each in a renderer of its own. A line of progress for each point goes
-  /// to stderr, as does why a point or an engine was left out.
+  /// Measures `scene` on each engine, each in its own renderer. Prints a line of progress for each point to
+  /// stderr, and why a point or an engine was left out.
   void run(const test::Scene& scene, const Plan& plan);
 
   const Measurements& results() const { return results_; }
-  /// What each engine ran on, by its name; only engines that measured something.
+  /// The hardware of each engine that measured something, by the engine's name.
   const std::map<std::string, std::string>& descriptions() const { return descriptions_; }
 
  private:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What `sonard render` takes on one core and two, and what follows from it for many tasks: the figures of docs/cluster.md.
+"""Measures `sonard render` on one core and two, and estimates the cost of many tasks: the figures of docs/cluster.md.
 
     cluster_figures.py --programs DIR [--repeat N] [CONFIG TRAJECTORY]
 
-Each process is bound to a core, as on a cluster. Times are the least of several runs: whatever else runs only adds to them. For
-wall times the machine has to be idle, or the program to run before all others (chrt -f 1).
+Each process is bound to a core, as on a cluster. Times are minima of several runs, because other load can only add to
+them. For wall times, the machine must be idle, or the program must run before all others (chrt -f 1).
 """
 
 import argparse
@@ -24,7 +24,7 @@ FRAMES = (1_000, 10_000, 100_000)
 
 
 class Folder:
-    """A run of `sonard render` into one folder, without pictures unless told otherwise."""
+    """Runs of `sonard render` into one folder, without pictures by default."""
 
     def __init__(self, options, name, *more):
         more = more or ("--picture-every", "0")
@@ -53,7 +53,7 @@ class Folder:
         return time.monotonic() - began, cpu_s
 
     def run_shares(self, cores):
-        """A share to each core, at the same time. @return wall seconds, and processor seconds of all"""
+        """Renders one share per core, in parallel. @return wall seconds, and processor seconds of all"""
         began = time.monotonic()
         running = [self.start(core, "--shard", f"{number + 1}/{len(cores)}") for number, core in enumerate(cores)]
         cpu_s = sum(self.end(process) for process in running)
@@ -68,7 +68,8 @@ def size(files):
 
 
 def measure_pass(options, core):
-    """Of many frames one is rendered: the first, and then the last, with all others before it. @return seconds a frame"""
+    """Time of passing a frame of another share: renders the first frame only, then the last, which passes all others.
+    @return seconds per frame"""
     first, last = [], []
     for _ in range(options.repeat):
         run = Folder(options, "pass", "--picture-every", "0", "--rate", "500")
@@ -79,12 +80,12 @@ def measure_pass(options, core):
 
 
 def measure(options):
-    """Seconds of start, render (a frame), pass (a frame of another share), log (a frame), and bytes and rates."""
+    """Seconds for start, render (a frame), pass (a frame of another share), log (a frame), and bytes and rates."""
     one, two = Folder(options, "one"), Folder(options, "two")
     cores = sorted(os.sched_getaffinity(0))[:2]
     wall_of_one, wall_of_two, whole, shares = [], [], [], []
     for _ in range(options.repeat):
-        for folder in (one, two):  # the first frame is there, and with it the choice of an engine
+        for folder in (one, two):  # the first frame exists then, and the engine is chosen
             shutil.rmtree(folder.path, ignore_errors=True)
             folder.run(cores[0], *FIRST_FRAME)
         wall_s, cpu_s = one.run(cores[0])
@@ -115,7 +116,7 @@ def measure(options):
 
 
 def task_s(found, frames, tasks):
-    """Time of one of the tasks of a trajectory: it starts, renders its own frames, passes those of others."""
+    """Time of one of the tasks of a trajectory: it starts, renders its own frames, and passes the others."""
     own = frames / tasks
     return found["start_s"] + own * found["render_s"] + (frames - own) * found["pass_s"]
 

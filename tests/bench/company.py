@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the demo makes of this machine: pings a second as served, beside busy processes, and as rendered into files.
+"""Measures the demo on this machine: pings per second when served, beside busy processes, and rendered into files.
 
     company.py PROGRAMS [--seconds N]
 
-Serving: a client asks for a ping every 60 ms while 0, 1, 2 and 4 processes do nothing but count. `CPU pings/s` are
-pings per second of the daemon's CPU time; `fair` is its CPU time as a share of what a scheduler owes two threads.
-Rendering: `sonard render` of the same head and world, with and without pictures; `per core` is the rate of the whole
-machine over its cores, `/ served` that rate over the one of serving alone.
+Serving: a client requests a ping every 60 ms while 0, 1, 2 and 4 processes run empty loops. `CPU pings/s` are pings
+per second of the daemon's CPU time; `fair` is its CPU time relative to a fair scheduler's share for two threads.
+Rendering: `sonard render` of the same head and world, with and without pictures. `per core` is the rate of the whole
+machine divided by its cores, `/ served` this rate divided by the rate of serving alone.
 """
 
 import argparse
@@ -27,7 +27,7 @@ TRAJECTORY = os.path.join(SOURCE, "configs", "trajectories", "docking_demo.csv")
 CORES = os.cpu_count()
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 INTERVAL_MS = 60
-FRAMES_PER_S = 2  # of the trajectory; how fast they are made is another matter
+FRAMES_PER_S = 2  # of the trajectory, not of rendering
 
 
 def cpu_s(pid):
@@ -37,7 +37,7 @@ def cpu_s(pid):
 
 
 def serve(programs, seconds, busy):
-    """(pings a second, CPU seconds of the daemon a second)"""
+    """(pings per second, CPU seconds of the daemon per second)"""
     daemon = Program([f"{programs}/sonard", "run", CONFIG], "sonard")
     others = []
     try:
@@ -58,7 +58,7 @@ def serve(programs, seconds, busy):
 
 
 def render(programs, more):
-    """(frames a second without the start, CPU seconds a frame)"""
+    """(frames per second without the start, CPU seconds per frame)"""
     with tempfile.TemporaryDirectory() as folder:
         def timed(rate):
             out = os.path.join(folder, f"frames_{rate}")

@@ -30,8 +30,8 @@ constexpr Column cost_columns[] = {
 
 constexpr double tera = 1e12, giga = 1e9;
 
-// One addition a clock for every slice of the cache, and one triangle a clock for every group of processors
-// that draws: how many of these there are is known of few cards.
+// Assumes one addition per clock and cache slice, and one triangle per clock and group of drawing processors.
+// The numbers of slices and groups are published for few cards.
 std::vector<GpuCard> make_cards() {
   return {
       {"GeForce RTX 3060 12 GB", "RTX 3060/", 12.7 * tera, 12.7 * tera, 85.3 * giga, 5.3 * giga, 42.7 * giga,

@@ -17,11 +17,11 @@ namespace sonard::bench {
 namespace {
 
 constexpr Repetition in_turns{7, 31, 4.0};  // of both engines together
-// Mesh files are read in forked processes, which wants to happen before there are other threads.
+// `docking` comes first, because mesh files are read in forked processes before other threads exist.
 constexpr const char* report_scenes[] = {"docking",    "plane",      "flat100k", "swell100k",
                                          "ripple100k", "b3_cluster", "swell1m"};
 
-/// One engine in one scene.
+/// One engine in one scene, with its times.
 struct Turns {
   std::unique_ptr<render::SonarRenderer> renderer;
   Timing ping_ms{}, cpu_part_ms{};
@@ -70,7 +70,7 @@ std::string three_digits(std::optional<double> value, double scale = 1) {
   return value ? fmt::format("{:.3g}", scale * *value) : "-";
 }
 
-/// Those of engine `cpu`, which always runs.
+/// The subjects of engine `cpu`, which always runs.
 std::vector<Subject> rows_of(const Measurements& results) {
   std::vector<Subject> rows;
   for (const Measurement& measurement : results.all()) {
@@ -126,7 +126,7 @@ std::string work_table(const Measurements& results) {
   return text;
 }
 
-/// @param here the card is the one that was measured
+/// @param here whether the measurements ran on this card
 std::string prediction_table(const Measurements& results, const GpuCard& card, bool here) {
   std::string text =
       fmt::format("### {}\n\nPublished: {}. Assumed: {}.\n\n", card.name, card.source, card.assumed);
@@ -181,7 +181,7 @@ void measure_in_turns(const test::Scene& scene, const std::vector<Point>& points
       turns.ping_ms = turns.cpu_part_ms = {};
     }
     for (Turns& turns : engines) {
-      turns.ping(still, false);  // what stays on the GPU from ping to ping is then there
+      turns.ping(still, false);  // uploads the data that stays on the GPU between pings
     }
     const double start_s = now_s();
     for (int i = 0; repetition.wants_more(i, start_s); ++i) {

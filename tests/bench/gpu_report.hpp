@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both engines measured in turns, and one page with the times, the work of the GPU, and what cards would take
-// for it.
+// Measures both engines in turns, and writes a page with times, work of the GPU, and predicted times of
+// cards.
 #pragma once
 
 #include <filesystem>
@@ -15,26 +15,26 @@
 
 namespace sonard::bench {
 
-/// What a report is made of.
+/// The contents of a report.
 struct GpuReport {
   std::string machine;      ///< describe_machine()
-  std::string gpu;          ///< what engine `gpu` runs on: "gpu, vendor / renderer / version"
-  std::string gpu_problem;  ///< why there is no engine `gpu`; empty: there is one
+  std::string gpu;          ///< hardware of engine `gpu`: "gpu, vendor / renderer / version"
+  std::string gpu_problem;  ///< why engine `gpu` is not available; empty: it is
   Measurements results;
 };
 
-/// Adds a scene: pings of the one engine and of the other in turns, so that what else a machine does slows
-/// both. Without engine `gpu` that of `cpu` alone is measured.
-/// @param reference null: no errors
+/// Adds a scene. The engines render pings in turns, so that other load slows both. If engine `gpu` is not
+/// available, only `cpu` is measured.
+/// @param reference null: no errors are computed
 void measure_in_turns(const test::Scene& scene, const std::vector<Point>& points, const Reference* reference,
                       const Repetition& repetition, GpuReport& report);
 
-/// The scenes of the project's targets and three more, in `fast` and `default`. Takes minutes where OpenGL
-/// runs on two cores. A line of progress for each point goes to stderr.
-/// @param only scenes whose name starts with one of these; empty: all.
+/// Measures the scenes of the project's targets and three more, in `fast` and `default`. Takes minutes if
+/// OpenGL runs on two cores. Prints a line of progress for each point to stderr.
+/// @param only selects scenes whose names start with one of these; empty: all
 GpuReport make_gpu_report(const std::filesystem::path& references, const std::vector<std::string>& only);
 
-/// The page, in Markdown.
+/// The report as Markdown.
 std::string format_gpu_report(const GpuReport& report);
 
 }  // namespace sonard::bench

@@ -11,9 +11,9 @@ namespace sonard::bench {
 
 namespace {
 
-constexpr double loud = 1e-2;   // re the largest bin of the beam: what errors are counted on
+constexpr double loud = 1e-2;   // relative to the beam's maximum: errors are counted on bins above this
 constexpr double faint = 1e-6;  // -60 dB
-constexpr double hole = 1e-3;   // re the reference of the same bin
+constexpr double hole = 1e-3;   // relative to the reference of the same bin
 constexpr double trimmed_share = 0.01;
 
 using Beam = std::span<const float>;
@@ -27,7 +27,8 @@ double sum(Beam beam) {
   return std::accumulate(beam.begin(), beam.end(), 0.0);
 }
 
-/// In lines, from the sonar; the length of the beam when it never gets there.
+/// Range at which the summed echo reaches `level`, in lines from the sonar; the beam's length if it never
+/// does.
 double first_echo(Beam beam, double level) {
   double reached = 0;
   for (std::size_t k = 0; k < beam.size(); ++k) {
@@ -40,7 +41,7 @@ double first_echo(Beam beam, double level) {
   return static_cast<double>(beam.size());
 }
 
-/// In lines, from the sonar.
+/// Centroid of the echo, in lines from the sonar.
 double centroid(Beam beam) {
   double moment = 0;
   for (std::size_t k = 0; k < beam.size(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far an echo image is from the truth (docs/physics.md 3.3, docs/benchmark.md).
+// The error of an echo image (docs/physics.md 3.3, docs/benchmark.md).
 #pragma once
 
 #include <cstdint>
@@ -10,38 +10,38 @@
 
 namespace sonard::bench {
 
-/// Image against reference. Ratios are relative to the reference; "bins" are range lines.
+/// Errors of an image. Ratios are relative to the reference; "bins" are range lines.
 struct ImageError {
-  /// Root of the mean of (image / reference - 1)^2 over all bins whose reference is above 1e-2 of the largest
-  /// of its beam, all beams pooled.
+  /// Root of the mean of (image / reference - 1)^2 over all bins whose reference is above 1e-2 of their
+  /// beam's maximum, over all beams.
   double bin_rms = 0;
-  /// The same without the worst 1 % of those bins.
+  /// bin_rms without the worst 1 % of those bins.
   double bin_rms_trim = 0;
-  /// Worst beam: distance of the two first echoes. The first echo is the range at which the echo summed from
-  /// the sonar outwards, spread evenly inside a bin, reaches 1e-2 of the largest bin of the reference's beam.
+  /// Distance of the first echoes in the worst beam. The first echo is the range at which the summed echo,
+  /// spread evenly inside a bin, reaches 1e-2 of the largest bin of the reference's beam.
   double first_echo_bins = 0;
-  /// Share of the bins above 1e-2 (and above 1e-6) of the largest of their beam that are empty in the image:
-  /// below a thousandth of their reference.
+  /// Share of empty bins among the bins above 1e-2 (and above 1e-6) of their beam's maximum. A bin is empty
+  /// if it is below a thousandth of its reference.
   double hole_fraction = 0;
   double hole_fraction_60db = 0;
-  /// | sum of the beam / its reference - 1 |, of all beams that hear anything.
+  /// | sum of the beam / its reference - 1 |, over all beams with an echo.
   double beam_total_mean = 0;
   double beam_total_worst = 0;
-  std::uint64_t bins = 0;  ///< how many bins bin_rms is made of
+  std::uint64_t bins = 0;  ///< number of bins in bin_rms
 };
 
-/// Empty when the reference holds no echo at all. Both images have the same size.
-/// @throws std::invalid_argument when they have not.
+/// Compares images of the same size. nullopt if the reference has no echo.
+/// @throws std::invalid_argument if the sizes differ
 std::optional<ImageError> compare_images(const render::EchoImage& image, const render::EchoImage& reference);
 
-/// How far one beam is from the truth.
+/// The error of one beam.
 struct BeamError {
   double total = 0;             ///< | sum of the beam / its reference - 1 |
-  double centroid_lines = 0;    ///< distance of the two centroids
+  double centroid_lines = 0;    ///< distance of the centroids
   double first_echo_lines = 0;  ///< ImageError::first_echo_bins of this beam
 };
 
-/// Of each beam that receives anything. Both images have the same size.
+/// The errors of all beams with an echo. Both images must have the same size.
 std::vector<BeamError> compare_beams(const render::EchoImage& image, const render::EchoImage& reference);
 
 }  // namespace sonard::bench

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What each set of vector instructions is worth: one program for each, in turns on this machine.
+"""Measures the speed of each set of vector instructions: one program for each, in turns on this machine.
 
     instruction_sets.py [--rounds N] [--built]
 
-Builds sonard_bench with hot loops for sse2, avx2 and avx512f alone (-DSONARD_SIMD, folders build/simd-*), runs each with
---quick and prints the median of the rounds, and beside it the ratio to sse2. `sonard_bench --quick` itself ends with this
-table, of what is built by then. Images are the same to the bit whichever is taken: tests/images/image_checksums.py says
-so of any of these builds.
+Builds sonard_bench with hot loops for sse2, avx2 and avx512f only (-DSONARD_SIMD, folders build/simd-*), and runs each
+with --quick. Prints the median of the rounds and the ratio to sse2. `sonard_bench --quick` also ends with this table,
+for the existing builds. All sets give the same images to the bit: tests/images/image_checksums.py checks this for any of
+these builds.
 """
 
 import argparse

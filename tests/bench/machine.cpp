@@ -12,7 +12,7 @@ namespace sonard::bench {
 
 namespace {
 
-/// What follows the colon in the first line of `file` that starts with `key`.
+/// The text after the colon in the first line of `file` that starts with `key`.
 std::string value_in(const char* file, const std::string& key) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
@@ -32,7 +32,7 @@ std::string compiler() {
 #endif
 }
 
-/// The widest vectors that the processor names among its flags.
+/// The widest vector instructions in the processor's flags.
 std::string vector_units() {
   const std::string flags = value_in("/proc/cpuinfo", "flags") + " ";
   for (const char* unit : {"avx512f", "avx2", "avx", "sse4_2"}) {
@@ -43,7 +43,7 @@ std::string vector_units() {
   return "none known";
 }
 
-/// What the hot loops of this program were compiled for (renderer/simd.hpp).
+/// The vector instructions of the hot loops in this program (renderer/simd.hpp).
 std::string vectors_of_program() {
 #ifdef SONARD_SIMD_ONLY
   return SONARD_SIMD_ONLY " alone";

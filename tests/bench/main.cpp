@@ -50,7 +50,7 @@ void run_gpu_report(const Options& options) {
   }
 }
 
-/// Does not return: a script of tests/bench goes on in this process.
+/// Replaces this process by a script of tests/bench. Does not return.
 [[noreturn]] void go_on_as(const std::string& script, const std::string& argument) {
   std::fflush(stdout);
   execlp("python3", "python3", (SONARD_SOURCE_DIR "/tests/bench/" + script).c_str(), argument.c_str(),

@@ -38,7 +38,7 @@ std::string Measurements::to_json() const {
 }
 
 void write_text(const std::string& text, const std::filesystem::path& file) {
-  std::error_code ignored;  // a folder that cannot be made shows when the file is opened
+  std::error_code ignored;  // if creating the folder fails, opening the file reports it
   std::filesystem::create_directories(file.parent_path(), ignored);
   std::ofstream stream(file);
   stream << text;

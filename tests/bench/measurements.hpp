@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the benchmark found, as the flat list that other tools read.
+// The results of the benchmark, as a flat list that other tools read.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace sonard::bench {
 
-/// Which sonar in which world, seen by which engine, sampled how.
+/// The conditions of a measurement: sonar, world, engine and sampling.
 struct Subject {
   std::string scene;
   std::string engine;  ///< `gpu` or `cpu`
@@ -20,14 +20,14 @@ struct Subject {
 
 struct Measurement {
   Subject subject;
-  std::string metric;  ///< docs/benchmark.md lists them
+  std::string metric;  ///< listed in docs/benchmark.md
   double value;
   std::string unit;  ///< "ms", "1" for ratios, "bins", "count", "MiB"
 };
 
 class Measurements {
  public:
-  /// A value that is not finite was not measured: it is left out.
+  /// Adds a value. Values that are not finite were not measured and are left out.
   void add(const Subject& subject, const std::string& metric, double value, const std::string& unit);
 
   std::optional<double> find(const Subject& subject, const std::string& metric) const;
@@ -40,7 +40,7 @@ class Measurements {
   std::vector<Measurement> all_;
 };
 
-/// Both make the folder too. @throws std::runtime_error naming the file.
+/// Writes a file and creates its folder. @throws std::runtime_error that names the file
 void write_text(const std::string& text, const std::filesystem::path& file);
 void write_json(const Measurements& measurements, const std::filesystem::path& file);
 

@@ -11,7 +11,7 @@ namespace sonard::bench {
 
 namespace {
 
-/// Adds the azimuths in (from, to) at which n.(cos psi, sin psi, 0) is `horizontal`.
+/// Adds the azimuths in (from, to) at which n.(cos psi, sin psi, 0) equals `horizontal`.
 void add_azimuths(const test::PlaneTruth& plane, double horizontal, double from, double to,
                   std::vector<double>& kinks) {
   const double largest = std::hypot(plane.nx, plane.ny);
@@ -29,7 +29,7 @@ void add_azimuths(const test::PlaneTruth& plane, double horizontal, double from,
   }
 }
 
-/// Azimuths at which range r is that of the foot point, or of the plane on an elevation limit.
+/// Azimuths at which range r meets the foot point, or the plane on an elevation limit.
 void add_kinks(const test::PlaneTruth& plane, double r, double from, double to, std::vector<double>& kinks) {
   const double ratio = plane.distance_m / r;
   if (ratio >= std::abs(plane.nz)) {

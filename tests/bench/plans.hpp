@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the benchmark measures: the plan of each of its two modes.
+// The measurements of the two modes of the benchmark.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace sonard::bench {
 
-/// What the targets need, in less than a minute (docs/benchmark.md).
+/// Measures the project's targets, in less than a minute (docs/benchmark.md).
 void run_quick(Campaign& campaign);
 
-/// Every scene, the ladders of sampling, and how time grows with triangles, beams, bins and cores. Only
-/// scenes whose name starts with one of `only`, all when it is empty. Takes a quarter of an hour on two
-/// cores.
+/// Measures all scenes, the ladders of sampling, and the growth of time with triangles, beams, bins and
+/// cores. Takes a quarter of an hour on two cores.
+/// @param only selects scenes whose names start with one of these; empty: all
 void run_sweep(Campaign& campaign, const std::vector<std::string>& only);
 
 }  // namespace sonard::bench

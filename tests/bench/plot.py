@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws error against time, and time against size, from what sonard_bench wrote.
+"""Draws error against time, and time against size, from results of sonard_bench.
 
   tests/bench/plot.py out/bench.json docs/images/benchmark
 """
@@ -16,7 +16,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of engine)
 
 from bench_results import Results, pareto  # noqa: E402
 
-COLOURS = {"cpu": "#0b6fb8", "gpu": "#c2570c"}  # told apart by colour-blind readers too
+COLOURS = {"cpu": "#0b6fb8", "gpu": "#c2570c"}  # also distinct for colour-blind readers
 PRESETS = {"fast": "v", "default": "s", "reference": "D"}
 SEABED = ["plane", "flat100k", "swell100k", "ripple100k", "swell1m", "docking"]
 SCANNING = ["msis_swell", "msis_ripple"]
@@ -33,7 +33,7 @@ def draw_engine(axes, results, scene, engine):
     axes.plot([p[0] for p in points], [p[1] for p in points], "x--", color=colour, ms=5, lw=0.8, alpha=0.55,
               label=f"{engine}: points, no footprint")
     presets = [p for name in PRESETS for p in results.curve(scene, engine, name) if p[2] == name]
-    for x, y, name in presets:  # named in the legend: beside the marks, names would print over each other
+    for x, y, name in presets:  # named in the legend, because names beside the marks would overlap
         axes.plot(x, y, PRESETS[name], color=colour, ms=8, mec="black", mew=0.6, label=f"{engine}: {name}")
     front = pareto(grid + presets)
     axes.plot([p[0] for p in front], [p[1] for p in front], "-", color=colour, lw=1.4, label=f"{engine}: best")
@@ -49,7 +49,7 @@ def draw_scene(axes, results, scene):
 
 
 def draw_fronts(results, scenes, path):
-    """One panel a scene that has a reference; nothing where none has."""
+    """One panel for each scene with a reference; draws nothing if no scene has one."""
     scenes = [s for s in scenes if any("bin_rms" in v for b in results.engines() for v in results.of(s, b).values())]
     if not scenes:
         return
@@ -69,7 +69,7 @@ def draw_fronts(results, scenes, path):
 
 
 def add_legend(figure, axes, columns):
-    """Below all panels, on a strip of the figure that is kept free for its lines."""
+    """Adds a legend below all panels, on a free strip of the figure."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=columns, fontsize=8, frameon=False)
     strip_in = 0.15 + LEGEND_LINE_IN * -(-len(labels) // columns)
@@ -77,7 +77,7 @@ def add_legend(figure, axes, columns):
 
 
 def draw_growth(results, path):
-    """Time of each preset against what grows, log-log; scenes are named NAME@WHAT=VALUE."""
+    """Time of each preset against size, log-log; scenes are named NAME@WHAT=VALUE."""
     families = {}
     for scene in results.scenes():
         match = re.fullmatch(r".*@(\w+)=(.*)", scene)
@@ -94,7 +94,7 @@ def draw_growth(results, path):
                 axes.plot([p[0] for p in line], [p[1] for p in line], marker + "-", color=COLOURS[engine], ms=4,
                           lw=1, label=f"{engine} {preset}" if line else None)
         axes.set(xscale="log", yscale="log", xlabel=SIZES.get(what, what))
-        if what == "cores":  # too few for a logarithmic axis to label
+        if what == "cores":  # too few values for the labels of a logarithmic axis
             axes.set(xscale="linear", xticks=[x for x, _ in sorted(members)])
         axes.grid(True, which="major", lw=0.3)
     panels[0, 0].set_ylabel("ms per ping")

@@ -8,9 +8,9 @@ namespace sonard::bench {
 
 namespace {
 
-constexpr double wide_fan_rad = 1.0;  // one planar view would waste samples at its sides
+constexpr double wide_fan_rad = 1.0;  // in wider fans, one planar view would waste samples at its sides
 
-/// Views of equal angle hold columns of equal tangent: C a beam is their mean.
+/// Views of equal angle have columns of equal tangent, so C columns per beam is a mean.
 render::Sampling grid(const render::Aperture& aperture, int columns_per_beam, int rows) {
   render::Sampling sampling;
   sampling.preset = render::Sampling::Preset::grid;

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""The table of what presets promise and keep, and the picture of time against error, from what tune_presets wrote.
+"""Prints a table of errors promised and kept by presets, or draws time against error, from output of tune_presets.
 
   tests/bench/presets.py out/presets.json                                prints the table
   tests/bench/presets.py out/drawn.json --picture docs/images/benchmark/presets.png
@@ -13,7 +13,7 @@ import math
 
 from bench_results import pareto
 
-# What a preset promises over all scenes and poses; of beams: what 99 % of them keep.
+# The promises of each preset for all scenes and poses. A promise for beams covers 99 % of them.
 PROMISES = {"fast": {"bin_rms": 0.05, "total_p99": 0.01, "centroid_lines_p99": 2.0, "first_echo_lines_p99": 1.0,
                      "holes": 1e-3},
             "default": {"bin_rms": 0.01, "total_p99": 0.002, "centroid_lines_p99": 0.25, "first_echo_lines_p99": 0.5,
@@ -36,7 +36,7 @@ def text_of(value):
 
 
 def print_table(sets):
-    """Each scene as `fast / default`, then the worst of all, then the promise."""
+    """Prints each scene as `fast / default`, then the worst of all, then the promise."""
     print("| scene | " + " | ".join(name for name, _ in COLUMNS.values()) + " |")
     print("|---" * (len(COLUMNS) + 1) + "|")
     rows = {f"`{scene}`": [sets[name][scene] for name in PROMISES] for scene in sets["fast"]}
@@ -48,7 +48,7 @@ def print_table(sets):
 
 
 def broken(sets):
-    """Lines on promises that a preset did not keep."""
+    """Lines about broken promises."""
     for name, promise in PROMISES.items():
         for scene, row in sets[name].items():
             for key, limit in promise.items():

@@ -9,11 +9,11 @@ namespace sonard::bench {
 namespace {
 
 constexpr Repetition some{7, 201, 0.2};
-constexpr Repetition many{50, 1000, 0.3};  // pings of some ten microseconds
+constexpr Repetition many{50, 1000, 0.3};  // for pings of some ten microseconds
 constexpr Repetition few{2, 3, 0.3};
 
-/// `reference` takes long and has no target: one scene shows what it costs. The targets are those of `cpu`;
-/// `gpu` is there for comparison, where a ping of it takes less than a second.
+/// `reference` is slow and has no target, so only one scene measures it. Targets are for `cpu`. `gpu` is
+/// measured for comparison if a ping takes less than a second.
 Plan presets(const std::string& scene, const Repetition& repetition) {
   Plan plan;
   for (const Point& point : preset_points()) {
@@ -30,14 +30,14 @@ Plan presets(const std::string& scene, const Repetition& repetition) {
   return plan;
 }
 
-/// Point binning at growing numbers of samples.
+/// Adds point binning with increasing numbers of samples.
 void add_point_ladder(Plan& plan) {
   for (const auto& [columns, rows] : {std::pair{4, 512}, {8, 1024}, {16, 2048}}) {
     plan.points.push_back({point_binning(columns, rows), few, render::EngineKind::cpu});
   }
 }
 
-/// The chain at the lengths of 8, 20 and 50 m, and at the first without one of its effects or with one more.
+/// The receiver at ranges of 8, 20 and 50 m, and at 8 m with one effect less or one more.
 std::vector<PlannedReceiver> receivers() {
   using render::PhysicalModel;
   return {
@@ -60,7 +60,7 @@ std::vector<PlannedReceiver> receivers() {
       {1000, "receiver_with_ring_down_ms", many, [](PhysicalModel& model) { model.ring_down.on = true; }}};
 }
 
-/// What configs/demo-oculus.yaml asks for: 512 beams over 130 degrees, 20 m in 1165 rows.
+/// The settings of configs/demo-oculus.yaml: 512 beams over 130 degrees, 20 m in 1165 rows.
 test::Scene with_512_beams(test::Scene scene) {
   scene.name += "@beams=512";
   scene.settings.aperture.beam_edges_rad = render::equal_sine_edges(512, 65 * std::numbers::pi / 180);
@@ -88,7 +88,7 @@ void run_quick(Campaign& campaign) {
     }
     campaign.run(scene, plan);
   }
-  Plan demo;  // its world and first pose; a ping of `gpu` takes seconds
+  Plan demo;  // the world and first pose of the demo; a ping of `gpu` takes seconds
   for (const Point& point : preset_points()) {
     if (point.name != "reference") {
       demo.points.push_back({point, some, render::EngineKind::cpu});

@@ -56,7 +56,7 @@ class ScratchFolder {
   fs::path path_;
 };
 
-/// A ping as a head sends and records it: how well it can be compressed decides what a .glf costs.
+/// A ping as a head sends and records it. How well it compresses decides the cost of a .glf.
 struct Ping {
   gemini::EncodedPing encoded;
   PingRecord record;
@@ -74,10 +74,10 @@ Ping make_ping() {
   return {{head, 0, image}, gemini::record_of(head, image)};
 }
 
-/// All that a head tells the recorder of one ping.
+/// All events of one ping that a head sends to the recorder.
 struct PingEvents {
   server::PingSent sent;
-  std::vector<server::WirePassed> batches;  ///< as a head sends them
+  std::vector<server::WirePassed> batches;  ///< grouped as a head sends them
 
   PingEvents(const Ping& ping, std::uint64_t number, TimePoint time)
       : sent{ping.record, std::make_shared<const server::PosesUsed>(server::PosesUsed{time, {}, {}, {}})} {
@@ -105,7 +105,7 @@ server::RecordingConfig config_of(const fs::path& folder, const std::string& for
   return config;
 }
 
-/// What the serving thread does for a ping, while the recorder works.
+/// Times the work of the serving thread for a ping, while the recorder works.
 Timing time_serving(const Ping& ping) {
   const ScratchFolder folder;
   const server::SteadyClock clock;
@@ -126,15 +126,15 @@ Timing time_serving(const Ping& ping) {
   return timing;
 }
 
-/// Seconds of processor time of this thread: the recorder's runs at a low priority, so that its wall time
-/// says more about its neighbours.
+/// Processor time of this thread in seconds. The recorder's thread has a low priority, so its wall time
+/// depends on other programs.
 double cpu_s() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// What the recorder's thread does for a ping: encodes, compresses and hands to the kernel.
+/// Times the work of the recorder's thread for a ping: encode, compress and write.
 Timing time_writing(const Ping& ping, const std::string& formats) {
   const ScratchFolder folder;
   const server::RecordingConfig config = config_of(folder.path(), formats);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What recording takes of a ping, on the thread that serves and on the recorder's.
+// Measures the cost of recording a ping, on the serving thread and on the recorder's thread.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace sonard::bench {
 
-/// Pings of 256 x 1000 bins, with noise, into files of each format alone and of all together, in a folder for
-/// temporary files. Scene `recording`, presets `glf`, `mcap`, `pcapng` and `all_formats` (docs/benchmark.md).
+/// Records pings of 256 x 1000 bins with noise, in each format alone and in all together, in a temporary
+/// folder. Scene `recording`, presets `glf`, `mcap`, `pcapng` and `all_formats` (docs/benchmark.md).
 void measure_recording(Measurements& results);
 
-/// One line for people.
+/// A summary in one line.
 std::string describe_recording(const Measurements& results);
 
 }  // namespace sonard::bench

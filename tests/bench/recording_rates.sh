@@ -1,8 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# What recording costs: pings per second of one configuration without it and with it, in turns, on loopback.
+# Measures the cost of recording: pings per second of a configuration with and without it, in turns, on
+# loopback.
 #   recording_rates.sh PROGRAMS CONFIG [SECONDS] [ROUNDS] [SONARVIEW OPTIONS...]
-# CONFIG has a section `recording`, as configs/recording.yaml has; without recording it is run with that section left out.
+# CONFIG has a section `recording`, as configs/recording.yaml has; runs without recording leave this section
+# out.
 set -euo pipefail
 programs=$1 config=$2 seconds=${3:-10} rounds=${4:-3}
 shift $(($# < 4 ? $# : 4))

@@ -26,7 +26,7 @@ constexpr std::array<char, 8> npy_magic{'\x93', 'N', 'U', 'M', 'P', 'Y', 1, 0};
   throw std::runtime_error(file.string() + ": " + reason);
 }
 
-/// The Python dictionary that describes the array.
+/// Reads the Python dictionary that describes the array.
 std::string npy_header(std::ifstream& stream, const std::filesystem::path& file) {
   std::array<char, 10> start{};
   if (!stream.read(start.data(), start.size()) ||
@@ -88,7 +88,7 @@ std::optional<Reference> find_reference(const test::Scene& scene, const std::fil
   std::filesystem::path description = file;
   description.replace_extension(".json");
   if (std::filesystem::exists(description)) {
-    const YAML::Node error = YAML::LoadFile(description.string())["error_rms"];  // JSON is YAML
+    const YAML::Node error = YAML::LoadFile(description.string())["error_rms"];  // YAML includes JSON
     if (error) {
       reference.error_rms = error.as<double>();
     }

@@ -99,7 +99,7 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
   return stages;
 }
 
-/// @param ping 0: where the bodies are to begin with.
+/// @param ping 0: initial poses of the bodies
 void SceneRun::drift(int ping) {
   for (std::size_t i = 1; bodies_drift_ && i < scene_.world.bodies.size(); ++i) {
     const render::Body& body = scene_.world.bodies[i];
@@ -107,7 +107,7 @@ void SceneRun::drift(int ping) {
   }
 }
 
-/// @pre the last ping was this very request.
+/// @pre The last ping was this request.
 Timing SceneRun::time_unchanged(const render::PingRequest& request, const Repetition& repetition) {
   Timing unchanged_ms;
   const double start_s = now_s();
@@ -195,7 +195,7 @@ void add_errors(Measurements& results, const Subject& subject, const Point& poin
                 const render::EchoImage& image, const Reference& reference) {
   const std::optional<ImageError> error = compare_images(image, reference.image);
   if (!error) {
-    return;  // nothing is heard
+    return;  // there is no echo
   }
   results.add(subject, "hole_fraction", error->hole_fraction, "1");
   results.add(subject, "hole_fraction_60db", error->hole_fraction_60db, "1");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One scene in one renderer, measured at points.
+// Measures one scene in one renderer at several points.
 #pragma once
 
 #include <functional>
@@ -15,36 +15,34 @@
 
 namespace sonard::bench {
 
-/// Gives a request the pose of timed ping `i`, always another one than before.
+/// Sets the pose of timed ping `i`, which differs from the previous one.
 void move_to_timed_pose(render::PingRequest& request, const render::Pose& start, int i);
 
-/// Adds how far an image is from the truth.
+/// Adds the errors of an image.
 void add_errors(Measurements& results, const Subject& subject, const Point& point,
                 const render::EchoImage& image, const Reference& reference);
 
-/// Holds the renderer of a scene. Everything it finds is added to `results`, named after the scene, the
-/// engine and the point. Timed pings stand a millimetre apart, so that none can reuse another; the error is
-/// that of the scene's own pose.
+/// Holds the renderer of a scene. Adds all results to `results`, named after scene, engine and point. Timed
+/// pings are a millimetre apart, so that no ping can reuse another. Errors are for the scene's own pose.
 class SceneRun {
  public:
-  /// @param bodies_drift all bodies of the world but the first move before every timed ping, which is part of
-  /// its time.
-  /// @throws render::RendererError when the engine cannot be had.
+  /// @param bodies_drift if true, all bodies except the first move before each timed ping, within its time
+  /// @throws render::RendererError if the engine is not available
   SceneRun(const test::Scene& scene, const render::RendererOptions& options, Measurements& results,
            bool bodies_drift = false);
 
-  /// Times the mean echo (`ping_ms` and its stages, `unchanged_ms`), counts samples and memory, compares with
-  /// the reference where there is one, and with itself (`repeatable`).
+  /// Times the mean echo (`ping_ms` and its stages, `unchanged_ms`), counts samples and memory, and compares
+  /// the image with the reference (if there is one) and with a second image (`repeatable`).
   void measure(const Point& point, const Reference* reference, const Repetition& repetition);
 
   /// Times the whole `physical` receiver on `lines` range bins as `metric`.
-  /// @param change of the default settings
+  /// @param change applied to the default settings
   void measure_receiver(const Point& point, int lines, const std::string& metric,
                         const Repetition& repetition,
                         const std::function<void(render::PhysicalModel&)>& change);
 
-  /// Times what array and pulse add to an echo: `azimuth_pattern_ms`, `pulse_ms`, and what finding it costs
-  /// in 1, 2 and 3 fine beams to a beam, as `sampling_fine_beams_N_ms`.
+  /// Times array and pulse: `azimuth_pattern_ms`, `pulse_ms`, and for 1, 2 and 3 fine beams per beam the
+  /// sampling (`sampling_fine_beams_N_ms`) and the pattern (`pattern_fine_beams_N_ms`).
   void measure_reception(const Point& point, const Repetition& repetition);
 
   render::EngineKind engine() const { return renderer_.engine(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sonard_side_by_side SCENE FILE.png: one scene by both engines and the oracle, and what they differ by.
+// sonard_side_by_side SCENE FILE.png: draws a scene by both engines and the oracle, and their differences.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace sonard::bench {
 namespace {
 
 constexpr double shown_db = 60;           // from the strongest bin down to black
-constexpr double shown_difference = 0.2;  // of the truth, at full colour
-constexpr double heard = 1e-2;            // of its beam's maximum: what errors are taken over
+constexpr double shown_difference = 0.2;  // relative to the truth, at full colour
+constexpr double heard = 1e-2;            // relative to the beam's maximum: errors are computed above this
 constexpr int radius_px = 460;
 
 picture::FanShape shape_of(const test::Scene& scene) {
@@ -32,14 +32,14 @@ picture::FanShape shape_of(const test::Scene& scene) {
   picture::FanShape shape;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     shape.bearings_rad.push_back(-0.5 *
-                                 (edges[b] + edges[b + 1]));  // the fan of the picture counts to starboard
+                                 (edges[b] + edges[b + 1]));  // pictures have positive bearings to starboard
   }
   shape.lines = scene.settings.range.count;
   shape.line_step_m = scene.settings.range.step_m;
   return shape;
 }
 
-/// Spreading taken out and in decibels, as a sonar with TVG would show it. One row per line.
+/// Levels in decibels without spreading, as a sonar with TVG would show them. One row per line.
 cv::Mat levels(const render::EchoImage& image, double strongest) {
   cv::Mat polar(image.lines, image.beams, CV_8UC1);
   for (int k = 0; k < image.lines; ++k) {
@@ -62,7 +62,7 @@ double strongest_level(const render::EchoImage& image) {
   return strongest;
 }
 
-/// |image / truth - 1| where the truth is above `heard` of its beam's maximum.
+/// |image / truth - 1| for bins whose truth is above `heard` of their beam's maximum.
 cv::Mat differences(const render::EchoImage& image, const render::EchoImage& truth) {
   cv::Mat polar = cv::Mat::zeros(image.lines, image.beams, CV_8UC1);
   for (int b = 0; b < image.beams; ++b) {

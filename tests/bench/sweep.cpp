@@ -14,7 +14,7 @@ namespace {
 constexpr Repetition usual{5, 101, 0.5};
 constexpr Repetition several{5, 201, 2.0};  // for ratios of two scenes
 
-/// Presets, grids and points from coarse to fine, and the paper's own.
+/// Presets, grids and points from coarse to fine, and the paper's.
 Plan ladder() {
   Plan plan;
   for (const Point& point : preset_points()) {
@@ -49,7 +49,7 @@ class Sweep {
  public:
   Sweep(Campaign& campaign, const std::vector<std::string>& only) : campaign_(campaign), only_(only) {}
 
-  /// `make` is called only when the name is asked for: the larger worlds take seconds.
+  /// Calls `make` only if the name is selected, because larger worlds take seconds.
   void run(const std::string& name, const Plan& plan, const std::function<test::Scene()>& make) {
     if (wanted(name)) {
       campaign_.run(make(), plan);
@@ -57,7 +57,7 @@ class Sweep {
   }
 
   void every_scene() {
-    // Its mesh files are read in forked processes, which wants to happen before there are other threads.
+    // `docking` comes first, because its mesh files are read in forked processes before other threads exist.
     run("docking", ladder(), [] { return test::make_scene("docking"); });
     for (const std::string& name : test::scene_names()) {
       if (name != "docking") {
@@ -107,7 +107,7 @@ class Sweep {
     }
   }
 
-  /// 200 bodies that rest, and the same that all move from ping to ping, to be compared.
+  /// 200 bodies at rest, and the same bodies moving from ping to ping, for comparison.
   void bodies() {
     for (const bool drift : {false, true}) {
       const std::string name = drift ? "bodies200_moving" : "bodies200_still";

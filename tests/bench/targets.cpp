@@ -14,7 +14,7 @@ constexpr double first_echo_bound_bins = 0.5;
 constexpr double faint_hole_bound = 1e-3;
 constexpr double default_rms = 0.01;
 constexpr double fast_rms = 0.05;
-// What point_8x1024 took on the machine of two slow cores whose milliseconds the targets are stated in.
+// Time of point_8x1024 on the machine with two slow cores whose milliseconds define the targets.
 constexpr double slow_point_ms = 75;
 
 double percent_of_points(double ms, double point_ms) {
@@ -26,7 +26,7 @@ class Rows {
   Rows(const Measurements& measurements, std::string engine)
       : measurements_(measurements), engine_(std::move(engine)) {}
 
-  /// A ping of `scene` within `rms` and `must_ms` of the slow machine.
+  /// A ping of `scene` must have an error within `rms` and a time within `must_ms` of the slow machine.
   void ping(const std::string& preset, const std::string& scene, double must_ms, double aim_ms, double rms) {
     time(fmt::format("{} {}", preset, scene), scene, find(scene, preset, "ping_ms"), must_ms, aim_ms);
     rows.back().rms_bound = rms;
@@ -83,7 +83,7 @@ class Rows {
     return a && b ? std::optional(*a / *b) : std::nullopt;
   }
 
-  /// How many points did not give the same bits twice.
+  /// Number of points that gave different bits in a repetition.
   std::optional<double> unrepeatable() const {
     std::optional<double> count;
     for (const Measurement& m : measurements_.all()) {
@@ -107,7 +107,7 @@ class Rows {
                    also("hole_fraction_60db")};
   }
 
-  /// Of whichever engine measured it: points are the same in both.
+  /// From any engine that measured it, because both give the same points.
   std::vector<SamplesAndError> point_curve(const std::string& scene) const {
     std::vector<SamplesAndError> curve;
     for (const Measurement& m : measurements_.all()) {

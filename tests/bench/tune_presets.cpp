@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time against error of the CPU engine, over scenes and poses, for its presets and for sets of parameters
-// drawn around them (docs/benchmark.md, "Presets"). The truth of each image is the preset `reference` at that
+// Measures time against error of the CPU engine over scenes and poses, for its presets and for parameter sets
+// drawn around them (docs/benchmark.md, "Presets"). The truth of each image is preset `reference` at that
 // pose.
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ double cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// The scene's own pose, moved and turned; number 0 is the pose itself.
+/// The scene's pose, moved and turned; number 0 is the pose itself.
 render::Pose pose_near(const render::Pose& start, int number) {
   if (number == 0) {
     return start;
@@ -80,7 +80,7 @@ class SceneBench {
 
   const std::string& name() const { return scene_.name; }
 
-  /// @return the image; adds its CPU time to `seconds`
+  /// Renders an image and adds its CPU time to `seconds`.
   render::EchoImage image(int pose, const SliceAccuracy& accuracy, double& seconds) {
     const render::SonarSettings& settings = scene_.settings;
     const std::vector<float> line_weight;
@@ -117,7 +117,7 @@ double quantile(std::vector<double>& values, double share) {
   return values[std::min(index, values.size() - 1)];
 }
 
-/// Over all poses of a scene.
+/// Errors over all poses of a scene.
 class PooledError {
  public:
   void add(const render::EchoImage& image, const render::EchoImage& truth) {
@@ -151,7 +151,7 @@ class PooledError {
   std::vector<double> totals_, centroids_, first_echoes_;
 };
 
-/// `presets` and sets drawn around the line from `default` to beyond `fast`, in the logarithms of the
+/// `presets`, and sets drawn around the line from `default` to beyond `fast`, in logarithms of the
 /// parameters.
 std::vector<Candidate> candidates(int drawn, unsigned seed) {
   const SliceAccuracy exact = render::slice_accuracy(Preset::normal, render::Model::physical);
@@ -223,7 +223,7 @@ struct Options {
   std::string sets, json = "tune.json";
 };
 
-/// All candidates in one scene; a row for each.
+/// Measures all candidates in one scene; one row for each.
 void run_scene(const Options& options, const std::vector<Candidate>& all, const std::string& name,
                ordered_json& rows) {
   SceneBench scene(test::make_scene(name));
