@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How echo and noise are distributed and correlated, of an even echo and of none.
+// Distribution and correlation of an even echo and of noise.
 #include <functional>
 
 #include "tests/realism/rows.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 using test::GeminiImage;
 
-/// A part of the fan without the near field and the stripe at broadside.
+/// Only beams below this are used, to avoid the stripe at broadside.
 constexpr int end_beam = 110;
 
 /// Codes of the lines from one range to another, beam after beam.
@@ -28,7 +28,7 @@ std::vector<double> codes_of(const GeminiImage& image, double from_m, double to_
   return codes;
 }
 
-/// @param intensity of the echo in all beams and lines; 0: noise alone
+/// @param intensity of the echo in all beams and lines; 0: noise only
 GeminiImage image_of(float intensity, double range_m, int compression_log2 = 0) {
   gemini::PingSettings wanted;
   wanted.range_m = range_m;
@@ -38,7 +38,7 @@ GeminiImage image_of(float intensity, double range_m, int compression_log2 = 0) 
   return client.images(1).front();
 }
 
-/// Noise as it is under the ceiling of the TVG, where the level is the same in all lines.
+/// Noise below the ceiling of the TVG, where all lines have the same level.
 double noise_variation(int compression_log2) {
   const std::vector<double> codes = codes_of(image_of(0, 60, compression_log2), 45, 58);
   return sd_of(codes) / mean_of(codes);
@@ -49,8 +49,8 @@ double noise_correlation(int lag_lines, int lag_beams) {
   return test::correlation(codes_of(image, 45, 58), codes_of(image, 45, 58, lag_lines, lag_beams));
 }
 
-/// An echo far over the noise at 20 to 22 m, where TVG changes little, of the 32 cycles that clients ask for
-/// at 50 m: four lines.
+/// An echo far above the noise at 20 to 22 m, where TVG changes little. At 50 m, clients request 32 cycles,
+/// i.e. four lines.
 double echo_correlation(int lag_lines) {
   constexpr float intensity = 3e-10F;
   const GeminiImage image = image_of(intensity, 50);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What targets, structures and beds look like: worlds that are made here, and those of configs/.
+// Targets, structures and beds in images: worlds made here, and worlds of configs/.
 #include <queue>
 #include <set>
 
@@ -70,7 +70,7 @@ int beam_at(double azimuth_rad) {
   return static_cast<int>((1 - std::sin(azimuth_rad) / std::sin(60 * degree)) * beams / 2);
 }
 
-/// Mean power over pings; noise is that of lines beside the target.
+/// Mean power over pings.
 std::vector<double> mean_power(const std::vector<GeminiImage>& images) {
   std::vector<double> power(images.front().codes.size(), 0.0);
   for (const GeminiImage& image : images) {
@@ -90,7 +90,7 @@ Peak peak_of(const std::vector<double>& power, int lines) {
   return {static_cast<int>(at / beams), static_cast<int>(at % beams), power[static_cast<std::size_t>(at)]};
 }
 
-/// Cells beside the peak that have half of its power or more, with parts of cells at the ends.
+/// Number of cells beside the peak with at least half of its power, interpolated at both ends.
 double width_of(const std::function<double(int)>& power) {
   double width = 0;
   for (const int direction : {-1, 1}) {
@@ -103,7 +103,7 @@ double width_of(const std::function<double(int)>& power) {
   return width;
 }
 
-/// A small ball at 10 m, a third of a degree wide, its glint far over the noise.
+/// A small ball at 10 m, a third of a degree wide, with a glint far above the noise.
 const render::World& small_ball() {
   static const render::World world = balls({{10 * std::cos(0.2), 10 * std::sin(0.2), 0}}, 0.03);
   return world;
@@ -131,7 +131,7 @@ double point_width(bool in_beams) {
   });
 }
 
-/// The brightest beam of single pings with other seeds: speckle, noise and elements differ.
+/// Spread of the brightest beam in single pings with other seeds: speckle, noise and elements differ.
 double point_bearing_jitter() {
   std::vector<double> bearings_deg;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -140,7 +140,7 @@ double point_bearing_jitter() {
   return sd_of(bearings_deg);
 }
 
-/// One ball in empty water: of its rows, what beams farther than 60 from it have, without the noise.
+/// Power in the row of a ball in empty water, for beams more than 60 away from it, without the noise.
 std::vector<double> leakage(std::uint64_t seed) {
   const render::World world = balls({{9 * std::cos(0.5), 9 * std::sin(0.5), 0}}, 0.2);
   const std::vector<double> power = mean_power(images_of(
@@ -179,8 +179,8 @@ struct Region {
   int cells = 0, first_beam = beams, last_beam = 0, line = 0;
 };
 
-/// Two thresholds: cells of 60 or more, where one of them has 120. Those within a beamwidth (two beams) and a
-/// pulse (four lines) of each other are one: the head cannot tell them apart.
+/// Detects with two thresholds: cells of 60 or more, of which one has 120. Cells within a beamwidth (two
+/// beams) and a pulse (four lines) of each other are one region, because the head cannot resolve them.
 std::vector<Region> regions_of(const GeminiImage& image) {
   std::vector<Region> regions;
   std::set<int> left;
@@ -218,14 +218,14 @@ std::vector<Region> regions_of(const GeminiImage& image) {
   return regions;
 }
 
-/// Two balls of 1 m, 6 m apart, 10 m away in empty water.
+/// Two balls of 1 m, 6 m apart, at 10 m in empty water.
 std::vector<Region> regions_of_two_balls(std::uint64_t seed) {
   const double aside = std::asin(0.3);
   const render::World world = balls({{10 * std::cos(aside), 3, 0}, {10 * std::cos(aside), -3, 0}}, 0.5);
   return regions_of(images_of(world, {}, {.range_m = 20, .seed = seed}).front());
 }
 
-/// The number that is farthest from two, of several draws.
+/// Of several draws, the number of regions that is farthest from two.
 double regions() {
   double farthest = 2;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -235,7 +235,8 @@ double regions() {
   return farthest;
 }
 
-/// Width across the beams, which see the ball at an angle of 17 degrees, to its diameter of 1 m.
+/// Largest factor between a ball's width across the beams and its diameter of 1 m. The balls are at 17
+/// degrees.
 double size_of_a_ball() {
   double worst = 1;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -247,7 +248,7 @@ double size_of_a_ball() {
   return worst;
 }
 
-/// A world of configs/, by a head that is not configured, from where the picture of the gallery is taken.
+/// A world of configs/ seen by a head with default configuration, from the place of the gallery's picture.
 GeminiImage world_of(const std::string& config, double range_m, std::uint64_t seed = 7) {
   const pictures::View view = pictures::configured_view(config, range_m);
   return images_of(view.world, view.T_world_sonar, {.range_m = range_m, .seed = seed}).front();
@@ -279,8 +280,8 @@ double mean_code(const GeminiImage& image, double from_m, double to_m, double fr
   return mean_of(codes_of(image, from_m, to_m, from_deg, to_deg));
 }
 
-/// From 20 to 22 m behind the docking station, and on the bed to both sides of it: medians, so that neither a
-/// stone nor a ghost counts for the bed or against the shadow.
+/// The bed beside the docking station relative to its shadow, 20 to 22 m away. Medians, so that stones and
+/// ghosts do not matter.
 double shadow_db() {
   const GeminiImage image = world_of("demo.yaml", 25);
   const auto median = [&](double from_deg, double to_deg) {
@@ -298,7 +299,7 @@ std::vector<double> mid_fan_codes(const GeminiImage& image, double from_m, doubl
   return codes;
 }
 
-/// The mid-fan without and with bounces, in dB of the ratio for each half metre.
+/// Increase of the level in mid-fan by bounces in each half metre, from the mean of all poses.
 std::vector<double> bounces_db(const render::World& world, const std::vector<render::Pose>& T_world_sonar,
                                double range_m, double from_m, double to_m, double half_deg) {
   std::vector<double> with, without;
@@ -318,8 +319,8 @@ std::vector<double> bounces_db(const render::World& world, const std::vector<ren
   return brighter_db;
 }
 
-/// How far behind the docking station, whose last wall is at 15.2 m, bounces show by 1 dB and more. The paths
-/// are drawn at random, so that one place is one draw: the mean of nine, each turned by its part of a cell.
+/// Depth behind the docking station's last wall, at 15.2 m, to which bounces add 1 dB or more. Paths are random,
+/// so it takes the mean of nine places, each turned by another part of a cell.
 double halo_m() {
   const pictures::View view = pictures::configured_view("demo.yaml", 30);
   std::vector<render::Pose> places;
@@ -333,7 +334,7 @@ double halo_m() {
   return 0.3 + 0.5 * static_cast<double>(end - brighter.begin());
 }
 
-/// In the tank, whose farthest corner is 12 m away: what comes from there to 24 m.
+/// Increase of the level by bounces behind the tank's farthest corner, which is 12 m away, up to 24 m.
 double tail_db() {
   const render::World tank = render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf");
   return quantile_of(bounces_db(tank, {{{-1, -0.5, -4}, {1, 0, 0, 0}}}, 25, 13, 24, 55), 0.5);
@@ -349,7 +350,7 @@ double highlights_db() {
          decibels(quantile_of(image.codes, 0.999) / mean_code(silent.images(1).front(), 36, 39, -55, -10));
 }
 
-/// An even bed of sand 5 m under the sonar.
+/// For an even bed of sand 5 m under the sonar.
 double bed_index() {
   render::Body bed = test::make_body("bed", test::make_quad({-50, -50, -5}, {100, 0, 0}, {0, 100, 0}));
   bed.parts[0].material = *render::find_acoustic_material("sand");
@@ -359,7 +360,7 @@ double bed_index() {
   return median_of(homogeneous_patches({image.lines, beams, 65535, image.codes}), Third::middle).index;
 }
 
-/// Cells of near water that stand out: of ten times the median.
+/// Share of bright cells in near water: at least ten times the median.
 double clutter_share() {
   const render::World world = balls({{90, 0, 0}}, 0.1);
   int bright = 0, all = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// realism: prints the table of docs/acoustics.md, and says how many rows are out of tolerance.
+// realism: prints the table of docs/acoustics.md and the number of rows out of tolerance.
 #include <iostream>
 #include <string>
 
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// @return whether it is within its tolerance
+/// @return whether the row is within its tolerance
 bool print(const sonard::realism::Row& row) {
   const double ours = row.measure();
   const bool within = ours >= row.least && ours <= row.most;

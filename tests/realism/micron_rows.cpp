@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scanning head: its noise, its ring-down, its bursts, its lines.
+// Images of a scanning head: noise, ring-down, bursts and lines.
 #include <numbers>
 
 #include "tests/realism/rows.hpp"
@@ -17,7 +17,7 @@ constexpr double bin_m = 0.064;
 constexpr int bins = 780;  // 50 m
 constexpr int steps = 200;
 
-/// Levels of one turn in steps of 1.8 degrees, line after line, in dB, from one range to another.
+/// Levels of a turn in steps of 1.8 degrees, line after line, in dB, from one range to another.
 std::vector<std::vector<double>> turn(MicronClient& client, float intensity, double from_m, double to_m) {
   std::vector<std::vector<double>> lines;
   for (int step = 0; step < steps; ++step) {
@@ -48,8 +48,8 @@ std::vector<double> means(const std::vector<std::vector<double>>& lines) {
   return all;
 }
 
-/// Levels of a turn at the ranges of an even echo some 25 dB over the noise, without their mean at each
-/// range, which grows with the TVG.
+/// Levels of a turn for an even echo about 25 dB above the noise. The mean at each range is removed, because
+/// it grows with the TVG.
 std::vector<std::vector<double>> echo_turn(MicronClient& client) {
   std::vector<std::vector<double>> lines = turn(client, 1e-7F, 8, 12);
   for (std::size_t bin = 0; bin < lines.front().size(); ++bin) {
@@ -80,8 +80,8 @@ double noise_sd() {
   return quantile_of(of_lines, 0.5);
 }
 
-/// From bin to bin, of noise under the ceiling of the TVG or of an even echo.
-/// @param noise whether the client listens only
+/// Correlation from bin to bin, of noise below the ceiling of the TVG or of an even echo.
+/// @param noise true: noise only, no echo
 double bins_shared(bool noise) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.interference.probability = 0;
@@ -141,7 +141,8 @@ double bearings_stay() {
   return test::correlation(first, means(turn(client, 0, 36, 49)));
 }
 
-/// Lines whose noise is raised for a metre or more, of a noise that is else the same at all bearings.
+/// Share of lines whose noise is raised for a metre or more. The noise does not depend on the bearing
+/// otherwise.
 double lines_hit() {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.noise_by_bearing_db = 0;

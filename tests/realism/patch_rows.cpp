@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How spiky the beds of the shipped worlds are, by the estimator that recordings were measured with.
+// How spiky the beds of the shipped worlds are, by the estimator that was used for recordings.
 #include <cmath>
 #include <map>
 #include <utility>
@@ -14,24 +14,24 @@
 namespace sonard::realism {
 namespace {
 
-/// 8-bit samples as amplitudes: what the scale of the output did is undone.
+/// 8-bit samples as amplitudes: inverts the output scale.
 AmplitudeImage amplitudes_of(const render::PingSamples& samples, const render::SonarSettings& settings) {
   AmplitudeImage image{samples.lines, samples.beams, 255, {}};
   const bool power = settings.output_scale == render::OutputScale::power;
   const auto amplitude_of = [&](double code) {
     return power ? 255 * std::pow(code / 255, 1 / settings.output_exponent) : code;
   };
-  image.full_scale = amplitude_of(power ? 254 : 255);  // of a power scale the highest code is not met
+  image.full_scale = amplitude_of(power ? 254 : 255);  // the highest code does not occur on a power scale
   for (const std::uint8_t code : samples.u8) {
     image.amplitude.push_back(amplitude_of(code));
   }
   return image;
 }
 
-/// Of three draws of speckle and elements.
+/// Patches from three draws of speckle and elements.
 std::vector<Patch> patches_of(const std::string& config, double range_m) {
   pictures::View view = pictures::configured_view(config, range_m);
-  view.settings.range.compression_log2 = 0;  // means of lines are less spiky than the lines
+  view.settings.range.compression_log2 = 0;  // means of lines are less spiky than lines
   std::vector<Patch> patches;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     render::SonarRenderer renderer(view.world, {render::EngineKind::cpu, 0});
@@ -68,7 +68,7 @@ std::vector<Row> patch_rows() {
     for (const double range_m : {20.0, 30.0}) {
       for (const auto& [name, third] :
            {std::pair{"middle", Third::middle}, std::pair{"bright", Third::bright}}) {
-        // Clang 14 captures no structured bindings.
+        // Clang 14 cannot capture structured bindings.
         const auto row = [&rows, head = head, config = config, range_m, name = name, third = third](
                              const char* what, const char* recorded, double least, double most,
                              double Patch::*of) {

@@ -24,8 +24,8 @@ double line_offset(std::size_t i) {
   return static_cast<double>(i / patch_beams) - (patch_lines - 1) / 2.0;
 }
 
-/// Standard deviation from the plane of least squares. Offsets from the middle of a patch are orthogonal, so
-/// each slope is fitted by itself.
+/// Standard deviation from the least-squares plane. Offsets from the middle of a patch are orthogonal, so
+/// each slope is fitted separately.
 double sd_off_plane(const Values& values) {
   const double mean = mean_of(values);
   double along_beams = 0, along_lines = 0, beam_square = 0, line_square = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How real the images are: laws of recorded images, and how far ours follow them (docs/physics.md 2.16).
+// Compares laws of recorded images with our images (docs/physics.md 2.16).
 #pragma once
 
 #include <functional>
@@ -9,13 +9,12 @@
 
 namespace sonard::realism {
 
-/// One law, and how it is measured: through the bytes of a head and its client, with the defaults of that
-/// head.
+/// One law and its measurement, through the bytes of a head and its client, with the head's defaults.
 struct Row {
   std::string_view head;
   std::string what;
-  std::string_view recorded;  ///< as the recordings have it
-  double least, most;         ///< tolerance of ours
+  std::string_view recorded;  ///< value in recordings
+  double least, most;         ///< tolerance for our value
   std::string_view unit;
   std::function<double()> measure;
 };
@@ -23,7 +22,7 @@ struct Row {
 std::vector<Row> gemini_noise_rows();
 std::vector<Row> gemini_scene_rows();
 std::vector<Row> micron_rows();
-/// Homogeneous patches of the shipped worlds, seen from where their configurations begin.
+/// Homogeneous patches of the shipped worlds, from the first poses of their configurations.
 std::vector<Row> patch_rows();
 
 }  // namespace sonard::realism

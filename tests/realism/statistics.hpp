@@ -30,7 +30,7 @@ inline double sd_of(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// @param share 0: the least, 0.5: the median, 1: the largest
+/// @param share 0: minimum, 0.5: median, 1: maximum
 inline double quantile_of(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
