@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Gemini 720i and its topsides. Ping IDs wrap at 256; stamps are microseconds of 64 bits.
+// A Gemini 720i and its topsides. Ping IDs wrap at 256; stamps are 64-bit microseconds.
 #include <utility>
 #include <variant>
 

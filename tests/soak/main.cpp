@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// sonard_soak HEAD PINGS: pings of a head in virtual time, with a new client every 300; what the process
-// holds at each tenth, and exit code 1 where that grows or anything else is wrong.
+// sonard_soak HEAD PINGS: runs pings of a head in virtual time, with a new client every 300 pings. Prints the
+// process's resources at each tenth. The exit code is 1 if they grow or anything else is wrong.
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
@@ -40,12 +40,12 @@ void print(const Soak& soak, const Footprint& held) {
   std::fflush(stdout);
 }
 
-/// What is held at the first tenth is what all later ones are compared with.
+/// Compares the resources at each tenth with the first tenth.
 bool run(HeadUnderSoak& head, std::uint64_t pings) {
   constexpr double most_growth_percent = 1.0;
   constexpr std::uint64_t parts = 10;
   Soak soak(head);
-  print(soak, footprint());  // once before it counts: looking takes memory, too
+  print(soak, footprint());  // once before the first tenth, because printing allocates memory too
   Footprint first;
   bool good = true;
   for (std::uint64_t part = 1; part <= parts; ++part) {

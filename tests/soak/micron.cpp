@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Micron and its hosts, on one line. Bearings wrap at 6400; the head's clock is milliseconds of 32 bits,
-// and wraps an hour after the start here.
+// A Micron and its hosts, on one line. Bearings wrap at 6400. The head's clock counts 32-bit milliseconds;
+// here it wraps an hour after the start.
 #include <utility>
 #include <variant>
 
@@ -16,14 +16,14 @@ using namespace micron;
 using namespace std::chrono_literals;
 
 constexpr std::uint8_t step = 32;
-/// By the host's clock, when it is first asked for a line.
+/// The host's clock at its first request of a line.
 constexpr std::uint32_t an_hour_before_it_wraps_ms = UINT32_MAX - 3'600'000 + 1;
 
 class MicronVisitor final : public Visitor {
  public:
   MicronVisitor(std::uint64_t visit, TimePoint now) : host_(HostConfig{}, now) {
     HeadCommand parameters;
-    parameters.control = 0x2307;  // all round, clockwise, 8 bits
+    parameters.control = 0x2307;  // full turns, clockwise, 8 bits
     parameters.step = step;
     parameters.bins = static_cast<std::uint16_t>(20 + visit % 3 * 40);
     host_.start(now, parameters, 0);

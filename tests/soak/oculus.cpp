@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Oculus and its clients, one after another. Stamps of version 1 are nanoseconds of 32 bits, which wrap
-// every 4.3 s; those of version 2 are seconds in a double. The numbers of pings go on over all clients.
+// An Oculus and its clients, one after another. Stamps of version 1 are 32-bit nanoseconds, which wrap every
+// 4.3 s; stamps of version 2 are seconds in a double. Ping numbers continue across clients.
 #include <cmath>
 #include <utility>
 
@@ -24,7 +24,7 @@ SeenPing::Stamp stamp_of(const PingResult& ping) {
     return {ping.start_time_ns, 1, std::int64_t{1} << 32};
   }
   return {std::llround(ping.start_time_s * 1e9), 100,
-          0};  // of a day in seconds a double keeps less than 0.1 ns
+          0};  // a double resolves a day in seconds to better than 0.1 ns
 }
 
 class OculusVisitor final : public Visitor {
@@ -95,7 +95,7 @@ class OculusUnderSoak final : public HeadUnderSoak {
  private:
   static DeviceConfig config() {
     DeviceConfig config;
-    config.plan.most_ranges = 12;  // rows, so that an image is 3 kB
+    config.plan.most_ranges = 12;  // rows, so that an image has 3 kB
     return config;
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Ping360 and its clients, each from an address of its own, so that the head has to forget them. Angles
-// wrap at 400.
+// A Ping360 and its clients, each from its own address, so that the head must forget them. Angles wrap at
+// 400.
 #include <utility>
 
 #include "protocol/ping360/codec.hpp"

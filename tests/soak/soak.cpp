@@ -13,11 +13,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t pings_of_a_visit = 300;  // more than there are IDs of a Gemini
+constexpr std::uint64_t pings_of_a_visit = 300;  // more than a Gemini has IDs
 constexpr std::uint64_t fails_each = 997;
 constexpr std::chrono::nanoseconds render_time = 2ms;
 
-/// Any values that tell pings and samples apart.
+/// Arbitrary values that differ between pings and samples.
 std::vector<std::uint8_t> samples_of(const PingJob& job, int beams) {
   std::vector<std::uint8_t> samples(static_cast<std::size_t>(job.bins()) * static_cast<std::size_t>(beams));
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -44,7 +44,7 @@ Soak::Soak(HeadUnderSoak& head) : head_(head) {}
 
 void Soak::run_until(std::uint64_t pings) {
   try {
-    // A head that no longer pings is found by the wake-ups that it takes.
+    // The number of steps without a ping shows that a head no longer pings.
     constexpr std::uint64_t most_steps_each_ping = 10'000;
     std::uint64_t steps = 0;
     for (std::uint64_t before = pings_; pings_ < pings; ++steps) {
@@ -98,7 +98,7 @@ void Soak::come() {
   }
 }
 
-/// The next one is there at once, or when all that is left of this one has run out.
+/// The next visitor comes at once, or after all timeouts of this one.
 void Soak::leave() {
   const std::vector<Event> last_words = visitor_->leave();
   visitor_.reset();
@@ -155,7 +155,7 @@ void Soak::answer() {
 void Soak::see(const SeenPing& ping) {
   require(ping.samples == rendered_.samples, "a ping has the samples that were rendered");
   require(!ping.stamp || right(*ping.stamp, rendered_.transmit_time), "a ping has the time of its job");
-  // The first may be one that the head had begun for the client before.
+  // The head may have begun the first ping for the previous client.
   if (last_seen_ && seen_in_visit_ > 1) {
     require(ping.id == (last_seen_->id + head_.id_step()) % head_.id_modulus(),
             "a ping follows the last one");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head in virtual time for as long as it takes: pings from a stand-in renderer, and clients that come and
-// go.
+// Runs a head in virtual time: a stand-in renderer makes pings, and clients come and go.
 #pragma once
 
 #include <chrono>
@@ -15,18 +14,18 @@
 
 namespace sonard::soak {
 
-/// Runs a head and its visitors, and throws at the first thing that is wrong:
-/// * a ping has the samples that were rendered for it, and its stamp is when it was asked for;
-/// * pings of one visit follow each other by number, or where the head looks, whatever wraps in between;
-/// * they keep their period to the nanosecond, so nothing drifts;
-/// * jobs are numbered 0, 1, 2, ..., records have the time of their job, and a wake-up lies in the future.
-/// Every 997th image cannot be rendered. Not thread-safe.
+/// Runs a head and its visitors, and throws at the first error:
+/// * a ping must have the samples rendered for it, and its stamp must be the time of its request;
+/// * pings of one visit must follow each other by number, or by angle, across wraps;
+/// * they must keep their period to the nanosecond, so that nothing drifts;
+/// * jobs must be numbered 0, 1, 2, ..., records must have the time of their job, wake-ups must be in the
+/// future. Every 997th image cannot be rendered. Not thread-safe.
 class Soak {
  public:
   explicit Soak(HeadUnderSoak& head);
 
-  /// Until visitors have this many pings, over all calls. @throws std::runtime_error saying when and what is
-  /// wrong
+  /// Runs until visitors have this many pings in total. @throws std::runtime_error with the time and the
+  /// error
   void run_until(std::uint64_t pings);
 
   std::uint64_t pings() const { return pings_; }
@@ -39,7 +38,7 @@ class Soak {
     TimePoint done{};
     bool wanted = true;
   };
-  /// A job whose image the head was given.
+  /// A job whose image was passed to the head.
   struct Rendered {
     std::uint64_t number = 0;
     TimePoint transmit_time{};
@@ -66,7 +65,7 @@ class Soak {
   std::uint64_t visits_ = 0;
   std::uint64_t seen_in_visit_ = 0;
   std::uint64_t pings_ = 0;
-  std::optional<SeenPing> last_seen_;  ///< nullopt: the next one need not follow it
+  std::optional<SeenPing> last_seen_;  ///< nullopt: the next ping need not follow
   TimePoint last_transmit_{};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client that comes to a head, takes some pings, and leaves: the code of our clients, one kind of head
-// each.
+// A client that comes to a head, takes some pings, and leaves. Each kind of head has one, which uses our
+// client code.
 #pragma once
 
 #include <chrono>
@@ -13,23 +13,23 @@
 
 namespace sonard::soak {
 
-/// A ping as a client has it.
+/// A ping as a client receives it.
 struct SeenPing {
-  /// Which it is: its number where the head gives it one, else where a scanning head looked. Of those that
-  /// follow each other it grows by HeadUnderSoak::id_step, modulo HeadUnderSoak::id_modulus.
+  /// Identifies the ping: its number if the head numbers pings, else the angle of a scanning head. From ping
+  /// to ping it grows by HeadUnderSoak::id_step, modulo HeadUnderSoak::id_modulus.
   std::uint64_t id = 0;
   std::vector<std::uint8_t> samples;
 
-  /// The transmit time by the head's clock, in nanoseconds since it booted, as far as its message says.
+  /// The transmit time in the message, by the head's clock, in nanoseconds since it booted.
   struct Stamp {
     std::int64_t ns = 0;
-    std::int64_t resolution_ns = 1;  ///< what lies below is cut off, or rounded away
-    std::int64_t modulus_ns = 0;     ///< 0: it does not wrap
+    std::int64_t resolution_ns = 1;  ///< smaller parts are cut off or rounded
+    std::int64_t modulus_ns = 0;     ///< 0: does not wrap
   };
-  std::optional<Stamp> stamp;  ///< nullopt: messages of this kind of head have none
+  std::optional<Stamp> stamp;  ///< nullopt: this kind of head sends no stamps
 };
 
-/// One visit. It lives in the time that its methods are given, which never goes backwards.
+/// One visit. Its time is the argument of its methods, which never decreases.
 class Visitor {
  public:
   Visitor() = default;
@@ -37,20 +37,21 @@ class Visitor {
   Visitor(const Visitor&) = delete;
   Visitor& operator=(const Visitor&) = delete;
 
-  /// What happens to the head as the visitor comes, before its first word.
+  /// Events at the head when the visitor comes, before its first message.
   virtual std::vector<Event> come() { return {}; }
-  /// A message of the head that reaches it.
+  /// Receives a message of the head.
   virtual void hear(TimePoint now, const Outgoing& message) = 0;
-  /// Runs what is due; what the visitor then says, in order.
+  /// Does the work that is due. Returns the visitor's messages in order.
   virtual std::vector<Event> advance(TimePoint now) = 0;
   virtual std::optional<TimePoint> next_deadline() const = 0;
-  /// Those that have come since the last call.
+  /// The pings received since the last call.
   virtual std::vector<SeenPing> take_pings() = 0;
-  /// What happens to the head as the visitor leaves in the middle of everything, half a command last.
+  /// Events at the head when the visitor leaves: half a command, and for some kinds the end of the
+  /// connection.
   virtual std::vector<Event> leave() = 0;
 };
 
-/// A kind of head, and who comes to it.
+/// A kind of head and its visitors.
 class HeadUnderSoak {
  public:
   HeadUnderSoak() = default;
@@ -62,13 +63,12 @@ class HeadUnderSoak {
   virtual int beams() const = 0;
   virtual std::uint64_t id_step() const = 0;
   virtual std::uint64_t id_modulus() const = 0;
-  /// From ping to ping of one visit, exactly; nullopt: it depends on where the head looks.
+  /// The exact time from ping to ping in one visit; nullopt if it depends on the angle.
   virtual std::optional<std::chrono::nanoseconds> period() const = 0;
-  /// Visitors differ in address, in what they ask for and in how they leave. Half of them leave without a
-  /// word.
+  /// Creates a visitor. Visitors differ in address, in requests and in the way they leave; half of them leave
+  /// without a message.
   virtual std::unique_ptr<Visitor> visitor(std::uint64_t visit, TimePoint now) = 0;
-  /// Looks at a message that the head sends, whoever hears it. @throws std::runtime_error of what is wrong in
-  /// it
+  /// Checks a message of the head, also if no visitor receives it. @throws std::runtime_error with the error
   virtual void check(TimePoint now, const Outgoing& message) = 0;
 };
 
@@ -77,7 +77,7 @@ std::unique_ptr<HeadUnderSoak> micron_under_soak();
 std::unique_ptr<HeadUnderSoak> ping360_under_soak();
 std::unique_ptr<HeadUnderSoak> oculus_under_soak();
 
-/// @throws std::runtime_error{what} where `condition` is false
+/// @throws std::runtime_error{what} if `condition` is false
 void require(bool condition, const char* what);
 
 }  // namespace sonard::soak
