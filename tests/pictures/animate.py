@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a moving picture of the frames that `sonard render` has written (needs python3-pil).
+"""Makes an animation from frames of `sonard render` (needs python3-pil).
 
     sonard render configs/demo.yaml --trajectory configs/trajectories/docking_demo.csv --out out/demo \\
         --rate 1 --range 25 --compression 1 --size 420

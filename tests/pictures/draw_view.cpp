@@ -17,7 +17,7 @@ picture::FanShape shape_of(const View& view) {
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   picture::FanShape shape;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
-    shape.bearings_rad.push_back(-0.5 * (edges[b] + edges[b + 1]));  // pictures count to starboard
+    shape.bearings_rad.push_back(-0.5 * (edges[b] + edges[b + 1]));  // positive to starboard
   }
   shape.lines = settings.range.output_count();
   shape.line_step_m = view.display_scale * settings.range.step_m * (1 << settings.range.compression_log2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view as a person would see it on a display.
+// Draws a view as on a sonar display.
 #pragma once
 
 #include <opencv2/core/mat.hpp>
@@ -10,8 +10,9 @@
 
 namespace sonard::pictures {
 
-/// Renders the ping (of a scanning head: the turn) of `view` with seed 1 and draws it seen from above:
-/// CV_8UC3, BGR. `radius_px`: from the sonar to the full range.
+/// Renders the ping of `view` (for a scanning head, the turn) with seed 1 and draws it as seen from above:
+/// CV_8UC3, BGR.
+/// @param radius_px from the sonar to the full range
 /// @throws render::RequestError, render::RendererError
 cv::Mat draw_view(const View& view, render::EngineKind engine, int radius_px, const std::string& caption);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// effect_pictures [NAME...]: draws the pictures of docs/acoustics.md, each effect without and with it.
+// effect_pictures [NAME...]: draws the pictures of docs/acoustics.md, without and with each effect.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line that the programs of this folder share.
+// The command line of the programs in this folder.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@ namespace sonard::pictures {
 struct PictureProgram {
   std::string name;
   std::string description;
-  std::string folder;              ///< where pictures go by default
+  std::string folder;              ///< default folder of pictures
   std::vector<std::string> names;  ///< of all pictures
   /// Loads the views of these pictures.
   std::function<std::vector<Halves>(const std::vector<std::string>& names)> halves;
 };
 
-/// NAMES, --out, --engine, --radius. @return the exit status.
+/// Options: NAMES, --out, --engine, --radius. @return the exit code
 int run_picture_program(const PictureProgram& program, int argc, const char* const* argv);
 
 }  // namespace sonard::pictures

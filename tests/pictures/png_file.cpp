@@ -22,7 +22,7 @@ namespace amber = picture::amber;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// 43 colours of echoes; 64 more each from the ground to the grid, to labels, and from the grid to labels.
+/// 43 colours of echoes, and three ramps of 64: background to grid, background to labels, grid to labels.
 std::vector<cv::Vec3b> palette_of_pictures() {
   std::vector<cv::Vec3b> colours;
   const cv::Mat echoes = amber::palette(amber::Samples::decibels);
@@ -43,7 +43,7 @@ std::vector<cv::Vec3b> palette_of_pictures() {
   return colours;
 }
 
-/// Index of the nearest colour, looked for once for each colour that occurs.
+/// Index of the nearest palette colour. Each colour is searched for once.
 class Indices {
  public:
   explicit Indices(std::vector<cv::Vec3b> colours) : colours_(std::move(colours)) {}

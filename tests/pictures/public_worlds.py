@@ -27,7 +27,7 @@ heads:
     sonar_id: 513
     network: {{alternate_address: 127.0.0.2, netmask: 255.0.0.0}}
 """
-# Where the sonar is, and how far it looks down, in radians.
+# Position of the sonar in metres, and its pitch downwards in radians.
 VIEWS = {
     "uuv_classic.world": ((2, 0, -10), 0.25),
     "dave_ocean.world": ((0, 0, -4.2), 0.15),

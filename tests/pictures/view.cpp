@@ -25,7 +25,7 @@ constexpr double line_rate_hz = 90'422;  // of a Gemini's range bins
 constexpr int micron_bins = 500;
 constexpr int micron_step = 32;  // 1.8 degrees
 
-/// Where the vehicle of a configuration is at a time.
+/// The pose of a configuration's vehicle by time.
 class Vehicle {
  public:
   explicit Vehicle(const server::PoseConfig& poses) {
@@ -64,7 +64,7 @@ void aim_gemini(View& view, const server::HeadConfig& head, const Vehicle& vehic
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 
-/// Any other multibeam head, as it usually pings.
+/// Settings for any other multibeam head, with its usual ping.
 void aim_fan(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
              double time_s) {
   PingJob job = server::kind_of(head).usual_job(head);

@@ -17,7 +17,7 @@ void with(View& view) {
   view.settings.physical.multipath.most_bounces = 6;
 }
 
-/// The tank of configs/worlds from above its floor, looking along a wall: concrete, a steel ladder, water.
+/// The tank of configs/worlds seen from above its floor along a wall: concrete, a steel ladder, water.
 View tank() {
   View view = plain_view(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                          {{-4, -2.5, -2.0}, {1, 0, 0, 0}}, 12);
@@ -26,7 +26,7 @@ View tank() {
   return view;
 }
 
-/// The same tank by a Micron that is not configured.
+/// The tank seen by a Micron with default settings.
 View turn_in_the_tank() {
   View view = configured_view("demo-micron.yaml", 30);
   view.settings.physical.gain_db += 10;

@@ -18,7 +18,7 @@ render::BodyPart part_of(render::TriangleMesh mesh, double lambert_mu) {
   return part;
 }
 
-/// Without speckle and noise, which say nothing of ranges.
+/// Without speckle and noise, which do not show ranges.
 View smooth_view() {
   View view = configured_view("demo.yaml", 20);
   view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
@@ -26,7 +26,7 @@ View smooth_view() {
   return view;
 }
 
-/// Five boxes on a flat bed, seen from 5 m above it with a narrow beam that looks level.
+/// Five boxes on a flat bed, seen from 5 m above it with a narrow level beam.
 View long_view() {
   render::World world;
   render::TriangleMesh bed;

@@ -16,7 +16,7 @@ View docking_station() {
   return configured_view("demo.yaml", 20);
 }
 
-/// As a perfect array would hear it, with sharp beams: nothing but the effect fills shadows.
+/// With a perfect array and sharp beams, so that only the effect fills shadows.
 View sharp_docking_station(double range_m) {
   View view = configured_view("demo.yaml", range_m);
   view.settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
@@ -24,7 +24,7 @@ View sharp_docking_station(double range_m) {
   return view;
 }
 
-/// Lines of 3 mm over a bed.
+/// Lines of 3 mm on a bed.
 View close_bed() {
   render::BodyPart bed;
   bed.mesh = std::make_shared<const render::TriangleMesh>(render::make_plane({20, 20}, {0, 0, 1}));
@@ -36,7 +36,7 @@ View close_bed() {
   return view;
 }
 
-/// The tank of the Micron far beyond its walls, with more gain than it needs.
+/// The tank of the Micron, far beyond its walls and with more gain than needed.
 View gained_tank() {
   View view = configured_view("demo-micron.yaml", 60);
   view.settings.physical.gain_db += 4;

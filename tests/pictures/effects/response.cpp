@@ -6,12 +6,12 @@
 namespace sonard::pictures {
 namespace {
 
-/// To 20 metres, the receive array without errors.
+/// Up to 20 m, with a receive array without errors.
 View perfect_docking_station() {
   View view = configured_view("demo.yaml", 20);
   view.settings.aperture.element_amplitude_sd = 0;
   view.settings.aperture.element_phase_sd_rad = 0;
-  view.settings.physical.noise = false;  // with it pictures are large
+  view.settings.physical.noise = false;  // noise makes pictures large
   return view;
 }
 
@@ -54,7 +54,7 @@ std::vector<EffectPicture> response_pictures() {
        .view =
            [] {
              View view = configured_view("demo.yaml", 20);
-             view.settings.physical.noise = false;  // noise makes the picture large
+             view.settings.physical.noise = false;  // noise makes pictures large
              view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
              return view;
            },
@@ -71,7 +71,7 @@ std::vector<EffectPicture> response_pictures() {
            [] {
              View view = configured_view("demo.yaml", 20);
              view.settings.physical.speckle =
-                 render::PhysicalModel::Speckle::off;  // speckle hides what fades
+                 render::PhysicalModel::Speckle::off;  // speckle would hide the fading
              return view;
            },
        .caption_before = "elevation_pattern: top_hat",

@@ -11,7 +11,7 @@ const std::vector<GalleryScene>& gallery_scenes() {
       {.name = "manifold", .config = "manifold.yaml", .range_m = 25},
       {.name = "ssiv", .config = "ssiv.yaml", .range_m = 20},
       {.name = "tank", .config = "demo-micron.yaml", .range_m = 12},
-      {.name = "grid", .config = "grid-micron.yaml", .range_m = 8, .time_s = 10},  // the turn begins
+      {.name = "grid", .config = "grid-micron.yaml", .range_m = 8, .time_s = 10},  // when the turn begins
       {.name = "oil_and_gas", .config = "oil-and-gas-micron.yaml", .range_m = 12},
   };
   return all;
