@@ -45,7 +45,7 @@ void add_frame(std::vector<Pipe>& pipes) {
   }
 }
 
-/// Two headers and the branches that rise from them, a valve on each.
+/// Two headers, and branches that rise from them, each with a valve.
 void add_piping(std::vector<Pipe>& pipes, std::vector<Valve>& valves) {
   for (const double y : {-0.7, 0.7}) {
     pipes.push_back({{-3.0, y, 0.6}, {3.0, y, 0.6}, 0.20});
@@ -62,7 +62,7 @@ int at_least(int least, double value) {
   return std::max(least, static_cast<int>(std::lround(value)));
 }
 
-/// 2 around (along + 1) is near `facets`, and facets are near squares cut in two.
+/// A tube of about `facets` triangles, as 2 around (along + 1), which are nearly squares cut in two.
 render::TriangleMesh make_facetted(const Pipe& pipe, double facets) {
   const double length_m = glm::distance(pipe.from_m, pipe.to_m);
   const double circumference_m = 2 * std::numbers::pi * pipe.radius_m;

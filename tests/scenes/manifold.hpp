@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A subsea manifold: frame, headers, branches, valves. Scales to any number of triangles.
+// A subsea manifold with frame, headers, branches and valves, in any number of triangles.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace sonard::test {
 
-/// 6 x 4 x 2.4 m, its base centred on the origin, x along the headers, z up. The facets are spread over the
-/// parts by area; their number is within 5 % of `triangles`, which is at least 5000. No normals.
+/// 6 x 4 x 2.4 m, its base centred on the origin, x along the headers, z up. The facets are distributed by
+/// area; their number is within 5 % of `triangles`, which must be at least 5000. No normals.
 render::TriangleMesh make_manifold(std::size_t triangles);
 
 }  // namespace sonard::test

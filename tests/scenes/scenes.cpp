@@ -20,7 +20,7 @@ namespace {
 constexpr double sonar_height_m = 4.0;
 constexpr double sonar_tilt_rad = 20 * degree;
 constexpr std::size_t seabed_triangles = 106'830;
-/// 40 x 40 m that hold the whole fan out to 21 m, edges included.
+/// 40 x 40 m; contains the whole fan up to 21 m, including its edges.
 constexpr BedExtent seabed_extent{-6, 34, -20, 20};
 constexpr int seabed_cells = 223;  // of 0.18 m
 
@@ -43,11 +43,11 @@ render::Body make_wall(double x_m, double half_width_m, double half_height_m) {
   for (const auto& [y, z] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
     mesh.positions.emplace_back(glm::dvec3(x_m, y * half_width_m, z * half_height_m));
   }
-  mesh.indices = {0, 2, 1, 0, 3, 2};  // seen from the origin
+  mesh.indices = {0, 2, 1, 0, 3, 2};  // front faces the origin
   return make_body("wall", std::move(mesh));
 }
 
-/// What lies on the seabed: 7372 triangles, the same in every scene, each heard by other beams.
+/// The objects on the seabed: 7372 triangles, the same in each scene. Each object is in other beams.
 std::vector<render::Body> make_objects() {
   return {
       make_body("box", make_block({9.0, 5.2, 0.4}, {1.6, 1.0, 1.6}, 25 * degree)),
@@ -71,7 +71,7 @@ render::SonarSettings fan(int beams, double width_rad, double height_rad, int li
   settings.aperture.vertical_beamwidth_rad = height_rad;
   settings.range = {lines, range_m / lines, 0, false};
   settings.physical.absorption_db_per_m = 0;
-  settings.physical.multipath.level = render::MultipathSettings::Level::off;  // truth is of straight ways
+  settings.physical.multipath.level = render::MultipathSettings::Level::off;  // as in the truth
   return settings;
 }
 
@@ -79,7 +79,7 @@ render::SonarSettings forward_looking(int lines, double range_m) {
   return fan(256, 120 * degree, 20 * degree, lines, range_m);
 }
 
-/// Above (0, 0), turned to port by `yaw_rad`, then looking down by `tilt_rad`.
+/// A pose above (0, 0), turned to port by `yaw_rad`, then pitched down by `tilt_rad`.
 render::Pose sonar_pose(double height_m, double yaw_rad, double tilt_rad) {
   render::Pose pose;
   pose.position_m.z = height_m;
@@ -113,7 +113,7 @@ Scene make_plane(const std::string& name) {
   return scene;
 }
 
-/// One beam of a scanning sonar, turned to where the pipeline lies.
+/// One beam of a scanning sonar, turned towards the pipeline.
 Scene make_scanning(const std::string& name, BedHeight height) {
   Scene scene = make_seabed_scene(name, height, seabed_triangles);
   scene.T_world_sonar = sonar_pose(sonar_height_m, -30 * degree, sonar_tilt_rad);
@@ -151,7 +151,7 @@ Scene make_b3(const std::string& name) {
               forward_looking(1000, 20));
 }
 
-/// A tank of 6 x 5 x 3 m without water surface, the sonar in one corner.
+/// A tank of 6 x 5 x 3 m without a water surface, with the sonar in one corner.
 Scene make_b5(const std::string& name) {
   render::Pose T_world_sonar = sonar_pose(1.6, 35 * degree, 10 * degree);
   T_world_sonar.position_m += glm::dvec3(1.2, 1.1, 0);
@@ -159,7 +159,7 @@ Scene make_b5(const std::string& name) {
               forward_looking(1000, 8));
 }
 
-/// The same tank with walls of smooth concrete and calm water over it: everything mirrors everything.
+/// The tank with walls of smooth concrete and calm water, so that all its surfaces act as mirrors.
 Scene make_b5_smooth(const std::string& name) {
   Scene scene = make_b5(name);
   render::AcousticMaterial& walls = scene.world.bodies[0].parts[0].material;
@@ -171,8 +171,8 @@ Scene make_b5_smooth(const std::string& name) {
   return scene;
 }
 
-/// Pipes of 2, 5, 10 and 20 cm at 5, 10, 20, 40 and 80 m, each upright (2 m, shorter where the fan is) and
-/// lying across its bearing (2 degrees wide), one every 3 degrees.
+/// Pipes with diameters of 2, 5, 10 and 20 cm at 5, 10, 20, 40 and 80 m. Each is upright (2 m, or less if the
+/// fan is lower) and lying across its bearing (2 degrees wide). One every 3 degrees.
 Scene make_b7(const std::string& name) {
   constexpr double spacing_rad = 3 * degree;
   std::vector<render::Body> bodies;
@@ -193,9 +193,9 @@ Scene make_b7(const std::string& name) {
   return make(name, std::move(bodies), {}, forward_looking(1000, 85));
 }
 
-/// The docking station of configs/worlds as the oracle rendered it: a copy, so that the reference and the
-/// figures of docs/accuracy.md and docs/benchmark.md stay comparable when the demo's world changes. The place
-/// is that with which configs/demo.yaml starts, received by a Gemini out to 20 m.
+/// A copy of the docking station of configs/worlds, as the oracle rendered it. With the copy, the reference
+/// and the figures of docs/accuracy.md and docs/benchmark.md stay comparable if the demo's world changes. The
+/// sonar is at the first pose of configs/demo.yaml, a Gemini with a range of 20 m.
 Scene make_docking(const std::string& name) {
   Scene scene;
   scene.name = name;
@@ -311,7 +311,7 @@ Scene make_bodies_scene(const std::string& name) {
 render::Pose drifting_pose(const render::Pose& start, std::size_t body, int ping) {
   const double step_m = 0.005 * static_cast<double>(1 + body % 4);
   const double heading = static_cast<double>(body);
-  constexpr int turning_point = 20;  // pings: they go to and fro
+  constexpr int turning_point = 20;  // in pings: bodies move to and fro
   const int steps =
       std::abs((ping + turning_point) % (4 * turning_point) - 2 * turning_point) - turning_point;
   return {start.position_m + step_m * steps * glm::dvec3(std::cos(heading), std::sin(heading), 0),

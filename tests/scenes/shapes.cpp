@@ -17,8 +17,8 @@ Index add_vertex(render::TriangleMesh& mesh, const glm::dvec3& position) {
   return static_cast<Index>(mesh.positions.size() - 1);
 }
 
-/// A first and a last point joined by rings of `around` vertices each, which follow in the mesh without gaps.
-/// Seen against the direction first to last, rings run counter-clockwise.
+/// A first and a last point, joined by rings of `around` vertices each. Rings are contiguous in the mesh.
+/// Seen from the last point towards the first, they run counter-clockwise.
 struct Rings {
   Index first, first_ring, last;
   int around, count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes with a chosen number of flat facets, in metres. Vertices lie on the true surface; there are no
+// Shapes with a given number of flat facets, in metres. Vertices lie on the true surface; there are no
 // normals.
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace sonard::test {
 
-/// `size_m` along its own axes, turned by `yaw_rad` about the vertical through its centre. 12 triangles.
+/// A block of `size_m` along its own axes, turned by `yaw_rad` about the vertical through its centre. 12
+/// triangles.
 render::TriangleMesh make_block(const glm::dvec3& centre_m, const glm::dvec3& size_m, double yaw_rad);
 
-/// 2 * around * (bands - 1) triangles. around >= 3, bands >= 2.
+/// A ball of 2 * around * (bands - 1) triangles. around >= 3, bands >= 2.
 render::TriangleMesh make_ball(const glm::dvec3& centre_m, double radius_m, int around, int bands);
 
 /// A capped cylinder between two points; 2 * around * (along + 1) triangles. around >= 3, along >= 1.

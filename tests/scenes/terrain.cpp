@@ -16,7 +16,7 @@ constexpr double longest_amplitude_m = 1.0;
 constexpr double roughness = 1.3;
 constexpr double middle_m = ground_relief_m / 2;
 
-/// height = amplitude * sin(kx * x + phase) * cos(ky * y + phase)
+/// height = amplitude * sin(kx * x + ky * y + phase)
 struct Wave {
   double amplitude_m, kx, ky, phase;
 };
@@ -35,7 +35,7 @@ const std::vector<Wave>& waves() {
   return all;
 }
 
-/// The sum of waves over a grid is one of products: sines and cosines are needed along its sides only.
+/// By the addition theorem, a wave over a grid needs sines and cosines along two sides only.
 struct Side {
   std::vector<double> sine, cosine;
 };
