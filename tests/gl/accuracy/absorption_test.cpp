@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// T14: absorption, and nothing else, beyond the spreading of T2.
+// T14: T2 with absorption; nothing else changes.
 #include <cmath>
 
 #include "tests/bench/plane_quadrature.hpp"
@@ -15,7 +15,7 @@ class AbsorptionAccuracy : public AccuracyTest {};
 
 INSTANTIATE_TEST_SUITE_P(Accuracy, AbsorptionAccuracy, all_cases(), case_name);
 
-/// What one beam hears, with the absorption from `wall_m` on undone line by line.
+/// Level of one beam, dB, with the absorption beyond `wall_m` undone line by line.
 double level_db(const render::EchoImage& image, int beam, double wall_m, double step_m) {
   double sum = 0;
   for (int k = 0; k < image.lines; ++k) {

@@ -15,7 +15,7 @@ namespace sonard::test {
 
 namespace {
 
-/// The error that 99 % of the beams keep; NaN, which no limit allows, if any is NaN.
+/// The largest error of the best 99 % of the beams. NaN, which fails every limit, if any error is NaN.
 double kept_by_most(const std::vector<bench::BeamError>& errors, double bench::BeamError::*which) {
   constexpr double most = 0.99;
   double worst = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every preset promises (docs/accuracy.md) and how an image is held to it.
+// The errors that each preset may make (docs/accuracy.md), and the comparison of an image with them.
 #pragma once
 
 #include <string>
@@ -27,8 +27,7 @@ struct AccuracyLimits {
 
 AccuracyLimits targets_of(render::Sampling::Preset preset);
 
-/// An image against its truth: what of AccuracyLimits can be told of any image. 99 % of the beams keep the
-/// errors of beams.
+/// The errors of an image against its truth. Errors per beam are the largest of the best 99 % of the beams.
 struct ImageAccuracy {
   double bin_rms = 0, beam_total = 0, first_echo_bins = 0, centroid_bins = 0, hole_fraction = 0;
 };
@@ -40,7 +39,7 @@ struct AccuracyCase {
   render::Sampling::Preset preset;
 };
 
-/// Prints as `cpu_default`: also the name in the list of tests.
+/// For example `cpu_default`; the list of tests shows it too.
 std::string name_of(const AccuracyCase& one);
 
 class AccuracyTest : public ::testing::TestWithParam<AccuracyCase> {
@@ -69,8 +68,8 @@ inline std::string case_name(const ::testing::TestParamInfo<AccuracyCase>& info)
   return name_of(info.param);
 }
 
-/// What the targets are stated for: 256 beams over 120 x 20 degrees, 1000 lines of 20 mm unless others are
-/// asked for, no absorption, mu = 1.
+/// The scene of the targets: 256 beams over 120 x 20 degrees, no absorption, mu = 1.
+/// @param range by default 1000 lines of 20 mm
 Scene forward_looking_scene(std::vector<render::Body> bodies,
                             const render::RangeLines& range = {1000, 0.02, 0, false});
 

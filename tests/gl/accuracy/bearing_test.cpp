@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// T11: every beam looks where its table says.
+// T11: each beam points at the bearing in its table.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ std::string strip_name(int i) {
   return "strip" + std::to_string(i);
 }
 
-// Strips narrower than a beam, upright in the centre of every eighth beam; eight images do all beams.
+// Strips narrower than a beam, upright in the centre of every eighth beam; eight images cover all beams.
 TEST_P(BearingAccuracy, T11_StripInTheCentreOfEveryBeam) {
   std::vector<render::Body> bodies;
   for (int i = 0; i < strips; ++i) {

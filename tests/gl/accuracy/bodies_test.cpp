@@ -16,14 +16,14 @@ class CylinderAccuracy : public AccuracyTest {};
 INSTANTIATE_TEST_SUITE_P(Accuracy, SphereAccuracy, all_cases(), case_name);
 INSTANTIATE_TEST_SUITE_P(Accuracy, CylinderAccuracy, all_cases(), case_name);
 
-/// The radius of the corners of a polygon that is seen as wide as a circle, in the mean over all directions:
-/// one inscribed would be too narrow for the beams that hear but a sliver of a body.
+/// Corner radius, m, of a polygon whose mean width over all directions equals the circle's. An inscribed
+/// polygon is too narrow for the beams that touch only a sliver of a body.
 double corner_radius_m(double circle_radius_m, double corners) {
   return circle_radius_m * (std::numbers::pi / corners) / std::sin(std::numbers::pi / corners);
 }
 
-/// An upright tube without caps, with exact vertex normals, its axis at (x, y), of so many facets around and
-/// up.
+/// An upright tube without caps, with exact vertex normals and its axis at (x, y).
+/// @param around, up numbers of facets
 render::TriangleMesh make_column(double x, double y, double radius_m, double half_height_m,
                                  std::uint32_t around, std::uint32_t up) {
   render::TriangleMesh mesh;
@@ -57,7 +57,7 @@ TEST_P(SphereAccuracy, T4_Sphere) {
   for (const float echo : expected.intensity) {
     total += static_cast<double>(echo);
   }
-  ASSERT_NEAR(total / 1.411161e-4, 1, 1e-5);  // the document's worked value
+  ASSERT_NEAR(total / 1.411161e-4, 1, 1e-5);  // the total by T4
   expect_within(targets(), measure(render(scene), expected), "sphere");
 }
 

@@ -44,7 +44,7 @@ TEST_P(EdgeAccuracy, T6_TwoHalfPlanes) {
   }
 }
 
-/// Where the echo, from `from` on in steps of `step`, first lies on the other side of `level`: interpolated.
+/// The interpolated index at which the echo first crosses `level`, from `from` on in steps of `step`.
 template <class Echo>
 double crossing(const Echo& echo, int from, int step, double level) {
   const bool begins_above = echo(from) > level;
@@ -55,8 +55,8 @@ double crossing(const Echo& echo, int from, int step, double level) {
   return i + step * (echo(i) - level) / (echo(i) - echo(i + step));
 }
 
-// T7: a thin wall 1.5 m high, 12 m away on a flat bed 5 m below, ends on a bearing. Where nothing shadows the
-// bed its echo falls slowly, so half of it is half of the local mean.
+// T7: a thin wall 1.5 m high, 12 m away on a flat bed 5 m below, ends at a bearing. The echo of the open bed
+// falls slowly, so the edge of the shadow lies at half of it.
 TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
   const double end = -20.1 * degree;
   Scene scene = forward_looking_scene(
@@ -72,7 +72,7 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
   const render::EchoImage image = render(scene);
   expect_within(targets(), measure(image, expected), "wall on a bed");
   // Along range: the end of the wall's echo (13.0 m on the axis) and of its shadow (17.857 m), in every beam
-  // that holds nothing but the wall and in which the shadow ends inside the image.
+  // that is all wall and in which the shadow ends inside the image.
   const auto& edges = scene.settings.aperture.beam_edges_rad;
   double worst_bins = 0;
   for (int beam = 0; beam < image.beams; ++beam) {
@@ -93,7 +93,7 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
                                                  crossing(of(expected), shadow, step, level)));
     }
   }
-  // Across beams: the end of the shadow, on every line that lies in it there.
+  // Across beams: the end of the shadow, on every line that is inside the shadow at that bearing.
   double worst_beams = 0;
   const double first_m = std::hypot(12 / std::cos(end), 5),
                last_m = 5 / 3.5 * std::hypot(12 / std::cos(end), 3.5);
@@ -110,7 +110,7 @@ TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
   EXPECT_LE(worst_beams, targets().shadow_beams);
 }
 
-/// The strongest bin-by-bin difference to the truth over lines around a range, relative to the truth.
+/// Largest relative difference of a bin to the truth, over three lines around `line`.
 double worst_near(const render::EchoImage& image, const render::EchoImage& truth, int beam, int line) {
   double worst = 0;
   for (int k = line - 1; k <= line + 1; ++k) {
@@ -120,8 +120,8 @@ double worst_near(const render::EchoImage& image, const render::EchoImage& truth
   return worst;
 }
 
-// T8 without multipath: where all double bounces would land, only what is heard directly. A single bin may be
-// off by four times the RMS of all.
+// T8 without multipath: the lines in which double bounces would arrive hold the single bounce only. One bin
+// may be off by four times the RMS limit.
 TEST_P(DihedralAccuracy, T8_DihedralHoldsTheSingleBounce) {
   const double wall_m = 8, depth_m = 3;
   Scene scene =

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elevation patterns (docs/physics.md 2.5) on a wall across the axis, where each elevation has a range of its
-// own.
+// Elevation patterns (docs/physics.md 2.5) on a wall across the axis: each elevation has its own range.
 #include <cmath>
 #include <numbers>
 
@@ -23,7 +22,7 @@ double sinc_squared(double elevation_rad, double beamwidth_rad) {
   return std::abs(x) < 1e-9 ? 1.0 : std::pow(std::sin(x) / x, 2);
 }
 
-/// Truth of the pattern, or of its square.
+/// Truth of the pattern to the power of 1 or 2.
 render::EchoImage wall_truth(const Scene& scene, int power) {
   const double beamwidth = scene.settings.aperture.vertical_beamwidth_rad;
   const PlaneTruth wall{wall_m, 1, 0, 0, 1.25 * beamwidth};

@@ -23,12 +23,12 @@ constexpr FacetLaw concrete{0.68, 0.2, 1.6e-3};
 render::Body with_law(render::Body body, const FacetLaw& law) {
   render::AcousticMaterial& material = body.parts.front().material;
   material.lambert_mu = law.lambert_mu;
-  material.pressure_reflection = -law.reflection;  // only its square is heard
+  material.pressure_reflection = -law.reflection;  // only its square counts
   material.rms_slope = law.slope;
   return body;
 }
 
-/// So many beams of 256 over 120 degrees, in lines of 8 mm.
+/// `beams` beams of 120/256 degrees, in lines of 8 mm.
 Scene scene_of(render::Body body, int lines, int beams) {
   Scene scene = forward_looking_scene({std::move(body)}, {lines, 0.008, 0, false});
   scene.settings.aperture.beam_edges_rad = render::equal_angle_edges(beams, beams * 120.0 / 256 * degree);
@@ -43,11 +43,11 @@ double total(const render::EchoImage& image) {
   return sum;
 }
 
-/// On a plane cos phi = D / r everywhere.
+/// On a plane cos phi = D / r.
 render::EchoImage wall_truth(const Scene& scene, const FacetLaw& law, const glm::dvec3& n,
                              double distance_m) {
   const PlaneTruth plane{distance_m, n.x, n.y, n.z, scene.settings.aperture.elevation_limit_rad()};
-  // Where the range of the foot point of a half plane, D / A, is that of an edge.
+  // Angle from `foot` at which the foot point of a half plane, at range D / A, has range r.
   const double horizontal = std::hypot(n.x, n.y), foot = std::atan2(n.y, n.x);
   const auto kink = [&](double r) {
     return std::acos(std::sqrt(distance_m * distance_m / (r * r) - n.z * n.z) / horizontal);
@@ -62,7 +62,7 @@ render::EchoImage wall_truth(const Scene& scene, const FacetLaw& law, const glm:
   });
 }
 
-// By 1e-4 rad of its normal a wall of steel is off by 1 % and more far from its foot point.
+// If its normal is off by 1e-4 rad, a wall of steel is off by 1 % and more far from its foot point.
 TEST_P(FacetAccuracy, FacetWalls) {
   struct Foot {
     double port_deg, below_deg;
@@ -96,7 +96,7 @@ TEST_P(FacetAccuracy, Spheres) {
     const double limb2 = centre_m * centre_m - 0.25;
     const render::EchoImage expected =
         image_of_beams(scene.settings, [&](double from, double to, double r1, double r2) {
-          const int steps = r1 < centre_m - 0.48 ? 96 : 12;  // all facets of steel are heard in 2 mm
+          const int steps = r1 < centre_m - 0.48 ? 96 : 12;  // all facets of steel echo within 2 mm
           return weighted_echo([&](double a, double b) { return truth.beam(from, to, a, b); },
                                [&](double r) { return law.relative((limb2 - r * r) / r); }, centre_m - 0.5,
                                r1, r2, steps);
@@ -105,9 +105,9 @@ TEST_P(FacetAccuracy, Spheres) {
   }
 }
 
-// A convex mirror of radius a seen from d, its centre at R0 = d + a, echoes |R|^2 a^2 / (4 d^2 R0^2): far
-// off, the target strength of a rigid sphere, a^2 / 4. Facets do so within 1 % for m <= 0.1
-// (docs/physics.md 2.4).
+// The echo of a convex mirror of radius a at distance d, its centre at R0 = d + a, is |R|^2 a^2 / (4 d^2
+// R0^2). Far away this is the target strength of a rigid sphere, a^2 / 4. Facets agree within 1 % for m <=
+// 0.1 (docs/physics.md 2.4).
 TEST_P(FacetAccuracy, SphereEchoesLikeAMirror) {
   for (const double m : {0.02, 0.1}) {
     const FacetLaw law{0.9, m, 0.0};
@@ -122,8 +122,8 @@ TEST_P(FacetAccuracy, SphereEchoesLikeAMirror) {
   }
 }
 
-// The slopes of a normal map and those of facets add: Gaussian both, they are Gaussian with the sum of their
-// variances, whose echo is the truth. The texels are far smaller than what a sample covers.
+// The slopes of a normal map add to the slopes of facets. Both are Gaussian, so their sum is Gaussian with
+// the sum of the variances; its echo is the truth. The texels are far smaller than the footprint of a sample.
 TEST_P(FacetAccuracy, FineNormalMapsWidenFacets) {
   constexpr double map_slope = 0.1, distance_m = 8;
   const FacetLaw widened{0.94, std::hypot(0.05, map_slope), 3.2e-4};

@@ -27,7 +27,7 @@ TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.35, -0.5));
   const glm::dvec3 a = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1)));
   const glm::dvec3 b = glm::cross(n, a);
-  // Just beyond the range: corners are floats, and the last beam hears but a few centimetres of depth.
+  // Just beyond the range: corners are floats, and the last beam's echo is only a few centimetres deep.
   const glm::dvec3 corner = glm::dvec3(9, 0, 0) - 32.0 * a - 32.0 * b;
   const Scene scene = forward_looking_scene({make_body("slope", make_quad(corner, 64.0 * a, 64.0 * b))});
   const PlaneTruth truth{9 * n.x, n.x, n.y, n.z, scene.settings.aperture.elevation_limit_rad()};

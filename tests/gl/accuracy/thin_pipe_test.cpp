@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pipe of 5 cm at 30 m is found wherever it stands or lies between two samples.
+// A pipe of 5 cm at 30 m is found at any place between two samples, upright or lying.
 #include <cmath>
 #include <numbers>
 
@@ -15,13 +15,12 @@ constexpr int pipes = 50;
 
 class ThinPipe : public AccuracyTest {
  protected:
-  /// Share of the pipes whose echo, within a third of a metre of its place, is at least half of the closed
-  /// form.
+  /// Share of the pipes whose echo, within a third of a metre of its place, exceeds half of the closed form.
   double detected(bool upright) const {
     std::vector<render::Body> bodies;
     std::vector<double> bearings;
     for (int i = 0; i < pipes; ++i) {
-      // One every 2.3 degrees, and by the golden ratio off any regular grid, in bearing and in height.
+      // One every 2.3 degrees, off any regular grid: by the golden ratio in bearing, by sqrt 2 in height.
       const double offset = std::fmod(i * std::numbers::phi, 1.0);
       const double bearing = (2.3 * (i - (pipes - 1) / 2.0) + 0.8 * (offset - 0.5)) * degree;
       const double z = 4 * (std::fmod(i * std::numbers::sqrt2, 1.0) - 0.5);
@@ -60,7 +59,7 @@ class ThinPipe : public AccuracyTest {
     return sum;
   }
 
-  /// T5 of a pipe seen from where its middle is nearest; lying ones are heard like upright ones.
+  /// T5 of an upright pipe whose middle is nearest; lying pipes have the same echo.
   static double expected() {
     const double aside = std::asin(radius_m / range_m);
     return azimuth_integral(

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
 
-/// The two azimuths at which the cosine of the angle from `centre` has that value; NaN where there are none.
+/// Adds the two azimuths at which the cosine of the angle from `centre` is `cosine`; NaN if there are none.
 void add_cosine(double cosine, double centre, std::vector<double>& kinks) {
   const double aside = std::acos(cosine);
   kinks.push_back(centre - aside);

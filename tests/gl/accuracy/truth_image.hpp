@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beams that closed forms say a sonar must hear (docs/physics.md 3.2), for mu = 1 and no absorption.
+// Beams by closed forms (docs/physics.md 3.2), for mu = 1 and no absorption.
 #pragma once
 
 #include "renderer/ping.hpp"
@@ -8,7 +8,7 @@
 
 namespace sonard::test {
 
-/// T4, beam by beam: a sphere wholly inside the fan. Summed over beams it is sphere_echo().
+/// T4, beam by beam: a sphere wholly inside the fan. The sum over beams is sphere_echo().
 struct SphereTruth {
   double radius_m;
   double horizontal_m, azimuth_rad, height_m;  ///< of the centre, sonar frame
@@ -27,11 +27,11 @@ struct CylinderTruth {
   double beam(double psi_from, double psi_to, double r1, double r2) const;
 };
 
-/// T7, ShadowTruth over the width of a beam, the wall only to port of an azimuth; to starboard there is the
-/// bed alone. A wall higher than the sonar makes the corner of T8.
+/// T7, ShadowTruth over the width of a beam. The wall is only to port of `end_rad`; to starboard is the bed
+/// alone. A wall higher than the sonar makes the corner of T8.
 struct WallEndTruth {
   ShadowTruth wall;
-  double end_rad;  ///< inside (-pi/2, pi/2); -pi/2 for a wall without end
+  double end_rad;  ///< inside (-pi/2, pi/2); -pi/2: the wall has no end
 
   double beam(double psi_from, double psi_to, double r1, double r2) const;
 };

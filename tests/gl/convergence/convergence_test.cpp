@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the error falls with the number of rows (docs/physics.md 3.5), against closed forms. Fixed grids:
-// what an error preset samples is its own choice. The finest error of each case may not grow by more than a
-// tenth over what was reached before.
+// How fast the error falls with the number of rows (docs/physics.md 3.5), against closed forms. The grids are
+// fixed, because an error preset chooses its own samples. Limits of the finest errors are 1.1 times a
+// measured error.
 #include <cmath>
 #include <vector>
 
@@ -86,9 +86,9 @@ class Convergence : public EngineTest {
 
 INSTANTIATE_TEST_SUITE_P(Engines, Convergence, all_engines(), engine_name);
 
-// On a wall at 10 m a row of 1/64 of the fan is 9 mm deep at its edge: about a bin, and less above. The
-// wall's nearest point lies where two bins meet, so that the last digit of a range shows in the order: 1.60
-// to 2.15 were found.
+// On a wall at 10 m, one of 64 rows is 9 mm deep at the edge of the fan: about a bin. More rows are less
+// deep. The wall's nearest point lies where two bins meet, so the last digit of a range affects the order:
+// 1.60 to 2.15 were measured.
 TEST_P(Convergence, T2_Wall) {
   const std::vector<int> rows{64, 96, 128};
   const std::vector<double> found = errors(make_scene("b1_wall"), {0.35, 0.7, 1.047}, rows);
@@ -110,7 +110,7 @@ TEST_P(Convergence, T3_SeabedWithRowsBelowABin) {
   EXPECT_LT(found.back(), 1.1 * 3.0e-4);
 }
 
-// Where a row spreads over many bins the footprint still converges, with first order at least.
+// If a row spreads over many bins, the footprint still converges, at least with first order.
 TEST_P(Convergence, T3_SeabedWithRowsAboveABin) {
   const std::vector<int> rows{64, 128, 256, 512};
   const std::vector<double> found = errors(make_scene("b2_seabed_5m"), {0.3}, rows);

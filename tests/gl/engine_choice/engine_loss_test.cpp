@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A GPU that fails in the middle of an image: that image and the next ones are those of the CPU.
+// If the GPU fails in the middle of an image, the CPU renders this image and the next ones.
 #include <string>
 #include <vector>
 
@@ -47,7 +47,7 @@ TEST_F(EngineLoss, LosesNoPingAndSaysItOnce) {
   render::SonarRenderer cpu(wall_and_ball(), {EngineKind::cpu});
   render::SonarRenderer gpu(wall_and_ball(), {EngineKind::gpu});
   for (int ping = 0; ping < 4; ++ping) {
-    // The world moves on before the loss and after it.
+    // The world changes before the loss and after it.
     const render::Pose T_world_ball{{4.0 + 0.3 * ping, 0.2, 0.0}, {1, 0, 0, 0}};
     for (render::SonarRenderer* renderer : {&losing, &cpu, &gpu}) {
       ASSERT_TRUE(renderer->set_body_pose("ball", T_world_ball));
@@ -70,7 +70,7 @@ TEST_F(EngineLoss, TheGpuComesBackWhereThatIsAskedFor) {
     losing.render_echo(request(0.1 * ping));
     engines.push_back(losing.engine());
   }
-  // The context that is made for the third image is lost with its second one, too.
+  // The context made for the third image is also lost with its second image.
   EXPECT_THAT(engines, ElementsAre(EngineKind::gpu, EngineKind::cpu, EngineKind::gpu, EngineKind::cpu));
   EXPECT_THAT(lines_, ElementsAre(HasSubstr("is lost"), HasSubstr("the GPU is back"), HasSubstr("is lost")));
 }
@@ -99,7 +99,7 @@ TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
 }
 
 TEST_F(EngineTrials, AGpuThatIsLostOnTheWayIsNotTaken) {
-  // At its first image: how many a trial asks for depends on how long they take.
+  // At its first image, because the number of images in a trial depends on their duration.
   render::RendererOptions options = losing_at(1);
   options.engine = EngineKind::automatic;
   render::SonarRenderer renderer(wall_and_ball(), options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings of several heads that are in the making on the GPU at once are those that each head gets alone.
+// Pings of several heads in flight on the GPU at once equal the pings that each head gets alone.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,7 +27,7 @@ class PingsInFlight : public testing::Test {
     return options;
   }
 
-  /// A head of each sort, and more of them than may be in the making at once.
+  /// Heads with different settings, more than may be in flight at once.
   static std::vector<StreamPing> pings() {
     std::vector<StreamPing> pings;
     for (int stream = 0; stream < 11; ++stream) {
@@ -102,7 +102,7 @@ TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
   }
 }
 
-// The second faces a ball that is larger than the video memory allowed, the first the wall.
+// The first faces the wall, the second a ball larger than the allowed video memory.
 TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
   const render::World large = make_world({wall_ahead(), make_body("ball", make_sphere(1, 200))});
   render::RendererOptions bounded = options();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OpenGL context is destroyed while a daemon serves: the client loses one ping at most.
+// If the OpenGL context is destroyed while a daemon serves, the client loses at most one ping.
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::uint64_t wanted_pings = 12;
 
-/// A head before a wall, of which a client wants pings.
+/// A head in front of a wall; a client requests its pings.
 class ServingWithoutGpu : public testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +51,7 @@ class ServingWithoutGpu : public testing::Test {
   }
   void TearDown() override { spdlog::set_level(spdlog::level::info); }
 
-  /// Takes pings until it has all; then ends the daemon.
+  /// Receives pings until all have arrived, for at most 120 s; then ends the daemon.
   void play_topside() {
     boost::asio::io_context io;
     const SteadyClock clock;
@@ -92,8 +92,8 @@ TEST_F(ServingWithoutGpu, LosesOnePingAtMost) {
   std::vector<std::string> lines;
   render::RendererOptions options = renderer_options(config_);
   options.engine = render::EngineKind::gpu;
-  options.gpu.lose_context_at_image = 5;                     // the first is that of the start
-  options.skip.turn_off(render::SkipRule::unchanged_scene);  // the sonar rests, and every ping is an image
+  options.gpu.lose_context_at_image = 5;                     // the first is made at the start
+  options.skip.turn_off(render::SkipRule::unchanged_scene);  // the sonar rests, but every ping is an image
   options.report = [&](const std::string& line) { lines.push_back(line); };
   std::thread client([this] { play_topside(); });
   const int code = serve(config_, world, world_renderer_factory(world, options, {}));

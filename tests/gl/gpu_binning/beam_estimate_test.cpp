@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error estimates of images whose error can be written down: the samples are written into textures.
+// Error estimates of images whose error is known: the test writes the samples into textures.
 #include "renderer/engines/gpu/beam_estimate.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double step_m = 0.02;
 
-/// Three beams of half a degree, sampled evenly in one view; what is said of "the beam" is of the middle one.
+/// Three beams of half a degree, sampled evenly in one view; estimates are for the middle one.
 class BeamEstimateTest : public ::testing::Test {
  protected:
   static constexpr int columns_per_beam = 8;
@@ -42,7 +42,7 @@ class BeamEstimateTest : public ::testing::Test {
     thinned_ = of(3 * columns / 2, rows / 2);
   }
 
-  /// Of the size of the view, which lies on its side.
+  /// A texture of the view's size, transposed.
   GLuint make_texture(RasterSampler& sampler, const std::vector<SurfaceSample>& samples) const {
     GLuint texture = 0;
     glGenTextures(1, &texture);
@@ -55,7 +55,7 @@ class BeamEstimateTest : public ::testing::Test {
     return texture;
   }
 
-  /// @param what is seen at an azimuth and the tangent of an elevation.
+  /// @param what the sample at an azimuth, rad, and the tangent of an elevation
   BeamEstimate estimate_of(const std::function<SurfaceSample(double psi, double y)>& what,
                            const RangeLines& range = {1000, step_m, 0, false},
                            const BeamError& most_error = {1, 1}) {
@@ -82,8 +82,7 @@ class BeamEstimateTest : public ::testing::Test {
     return found;
   }
 
-  /// The echo of the middle beam where columns see only what lies in their centres: share of the beam to
-  /// port of an upright edge.
+  /// Share of the middle beam to port of an upright edge if each column sees only its centre.
   double sampled_share(double edge_rad) const {
     double share = 0;
     const SubView& view = grid_.views[0];
@@ -110,7 +109,7 @@ TEST_F(BeamEstimateTest, AnUprightEdgeMayBeAnywhereBetweenTwoColumns) {
     const double share = (0.0045 - edge) / 0.009;
     const double total = share + 0.25 * (1 - share);
     const double found = sampled_share(edge) + 0.25 * (1 - sampled_share(edge));
-    // A jump to a column of the next beam is met once only.
+    // The beam meets a jump to a column of the next beam only once.
     const double allowed = std::abs(edge) > 0.0045 - column_rad / 2 ? std::numbers::sqrt2 : 1.0;
     const double error = std::abs(found - total) / found;
     EXPECT_LE(error, 1.02 * allowed * static_cast<double>(estimate.columns_total)) << edge;
@@ -132,7 +131,7 @@ TEST_F(BeamEstimateTest, TheEdgeIsInTheColumnsThatAreSaidToBeOff) {
         return psi > edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{};
       },
       {1000, step_m, 0, false}, {1e-3, 0.05});
-  // The columns on either side of it, and those beside them whose neighbours they are.
+  // The columns on either side of it.
   const double column_rad = 0.009 / columns_per_beam;
   const int before = static_cast<int>((0.0045 - edge) / column_rad - 0.5);
   EXPECT_EQ(estimate.zone_begin, before);
@@ -146,7 +145,7 @@ TEST_F(BeamEstimateTest, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
     const BeamEstimate estimate = estimate_of([&](double, double y) {
       return y < edge ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.5F, 0, 0};
     });
-    // Nearly: rows of equal tangent.
+    // Approximate, since rows are equal in tangent.
     const double share = (edge + half) / (2 * half);
     const double rows = std::floor((edge + view.tan_half_height) / view.pixel_height() + 0.5);
     const double found = (rows * view.pixel_height() - view.tan_half_height + half) / (2 * half);
@@ -158,7 +157,7 @@ TEST_F(BeamEstimateTest, ALevelEdgeMayBeAnywhereBetweenTwoRows) {
 }
 
 TEST_F(BeamEstimateTest, WhatGoesOnIsNoEdge) {
-  // A wall seen at a slant: echo and range change by a third over the three beams.
+  // A wall seen at a slant: echo and range change over the three beams.
   const BeamEstimate estimate = estimate_of([](double psi, double y) {
     return SurfaceSample{static_cast<float>(8 + 60 * psi + 2 * y), static_cast<float>(1 + 6 * psi + y), -60,
                          2};
@@ -179,7 +178,7 @@ TEST_F(BeamEstimateTest, TheLastLineIsNoEdge) {
   const BeamEstimate cut = estimate_of(slope, {1000, step_m, 0, false});
   EXPECT_LT(within.rows_total, 1e-3F);
   EXPECT_LT(cut.rows_total, 1e-3F);
-  // But a body before what lies out of range has one.
+  // But a body in front of a surface out of range has one.
   const BeamEstimate body = estimate_of(
       [&](double psi, double) {
         return psi > 0.001 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{90, 1, 0, 0};
@@ -203,7 +202,7 @@ TEST_F(BeamEstimateTest, AnEchoInOneColumnAloneIsThin) {
       return std::abs(psi) < width_rad / 2 ? SurfaceSample{5, 1, 0, 0} : SurfaceSample{9, 0.2F, 0, 0};
     });
   };
-  make_grid(9, 64);  // a column is 0.001 wide, and one stands in the middle
+  make_grid(9, 64);  // a column is 0.001 rad wide, and one is in the middle
   EXPECT_EQ(thing(0.0015).thin, 1U);
   EXPECT_EQ(thing(0.0035).thin, 0U);
 }

@@ -8,7 +8,7 @@
 namespace sonard::test {
 namespace {
 
-// What renderer/binning/range_profile does to footprints that are hardly wider than a point, or endless.
+// Limits of footprints, as in renderer/binning/range_profile.
 constexpr double least_width = 1e-3;  // lines
 constexpr double most_smear = 512.0;
 
@@ -16,7 +16,8 @@ struct Footprint {
   double centre, wide, narrow;  ///< lines
 };
 
-/// Cumulative distribution of the sum of two even spreads, `wide` >= `narrow`, about 0 (docs/physics.md 2.3).
+/// Cumulative distribution of the sum of two uniform spreads about 0 (docs/physics.md 2.3).
+/// @param wide, narrow their widths, `wide` >= `narrow`
 double distribution(double x, double wide, double narrow) {
   const double h = (wide + narrow) / 2, c = (wide - narrow) / 2;
   if (std::abs(x) >= h) {
@@ -29,7 +30,7 @@ double distribution(double x, double wide, double narrow) {
   return x < 0 ? tail : 1 - tail;
 }
 
-/// A cell of the pixel at tangents (x, y), its centre off by (dx, dy), a parallelogram of this size.
+/// Footprint of a cell of the pixel at tangents (x, y): a parallelogram whose centre is off by (dx, dy).
 Footprint footprint(const render::SurfaceSample& sample, double x, double y, double dx, double dy,
                     double width, double height, double side_slope, double lines_per_m) {
   // The plane n.p = 1 of the sample: along the ray (x, y, 1) the inverse of the depth is n.q, and range =
@@ -40,7 +41,7 @@ Footprint footprint(const render::SurfaceSample& sample, double x, double y, dou
   const double gy = inverse * (y / (norm * norm) - static_cast<double>(sample.range_dy / sample.range_m));
   double u = x + dx, v = y + dy;
   if (inverse + gx * dx + gy * dy < 0.5 * inverse) {
-    u = x;  // the surface turns away within the pixel, which is then taken at its centre
+    u = x;  // the surface turns away within the pixel, so its centre is used
     v = y;
   }
   const double q = std::sqrt(1 + u * u + v * v);
@@ -54,7 +55,6 @@ Footprint footprint(const render::SurfaceSample& sample, double x, double y, dou
           std::clamp(std::min(a, b), least_width, most_smear)};
 }
 
-/// What is binned, and where it goes.
 class DoubleBinner {
  public:
   DoubleBinner(const render::SampleGrid& grid, const std::vector<const render::SurfaceSample*>& views,
@@ -134,7 +134,7 @@ class DoubleBinner {
                      lines_per_m_);
   }
 
-  /// As both ways of binning: none where less than 2^-32 of the beam is seen.
+  /// As both binners: 0 if less than 2^-32 of the beam is seen.
   void take_means(std::size_t beam, double solid_angle) {
     for (std::size_t i = beam * lines_; i < (beam + 1) * lines_; ++i) {
       echo_[i] = weight_[i] > 0x1p-32 * solid_angle ? std::min(1.0, echo_[i] / weight_[i]) : 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binning of a grid of samples in double precision, straight from docs/physics.md 2.3: the truth for both
-// ways to bin. Of renderer/ it takes the cells of the grid, nothing else.
+// Binning of a grid of samples in double precision by docs/physics.md 2.3: the truth for both binners. From
+// renderer/ it uses the cells of the grid only.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace sonard::test {
 
-/// What BinningResult::echo is to hold.
+/// The truth of BinningResult::echo.
 std::vector<double> bin_in_double(const render::SampleGrid& grid,
                                   const std::vector<const render::SurfaceSample*>& views,
                                   const render::RangeLines& range, const render::BinningOptions& options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binning on the GPU against binning on the CPU of the same samples: both renderers draw with the same
-// OpenGL, so every sample is the same to the bit, and what differs is binning.
+// Binning on the GPU against binning on the CPU. Both bin the samples of one rasteriser, equal to the bit, so
+// all differences come from binning.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -26,7 +26,7 @@ using test::make_quad;
 using test::make_sphere;
 using test::make_world;
 
-/// Over the whole fan.
+/// A wall across the whole fan.
 TriangleMesh wall(float distance_m) {
   return make_quad({distance_m, -80, -80}, {0, 160, 0}, {0, 0, 160});
 }
@@ -35,7 +35,7 @@ TriangleMesh bed(float altitude_m) {
   return make_quad({-200, -200, -altitude_m}, {400, 0, 0}, {0, 400, 0});
 }
 
-/// The largest difference of a bin, over the strongest of its beam in `truth`.
+/// The largest difference of a bin, relative to the strongest bin of its beam in `truth`.
 template <class A, class B>
 double worst_difference(const std::vector<A>& truth, const std::vector<B>& image, std::size_t lines) {
   EXPECT_EQ(truth.size(), image.size());
@@ -56,7 +56,7 @@ double worst_difference(const std::vector<A>& truth, const std::vector<B>& image
   return worst;
 }
 
-/// One rasteriser; what it draws is binned in all three ways.
+/// Bins the samples of one rasteriser on the GPU, on the CPU and in double precision.
 class GpuBinningTest : public ::testing::Test {
  protected:
   void SetUp() override { test::require_gl(); }
@@ -75,7 +75,7 @@ class GpuBinningTest : public ::testing::Test {
 
   static RendererOptions gpu() { return {EngineKind::gpu, 0}; }
 
-  /// The numbers of the beams of a grid that has them all.
+  /// The numbers of all beams of a grid.
   static std::vector<int> all_beams(const SampleGrid& grid) {
     std::vector<int> beams(static_cast<std::size_t>(grid.beam_count()));
     std::iota(beams.begin(), beams.end(), 0);
@@ -146,8 +146,7 @@ TEST_F(GpuBinningTest, AgreesOnASphere) {
   expect_agreement(sphere);
 }
 
-/// Numbers of columns and rows that fit nothing, so that beams cut columns; the elevation pattern and its
-/// limit.
+/// Odd numbers of columns and rows, so that beams cut columns; an elevation pattern and its limit.
 TEST_F(GpuBinningTest, AgreesUnderATiltedSonarWithAnElevationPattern) {
   Case tilted{"tilted, pattern, odd grid",
               make_world({make_body("bed", bed(4)), make_body("wall", wall(15))})};
@@ -166,7 +165,7 @@ TEST_F(GpuBinningTest, AgreesOnTheDockingStation) {
   expect_agreement(docking);
 }
 
-/// Lines of a millimetre: samples lie in lines that a float alone would know to a thousandth.
+/// Lines of a millimetre: there a float alone resolves a few thousandths of a line.
 TEST_F(GpuBinningTest, AgreesInLinesFarOut) {
   Case far{"bed, 40,000 lines", make_world({make_body("bed", bed(8))})};
   far.T_world_sonar = looking({0, 0, 0}, 0, 20);
@@ -185,7 +184,7 @@ TEST_F(GpuBinningTest, AgreesOnOneBeam) {
   expect_agreement(scanning);
 }
 
-/// What of each beam is still open, line by line: behind a wall, over a bed, and where nothing is seen.
+/// The open solid angle of each beam, line by line: behind a wall, over a bed, and where nothing is seen.
 TEST_F(GpuBinningTest, AgreesOnOpenWater) {
   Case open{"open water", make_world({make_body("bed", bed(2)),
                                       make_body("wall", make_quad({7, 0, -80}, {0, 80, 0}, {0, 0, 160}))})};
@@ -193,7 +192,7 @@ TEST_F(GpuBinningTest, AgreesOnOpenWater) {
   expect_agreement(open);
 }
 
-/// Means, and every way in which the paper bins.
+/// Means, and all variants of binning in the paper.
 TEST_F(GpuBinningTest, AgreesInModePaper) {
   Case paper{"paper", make_world({make_body("bed", bed(4)), make_body("wall", wall(12))})};
   paper.T_world_sonar = looking({0, 0, 0}, 0, 20);
@@ -211,7 +210,7 @@ TEST_F(GpuBinningTest, AgreesInModePaper) {
   expect_agreement(paper);
 }
 
-/// S19: everything in one line.
+/// S19: all samples in one line.
 TEST_F(GpuBinningTest, AgreesWhereAllSamplesFallIntoOneLine) {
   Case one{"one line", make_world({make_body("wall", wall(5))})};
   one.range = {1, 20.0, 0, false};
@@ -220,7 +219,7 @@ TEST_F(GpuBinningTest, AgreesWhereAllSamplesFallIntoOneLine) {
   expect_agreement(one);
 }
 
-/// Neither the order of the samples in the grid nor that of threads and pings shows in the image.
+/// The order of samples in the grid, of threads and of pings does not change the image.
 TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
   const World world = make_world({make_body("bed", bed(4)), make_body("wall", wall(15))});
   const Pose T_world_sonar = looking({0, 0, 0}, 3, 20);
@@ -252,7 +251,7 @@ TEST_F(GpuBinningTest, IsRepeatableToTheBit) {
   }
 }
 
-/// Surfaces brighter than anything: sums stop short of wrapping around, and it is counted.
+/// Extremely bright surfaces: sums saturate instead of wrapping around, and the samples are counted.
 TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_angle_edges(16, 60 * degree);
@@ -264,7 +263,7 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
     const EchoImage image = renderer.render_echo(request);
     const PingStatistics statistics = renderer.last_statistics();
     EXPECT_GT(statistics.samples, 0U);
-    // Slivers of pixels at the sides of beams take less.
+    // Slivers of pixels at the sides of beams do not saturate.
     EXPECT_GE(static_cast<double>(statistics.saturated_samples),
               mu > 1 ? 0.99 * static_cast<double>(statistics.samples) : 0.0);
     EXPECT_EQ(statistics.saturated_samples > 0, mu > 1);
@@ -272,9 +271,9 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
     return image;
   };
   const EchoImage unit = render(1);
-  const EchoImage bright = render(1e10);  // a sample fits into the words of a sum, all of a beam do not
+  const EchoImage bright = render(1e10);  // one sample fits into a sum, all of a beam do not
   for (int beam = 0; beam < bright.beams; ++beam) {
-    // Held to 2^22 to 2^23 times its share of the fullest beam; the response of `unit` is cos phi > 0.8.
+    // Limited to 2^22 to 2^23 times its share of the fullest beam; the response of `unit` is cos phi > 0.8.
     EXPECT_GT(bright.at(beam, 0), 0x1p21F * unit.at(beam, 0));
     EXPECT_LT(bright.at(beam, 0), 0x1p23F / 0.8F * unit.at(beam, 0));
   }
@@ -284,7 +283,7 @@ TEST_F(GpuBinningTest, CountsEchoesBeyondWhatItsSumsHold) {
   }
 }
 
-/// What one buffer of OpenGL cannot hold lies on several pages: S8_LargestImage renders such an image.
+/// An image too large for one OpenGL buffer has several pages; S8_LargestImage renders one.
 TEST_F(GpuBinningTest, LargeImagesHavePages) {
   RasterSampler sampler(World{});
   GpuBinner binner(sampler);
@@ -366,12 +365,12 @@ class BeamEstimates : public GpuBinningTest {
   const BinningOptions options_{};
 };
 
-/// Where a surface goes on there is no edge, and every second sample, moved to the middle of its larger pixel
-/// along the surface, makes the image that the coarser grid makes.
+/// A continuous surface has no edge. Every second sample, moved along the surface to the middle of its larger
+/// pixel, makes the image of the coarser grid.
 TEST_F(BeamEstimates, OfAPlaneAreSmallAndThoseOfTheCoarserGrid) {
   World world = make_world({make_body("slope", wall(0))});
   world.bodies[0].T_world_body = looking({9, 0, 0}, 25, 35);
-  SurfaceModel even;  // a response of one half, wherever it is taken
+  SurfaceModel even;  // a response of one half everywhere
   even.model = Model::paper;
   even.sigmoid_slope = 0;
   const std::vector<BeamEstimate> found = estimates(world, even);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What engine `gpu` says it has done, before a wall that fills the fan.
+// Work counts of engine `gpu` in front of a wall that fills the fan.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class WorkCounts : public ::testing::Test {
     request_.settings.sampling = Sampling::of_grid(views, columns, rows);
   }
 
-  /// Of the second of two pings: what the first one left on the GPU is there.
+  /// Counts of the second of two pings, which finds the data of the first on the GPU.
   PingStatistics of_a_ping() const {
     const World world = test::make_world(
         {test::make_body("wall", test::make_quad({10, -80, -80}, {0, 160, 0}, {0, 0, 160})),
@@ -74,7 +74,7 @@ TEST_F(WorkCounts, AreThoseOfOnePing) {
   const PingStatistics once = of_a_ping(), again = of_a_ping();
   EXPECT_EQ(once.views, again.views);
   EXPECT_EQ(once.triangles, again.triangles);
-  // A carry may cancel what would be added to a high word; whose it does depends on who comes first.
+  // A carry may cancel an addition to a high word; whether it does depends on the order of threads.
   EXPECT_NEAR(static_cast<double>(again.atomic_additions), static_cast<double>(once.atomic_additions),
               0.01 * static_cast<double>(once.atomic_additions));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page about both engines, of a small fan over the plane.
+// The report on both engines, for a small fan over the scene `plane`.
 #include "tests/bench/gpu_report.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EngineKind `gpu` finds the grids that an error preset takes (docs/accuracy.md).
+// Engine `gpu` chooses the grids of an error preset (docs/accuracy.md).
 #include "renderer/engines/gpu/grid_choice.hpp"
 
 #include <cmath>
@@ -88,7 +88,7 @@ TEST(BeamRuns, ABeamWithAZoneHasAViewOfItAndOneOnEitherSide) {
   ASSERT_EQ(run.views.size(), 3u);
   EXPECT_EQ(run.views[0].port_rad, edges[1]);
   EXPECT_EQ(run.views[2].starboard_rad, edges[2]);
-  // All of the beam's solid angle is there, once.
+  // The views cover all of the beam's solid angle once.
   const SampleGrid grid = make_sample_grid(aperture, {run});
   double solid_angle = 0;
   for (const ColumnPart& part : grid.parts) {
@@ -104,7 +104,7 @@ TEST(BeamRuns, ABeamWithAZoneHasAViewOfItAndOneOnEitherSide) {
 
 constexpr GridTargets one_per_cent{0.01, {0.001, 0.05}};
 
-/// A beam of even columns, none of which adds an error, that has echoes in a hundred bins.
+/// A beam of equal columns without estimated errors, with echoes in a hundred bins.
 BeamState sure(const Aperture& aperture, int beam, const BeamDensity& density) {
   BeamState state{density, {}, error_of_distance(Sampling::Preset::normal, 1), density.columns};
   const auto b = static_cast<std::size_t>(beam);
@@ -115,8 +115,7 @@ BeamState sure(const Aperture& aperture, int beam, const BeamDensity& density) {
   return state;
 }
 
-/// Lets the bins differ by so much from those of thinned samples, of which three tenths are taken for the
-/// error.
+/// Sets the estimated RMS error of the bins: 0.3 of their difference to the bins of thinned samples.
 void let_bins_be_off(BeamState& beam, double rms) {
   beam.estimate.bin_squares = static_cast<float>(100 * std::pow(rms / 0.3, 2));
 }
@@ -170,7 +169,7 @@ TEST_F(BeamsToRefine, MoreOfBothWhereBinsAreOff) {
   EXPECT_EQ(choices[0].density, (BeamDensity{2 * first_.columns, 2 * first_.rows, 0, 0, 0, 0}));
 }
 
-/// The target is one for all bins of the image.
+/// The target applies to all bins of the image together.
 TEST_F(BeamsToRefine, ABeamMayBeALittleWorseWhereOthersAreBetter) {
   for (BeamState& beam : beams_) {
     let_bins_be_off(beam, 0.002);
@@ -212,7 +211,7 @@ TEST_F(BeamsToRefine, ManyEdgesTakeColumnsInAllOfTheBeam) {
   EXPECT_EQ(choices[0].density.columns, first_.columns * 3);
 }
 
-/// Another view takes as long as some thousand samples.
+/// One more view takes as long as some thousand samples.
 TEST_F(BeamsToRefine, NeighboursShareViewsWhereThatTakesFewMoreSamples) {
   beams_[2].estimate.rows_total = 0.0006F;
   beams_[3].estimate.rows_total = 0.0008F;
@@ -276,7 +275,7 @@ class RasterPreset : public ::testing::Test {
     return request;
   }
 
-  /// @return the number of samples each preset took.
+  /// @return the numbers of samples of `fast` and of `default`
   static std::pair<std::uint64_t, std::uint64_t> expect_targets(const std::string& name) {
     const test::Scene scene = test::make_scene(name);
     const auto truth = bench::find_reference(scene, SONARD_SOURCE_DIR "/tests/data/oracle");
@@ -325,7 +324,7 @@ TEST_F(RasterPreset, MeetsItsTargetInOneBeamOfAScanningSonar) {
   EXPECT_LT(fast, normal);
 }
 
-// A renderer has the heads of a vehicle in turn, each with its own fan.
+// A renderer serves the heads of a vehicle in turn, each with its own fan.
 TEST_F(RasterPreset, TheFirstGridsOfAllHeadsAreKept) {
   const test::Scene scene = test::make_scene("plane");
   SonarRenderer renderer(scene.world, options());
@@ -334,7 +333,7 @@ TEST_F(RasterPreset, TheFirstGridsOfAllHeadsAreKept) {
     asked.settings.aperture.beam_edges_rad = equal_angle_edges(8 + head, 0.5);
     renderer.render_echo(asked, head);
     const PingStatistics& statistics = renderer.last_statistics();
-    return statistics.skipped.of(SkipRule::unchanged_settings) > 1;  // one is that of the transmission loss
+    return statistics.skipped.of(SkipRule::unchanged_settings) > 1;  // the transmission loss counts one
   };
   for (int head = 0; head < 8; ++head) {
     EXPECT_FALSE(kept(head)) << head;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is thinner than a column of samples, or lies between two slices, is not lost.
+// Objects thinner than a column of samples, or between two slices, are not lost.
 #include "renderer/engines/gpu/thin_things.hpp"
 
 #include <cmath>
@@ -29,7 +29,7 @@ Pose turned(double yaw_rad) {
   return {{0, 0, 0}, glm::angleAxis(yaw_rad, glm::dvec3(0, 0, 1))};
 }
 
-/// 30 mm wide, 2 m high.
+/// A post, 30 mm wide and 2 m high.
 TriangleMesh post_at(double range_m) {
   return test::make_block({range_m, 0, 0}, {0.03, 0.03, 2}, 0);
 }
@@ -45,8 +45,8 @@ std::vector<int> beams_with(const std::vector<int>& columns) {
   return beams;
 }
 
-// A fine beam in the middle is 2 sin 60 / 512 = 3.38 mrad wide, 101 mm at 30 m. The width of a square bar is
-// taken from 30 to 45 mm, so that eight columns across it make 18 to 27 of them.
+// A fine beam in the middle is 2 sin 60 / 512 = 3.38 mrad wide, 101 mm at 30 m. The width found for a square
+// bar is 30 to 45 mm, so eight columns across it make 18 to 27 columns in the beam.
 TEST(ThinThings, EightColumnsLieAcrossAPost) {
   const ThinThings things(test::make_world({test::make_body("post", post_at(30))}));
   ASSERT_EQ(things.all().size(), 1u);
@@ -56,7 +56,7 @@ TEST(ThinThings, EightColumnsLieAcrossAPost) {
   EXPECT_EQ(beams_with(columns), (std::vector<int>{255, 256}));  // it stands between the two
   EXPECT_GE(columns[255], 18);
   EXPECT_LE(columns[255], 28);
-  // Turned by 40 degrees to port the sonar has it to starboard: sin 40 / sin 60 * 256 = 190.01 beams.
+  // If the sonar turns 40 degrees to port, the post is to starboard: sin 40 / sin 60 * 256 = 190.01 beams.
   EXPECT_EQ(beams_with(things.least_columns(turned(40 * degree), fan(), 50)), (std::vector<int>{445, 446}));
   EXPECT_TRUE(beams_with(things.least_columns({}, fan(), 25)).empty());
   EXPECT_TRUE(beams_with(things.least_columns(turned(80 * degree), fan(), 50)).empty());
@@ -109,8 +109,8 @@ TEST(ThinThings, SayWhereNobodyLooksForThem) {
 class ThinPost : public test::EngineTest {};
 INSTANTIATE_TEST_SUITE_P(Engines, ThinPost, test::all_engines(), test::engine_name);
 
-// T2 in small: a face of 30 mm by 2 m, 29.985 m away. Its elevations lie well inside the fan, so that the
-// echo is its area over r^4, but for the pattern, which is 1.
+// T2 in small: a face of 30 mm by 2 m, 29.985 m away. Its elevations lie well inside the fan, where the
+// pattern is 1, so its echo is its area over r^4.
 TEST_P(ThinPost, IsInEveryPing) {
   for (const auto& [preset, pings] : {std::pair{Sampling::Preset::fast, 16}, {Sampling::Preset::normal, 4}}) {
     SonarRenderer renderer(test::make_world({test::make_body("post", post_at(30))}), options());
@@ -130,8 +130,8 @@ TEST_P(ThinPost, IsInEveryPing) {
   }
 }
 
-// In the one beam of a scanning head slices lie a degree apart, 87 mm at 5 m. A plate of 40 mm without sides
-// shows its area, wherever in the beam it is, and so does another one in the same mesh.
+// In the one beam of a scanning head, slices are a degree apart: 87 mm at 5 m. The echo of a flat plate of
+// 40 mm corresponds to its area at any place in the beam. A second plate in the same mesh behaves alike.
 TEST_P(ThinPost, APlateIsInEveryLineOfAScanningHead) {
   constexpr float size_m = 0.04F;
   const auto plate = [](float x, float z) {

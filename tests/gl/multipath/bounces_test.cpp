@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Echoes by way of two rough surfaces, against the integral over both; and what spares them.
+// Echoes over two rough surfaces, against the integral over both; and the rule that skips them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -42,7 +42,7 @@ struct Plate {
 const Plate port{{6.8, 0.2, -1}, {0, 0, 2}, {-1, 1, 0}};
 const Plate starboard{{6.8, -0.2, -1}, {-1, -1, 0}, {0, 0, 2}};
 
-/// What comes back by way of one and then the other: mu cos cos for each, over three legs.
+/// Echo over one plate and then the other: mu cos cos for each, spreading over three legs.
 double two_bounces(const Plate& first, const Plate& second, double mu) {
   constexpr int steps = 24;
   double sum = 0;
@@ -72,7 +72,7 @@ TEST_P(Bounces, TwoPlatesHaveTheEnergyOfTheIntegral) {
   const EchoImage alone = without(renderer, request());
   const double ours = energy(with, request().settings, 0, 16) - energy(alone, request().settings, 0, 16);
   const double truth = two_bounces(port, starboard, mu) + two_bounces(starboard, port, mu);
-  // Some 1600 paths; a hundred times as many come to -0.2 dB.
+  // About 1600 paths. A hundred times as many paths give -0.2 dB.
   std::printf("two plates: %+.2f dB\n", decibels(ours / truth));
   EXPECT_NEAR(decibels(ours / truth), 0, 1.0);
 }
@@ -98,10 +98,10 @@ TEST_P(Bounces, EachSurfaceTakesTheLossThatIsAskedFor) {
     const double with = energy(renderer.render_echo(asked), asked.settings, 0, 16);
     return with - energy(without(renderer, asked), asked.settings, 0, 16);
   };
-  EXPECT_NEAR(decibels(added(6) / added(0)), -6, 0.02);  // two surfaces, of which one sends on
+  EXPECT_NEAR(decibels(added(6) / added(0)), -6, 0.02);  // two surfaces, of which one passes sound on
 }
 
-// SkipRule::bounces: below -15 dB nothing is followed, and what that leaves out is no more.
+// SkipRule::bounces: no path is followed below -15 dB, and the omitted echo is below the rule's bound.
 TEST_P(Bounces, DullSurfacesAreSkippedAndCounted) {
   constexpr double mu = 0.00999;  // pi mu = -15.03 dB: of a thousand paths some thirty go on
   const Plate left{{8, 0.1, -5}, {0, 0, 10}, {-6, 6, 0}}, right{{8, -0.1, -5}, {-6, -6, 0}, {0, 0, 10}};
@@ -121,7 +121,7 @@ TEST_P(Bounces, DullSurfacesAreSkippedAndCounted) {
   EXPECT_LT(left_out, entry_of(SkipRule::bounces).bound * direct);
 }
 
-// Paths are drawn in the axes of the sonar: rounding alone moves a few of them.
+// Paths are drawn in the sonar's axes, so only rounding moves a few of them.
 TEST_P(Bounces, TurnWithWorldAndSonar) {
   const World here =
       make_world({rough_body("port", port.mesh(), 0.3), rough_body("starboard", starboard.mesh(), 0.3)});

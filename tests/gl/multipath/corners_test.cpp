@@ -64,7 +64,7 @@ TEST_P(Corners, TrihedralIsAGlintAtItsApex) {
   }
 }
 
-// Wall and floor (T8): at the foot of the perpendicular on their edge, as strong as a mirror across the way.
+// Wall and floor (T8): the echo of a mirror across the way, at the foot of the perpendicular on their edge.
 TEST_P(Corners, EdgeOfWallAndFloorIsAGlintAtItsRange) {
   constexpr double wall_m = 8, altitude_m = 1, reflection = 0.94, sigma_m = 0.0001;
   for (const double yaw_deg : {0.0, 20.0, -35.0}) {
@@ -78,7 +78,7 @@ TEST_P(Corners, EdgeOfWallAndFloorIsAGlintAtItsRange) {
     const double range_m = std::hypot(wall_m, altitude_m);
     EXPECT_NEAR(reflector.line, std::floor(range_m / 0.02), 1);
     EXPECT_NEAR(reflector.beam, 127 + yaw_deg / 120 * 255, 1);
-    // The two sines of the grazing angles are those of one right angle: their squares add up to 1.
+    // The two grazing angles add up to a right angle, so the squares of their sines add up to 1.
     const double p = 2 * 2 * std::numbers::pi / request.settings.physical.multipath.wavelength_m * sigma_m;
     const double truth = std::pow(reflection, 4) * std::exp(-p * p) / (4 * range_m * range_m);
     std::printf("dihedral, yaw %.0f: line %d (%.1f), %+.3f dB\n", yaw_deg, reflector.line, range_m / 0.02,
@@ -91,8 +91,8 @@ TEST_P(Corners, EdgeOfWallAndFloorIsAGlintAtItsRange) {
   }
 }
 
-// A short edge: diffraction is that of its length alone. The share of the full one is that of a slit of
-// length b, 2 |C(u) + i S(u)|^2 with u = b / sqrt(lambda r); here by direct summation.
+// An edge of length b returns the share of a full edge's echo that a slit of length b passes:
+// 2 |C(u) + i S(u)|^2 with u = b / sqrt(lambda r), here by direct summation.
 TEST_P(Corners, ShortEdgeIsWeaker) {
   constexpr double length_m = 0.08;
   World world = make_world({smooth_body("floor", make_quad({4, -0.04F, -1}, {4, 0, 0}, {0, 0.08F, 0})),
@@ -114,7 +114,7 @@ TEST_P(Corners, ShortEdgeIsWeaker) {
   EXPECT_NEAR(decibels(reflector.intensity / truth), 0, 1.0);
 }
 
-// One degree off a right angle the corner sends sound past the sonar: 2 degrees at 8 m, 0.28 m.
+// One degree off a right angle, the corner reflects sound past the sonar: 2 degrees at 8 m, 0.28 m.
 TEST_P(Corners, SlantedWallGivesNoGlint) {
   const float lean = std::tan(1 * static_cast<float>(degree));
   World world = make_world({smooth_body("floor", make_quad({-20, -20, -1}, {40, 0, 0}, {0, 40, 0})),

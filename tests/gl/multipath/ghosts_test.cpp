@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ghosts by way of one mirror: ranges, bearings and levels against sums made here.
+// Ghosts by one mirror: ranges, bearings and levels against sums computed here.
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -13,8 +13,8 @@ using namespace test;
 class Ghosts : public PathTest {};
 INSTANTIATE_TEST_SUITE_P(Multipath, Ghosts, path_cases(), path_case_name);
 
-/// What a small Lambert sphere sends from one direction into another one, beta apart (its phase law, e.g. of
-/// a moon): mu times the integral of the two cosines over the part that both see.
+/// Echo of a small Lambert sphere from one direction into another at an angle of `beta`, rad (the phase law
+/// of a moon): mu times the integral of the two cosines over the part visible from both.
 double sphere_echo(double mu, double radius_m, double beta) {
   const double pi = std::numbers::pi;
   return mu * 2.0 / 3.0 * radius_m * radius_m * (std::sin(beta) + (pi - beta) * std::cos(beta));
@@ -49,7 +49,7 @@ TEST_P(Ghosts, SurfaceImageOfASphereIsWhereItBelongsAndAsStrong) {
     EXPECT_NEAR(level_db, 0, 0.5) << echo.range_m;
   }
   EXPECT_EQ(renderer.last_statistics().skipped.of(SkipRule::multipath), 0u);
-  // Nothing else is there.
+  // The image holds nothing else.
   EXPECT_NEAR(energy(image, request.settings, 0, 20) / energy(image, request.settings, 14.8, 16.0), 1, 1e-6);
 }
 
@@ -75,7 +75,7 @@ struct SmallPlate {
   glm::dvec3 corner, a, b;
 };
 
-/// The integral of mu cos(in) cos(out) / (r_in^2 r_out^2) over a plate that both see.
+/// The integral of mu cos(in) cos(out) / (r_in^2 r_out^2) over a plate visible from both.
 double plate_echo(const SmallPlate& plate, double mu, const glm::dvec3& source, const glm::dvec3& receiver) {
   constexpr int n = 64;
   const glm::dvec3 cross = glm::cross(plate.a, plate.b);
@@ -111,8 +111,8 @@ double mirror_gain(const PingRequest& request) {
   return reflection * reflection * std::exp(-p * p);
 }
 
-// Second bounce between two boxes (docs/physics.md 2.11, M2): the way and its reverse are heard in different
-// beams, each at the mean of both ranges.
+// Second bounce (docs/physics.md 2.11, M2): the path and its reverse arrive in different beams, each at the
+// mean of both ranges.
 TEST_P(Ghosts, UprightMirrorGivesOneEchoInEachBearing) {
   const PingRequest request = fan_request(256, 20, 15, 0.02);
   SonarRenderer renderer(mirror_and_plate(), options());
@@ -146,7 +146,7 @@ TEST_P(Ghosts, UprightMirrorGivesOneEchoInEachBearing) {
   EXPECT_NEAR(energy(image, request.settings, 0, 15) / all, 1, 1e-5);
 }
 
-// The same with a plate so small that all of it lies within a line: the range itself.
+// The range alone, in lines of 0.1 m, a third of the plate's size.
 TEST_P(Ghosts, SecondBounceIsAtTheClosedFormRange) {
   const PingRequest request = fan_request(256, 20, 15, 0.1);
   SonarRenderer renderer(mirror_and_plate(), options());
@@ -171,7 +171,7 @@ TEST_P(Ghosts, AbsorptionActsOnTheWholeWay) {
   EXPECT_NEAR(decibels(with / without), -2 * 0.5 * range_m, 0.02);
 }
 
-// What the sonar does not see itself it hears by the mirror alone: at the range of the image, nowhere else.
+// A target hidden from the sonar echoes by the mirror only: at the range of its image, nowhere else.
 TEST_P(Ghosts, HiddenTargetIsHeardOnlyByTheMirror) {
   World world = mirror_and_plate();
   world.bodies.push_back(smooth_body("screen", make_quad({6, -1.4F, -2}, {0, 1.2F, 0}, {0, 0, 4})));
@@ -225,7 +225,7 @@ TEST_P(Ghosts, AnyNumberOfThreadsGivesTheSameBytes) {
 
 TEST_P(Ghosts, LegOutsideTheFanIsNotHeard) {
   PingRequest request = fan_request(256, 20, 15, 0.02);
-  // From 60 degrees to port the image is ahead, and the plate itself out of the fan.
+  // If the sonar points 60 degrees to port, the image is ahead and the plate itself outside the fan.
   request.T_world_sonar.orientation = glm::angleAxis(60 * degree, glm::dvec3(0, 0, 1));
   SonarRenderer renderer(mirror_and_plate(), options());
   const EchoImage& image = renderer.render_echo(request);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds and sums for tests of multipath. Truth is worked out in each test from docs/physics.md 2.11.
+// Worlds and sums for tests of multipath. Each test computes its truth from docs/physics.md 2.11.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ inline render::PingRequest fan_request(int beams, double height_deg, double rang
   return request;
 }
 
-/// Ghosts are followed in cells that depend on the preset: each test runs with both, on both engines.
+/// Each test runs with both presets on both engines, because the cells of ghosts depend on the preset.
 struct PathCase {
   render::EngineKind engine;
   render::Sampling::Preset preset;
@@ -63,7 +63,7 @@ inline render::Body smooth_body(const std::string& name, render::TriangleMesh me
   return body;
 }
 
-/// Reflects nothing but what it scatters: no facets, no mirror.
+/// Scatters only: no facets, no mirror.
 inline render::Body rough_body(const std::string& name, render::TriangleMesh mesh, double lambert_mu = 0.1) {
   return smooth_body(name, std::move(mesh), 0.0, 0.0, lambert_mu);
 }
@@ -88,7 +88,7 @@ inline double energy(const render::EchoImage& image, const render::SonarSettings
   return sum;
 }
 
-/// The line with most echo of those beams, summed over them.
+/// The line with the largest energy() over the same beams; -1 if there is no echo.
 inline int strongest_line(const render::EchoImage& image, const render::SonarSettings& settings,
                           double from_m, double to_m, double from_deg = -60, double to_deg = 60) {
   int strongest = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SkipRule::multipath: when nothing mirrors, nothing is traced; what is left out is no more than its bound.
+// SkipRule::multipath: without mirrors nothing is traced, and the omitted echo is below the rule's bound.
 #include <algorithm>
 #include <cmath>
 
@@ -53,7 +53,7 @@ TEST_P(MultipathRule, RoughMaterialIsSkippedAndCounted) {
   smooth.render_echo(request);
   EXPECT_EQ(skipped(smooth), 0u);
 
-  // The same surface from a quarter of the height, or heard farther, is a mirror again.
+  // The same surface from a fifth of the height, or at twice the range, is a mirror again.
   PingRequest low = request;
   low.T_world_sonar.position_m.z = -4;
   rough.render_echo(low);
@@ -83,7 +83,7 @@ TEST_P(MultipathRule, DefaultMaterialHasNoImage) {
   EXPECT_EQ(skipped(renderer), 1u);
 }
 
-// What the rule leaves out of a rough bed: nothing above its bound of the echo that would be mirrored.
+// On a rough bed the rule omits no more than its bound, relative to the strongest echo.
 TEST_P(MultipathRule, WhatIsLeftOutIsBelowTheBound) {
   const PingRequest request = fan_request(128, 60, 20, 0.05);
   const World world = bed_and_post(0.38, 0.001);
@@ -113,7 +113,7 @@ TEST_P(MultipathRule, PaperNeverHasMultipath) {
   EXPECT_EQ(image, without_multipath(renderer, request));
 }
 
-// Level `surface` hears the water alone.
+// With level `surface` the water surface is the only mirror.
 TEST_P(MultipathRule, LevelSurfaceLeavesMeshesOut) {
   World world = bed_and_post(1.0, 0.0);
   world.water_surface_z_m = 2;
@@ -127,7 +127,7 @@ TEST_P(MultipathRule, LevelSurfaceLeavesMeshesOut) {
   EXPECT_NE(full, water_alone);
   request.settings.physical.multipath.level = MultipathSettings::Level::surface;
   EXPECT_EQ(renderer.render_echo(request).intensity, water_alone);
-  // Out of the water there is nothing above.
+  // Above the water there is no mirror.
   request.T_world_sonar.position_m.z = 3;
   renderer.render_echo(request);
   EXPECT_EQ(skipped(renderer), 1u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion within a ping (docs/physics.md 2.14): what returns from range r is heard as the sonar is turned
-// 2 r / c after the ping was sent, and from halfway between there and where it was sent.
+// Motion within a ping (docs/physics.md 2.14): an echo from range r arrives in the sonar's orientation 2 r /
+// c after transmission, and from halfway between the sonar's positions at both times.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -36,7 +36,7 @@ PingRequest request_of(const Pose& at_transmission, const Pose& at_end) {
   return request;
 }
 
-/// A square post 6 cm wide whose near side is as far away as said.
+/// An upright plate, 6 cm wide and 2 m high.
 struct Post {
   double range_m;
   double bearing_rad;
@@ -59,7 +59,7 @@ World world_of(const std::vector<Post>& posts) {
   return world;
 }
 
-/// Mean azimuth of what is heard between two ranges, weighted by intensity.
+/// Mean azimuth, rad, of the echoes between two ranges, weighted by intensity.
 double azimuth_rad(const EchoImage& image, const PingRequest& request, double from_m, double to_m) {
   const std::vector<double>& edges = request.settings.aperture.beam_edges_rad;
   const double line_m = request.settings.range.step_m;
@@ -80,8 +80,8 @@ double azimuth_rad(const EchoImage& image, const PingRequest& request, double fr
 using PingMotion = EngineTest;
 INSTANTIATE_TEST_SUITE_P(Propagation, PingMotion, all_engines(), engine_name);
 
-// Turning to port, the beams find each post farther to starboard, the longer its echo was under way: by the
-// turn at the middle of its span, which for these four is that at their own range.
+// While the sonar turns to port, each post appears to starboard of its bearing, by the turn at the middle of
+// its span. Each of these four posts is in the middle of its span.
 TEST_P(PingMotion, EachPostIsHeardWhereTheBeamsAreByThen) {
   const std::vector<Post> posts{
       {6.25, 12 * degree}, {18.75, 5 * degree}, {31.25, -4 * degree}, {43.75, -12 * degree}};
@@ -95,7 +95,7 @@ TEST_P(PingMotion, EachPostIsHeardWhereTheBeamsAreByThen) {
   }
 }
 
-// Anywhere else it is off by no more than what the beams turn in half a span.
+// Elsewhere the bearing is off by no more than the turn in half a span.
 TEST_P(PingMotion, NoPostIsOffByMoreThanHalfASpan) {
   std::vector<Post> posts;
   for (int i = 0; i < 12; ++i) {
@@ -112,7 +112,7 @@ TEST_P(PingMotion, NoPostIsOffByMoreThanHalfASpan) {
   }
 }
 
-// A flat bed looks the same wherever one turns: any seam, gap or line that is heard twice would show.
+// A flat bed looks the same in all directions, so any seam, gap or duplicate line would show.
 TEST_P(PingMotion, TurningOverAFlatBedLeavesTheImageAsItIs) {
   SonarRenderer renderer(
       make_world({make_body("bed", make_quad({-80, -80, -3}, {160, 0, 0}, {0, 160, 0}), 0.3)}), options());
@@ -132,7 +132,7 @@ TEST_P(PingMotion, TurningOverAFlatBedLeavesTheImageAsItIs) {
   EXPECT_GT(heard, at_rest.size() / 2);
 }
 
-// The way out and the way back are of different lengths: r = 43.75 - v t / 2 where t is r / R of the ping.
+// The ways out and back differ in length: r = 43.75 m - 0.5 m r / R, R the range of the ping.
 TEST_P(PingMotion, RangeIsHalfOfTheWayOutAndBack) {
   RendererOptions all = options();
   all.skip.turn_off(SkipRule::motion_within_ping);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays that bend (docs/physics.md 2.12), against the parabola z = x tan(theta) - k x^2, k = g / 2c, solved
-// here: where it meets a flat bed, what its echo is, and how long the shadow of a wall gets.
+// Refraction (docs/physics.md 2.12) against the parabola z = x tan(theta) - k x^2, k = g / 2c: the nearest
+// point of a flat bed, its echo, and the shadow of a wall.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -32,7 +32,7 @@ World bed(bool with_normals = false) {
   return make_world({make_body("bed", bed_mesh(with_normals))});
 }
 
-/// 5 m above the bed, beam 10 is the one in the middle.
+/// 5 m above the bed; beam 10 is the middle one.
 PingRequest request_of(double pitch_down_rad = 0.0) {
   PingRequest request;
   request.T_world_sonar = {{0, 0, altitude_m}, glm::angleAxis(pitch_down_rad, glm::dvec3(0, 1, 0))};
@@ -45,7 +45,8 @@ PingRequest request_of(double pitch_down_rad = 0.0) {
   return request;
 }
 
-/// Horizontal distance at which a ray that leaves downwards at `down_rad` has sunk by `depth_m`.
+/// Horizontal distance, m, at which a ray that leaves downwards at the slope `tan_down` has sunk by
+/// `depth_m`.
 double reach_m(double tan_down, double depth_m, double bend = bend_per_m) {
   return bend == 0 ? depth_m / tan_down
                    : (std::sqrt(tan_down * tan_down + 4 * bend * depth_m) - tan_down) / (2 * bend);
@@ -84,7 +85,7 @@ TEST_P(Refraction, LowestRayMeetsTheBedWhereItsParabolaDoes) {
   }
 }
 
-// What sinks is the ray, whichever way the sonar is tilted.
+// Rays bend in the world's vertical, whatever the tilt of the sonar.
 TEST_P(Refraction, WorldsVerticalCountsAndNotTheSonars) {
   for (const double pitch : {2.0, 6.0}) {
     SonarRenderer renderer(bed(), bent());
@@ -93,7 +94,7 @@ TEST_P(Refraction, WorldsVerticalCountsAndNotTheSonars) {
   }
 }
 
-// Where sound gets faster downwards, rays rise.
+// If the sound speed increases with depth, rays rise.
 TEST_P(Refraction, WithTheOtherSignRaysRise) {
   SonarRenderer renderer(bed(), bent(-curvature_per_m));
   PingRequest request = request_of(3 * degree);
@@ -103,7 +104,7 @@ TEST_P(Refraction, WithTheOtherSignRaysRise) {
               std::hypot(reach_m(tan_down, altitude_m, -bend_per_m), altitude_m), 0.05);
 }
 
-// Fixed grids too: Embree's trees are bent, and the shader's corners.
+// On fixed grids, the triangles in Embree's trees and the corners in the shader bend.
 TEST_P(Refraction, FixedGridsBendAsWell) {
   SonarRenderer renderer(bed(), bent());
   PingRequest request = request_of();
@@ -112,8 +113,8 @@ TEST_P(Refraction, FixedGridsBendAsWell) {
   EXPECT_NEAR(first_line(image, 10) * 0.05, first_range_m(limit_rad), 0.1);
 }
 
-/// Lambert echo of the bed per unit azimuth from [r1, r2), spreading taken at the middle: the ray that gets
-/// to x left at tan(theta) = h / x - k x and meets the bed at the slope h / x + k x.
+/// Lambert echo of the bed per unit azimuth from [r1, r2), with the spreading of the middle range. The ray to
+/// x leaves at tan(theta) = h / x - k x and meets the bed at the slope h / x + k x.
 double bed_density(double r1, double r2) {
   constexpr int nodes = 64;
   double sum = 0;
@@ -135,7 +136,7 @@ double bed_density(double r1, double r2) {
   return sum / (middle * middle);
 }
 
-// With vertex normals as with those of facets, which bend by themselves.
+// With vertex normals and with facet normals, which bend with the facets.
 TEST_P(Refraction, EchoOfTheBedIsThatOfTheBentRays) {
   for (const bool with_normals : {false, true}) {
     RendererOptions with = bent();
@@ -154,7 +155,7 @@ TEST_P(Refraction, EchoOfTheBedIsThatOfTheBentRays) {
   }
 }
 
-// A wall of height H at x hides what lies behind it up to where the ray over its top meets the bed.
+// A wall of height H at x shadows the bed up to the point where the ray over its top lands.
 TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
   constexpr double x = 60.0;
   constexpr double height = 1.0;
@@ -170,8 +171,8 @@ TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
   const float behind = image.at(10, after);
   EXPECT_NEAR(static_cast<double>(behind) / (bed_density(after * 0.05, (after + 1) * 0.05) * degree), 1,
               0.05);
-  // The edge is where half of that is heard, to one line (docs/accuracy.md). Slices let up to 3 % be heard in
-  // the four lines before it.
+  // The edge lies at half of `behind`, to one line (docs/accuracy.md). With slices, the four lines before it
+  // may hold up to 3 %.
   const float early = GetParam() == EngineKind::cpu ? 0.03F : 1e-3F;
   const int edge = static_cast<int>(end_m / 0.05);
   EXPECT_GT(image.at(10, edge + 1), 0.5F * behind);
@@ -185,7 +186,7 @@ using StraightRays = Refraction;
 INSTANTIATE_TEST_SUITE_P(Skipping, StraightRays, all_engines(), engine_name);
 
 TEST_P(StraightRays, SkipsBendsOfLessThanAQuarterOfTheBeamWithinItsBound) {
-  // k R = 0.25 theta3 at 100 m, less a little.
+  // k R = 0.24 theta3 at 100 m, just below the limit of 0.25.
   const double curvature = 2 * 0.24 * (2 * limit_rad) / 100;
   RendererOptions off_options = bent(curvature);
   off_options.skip.turn_off(SkipRule::straight_rays);
@@ -198,7 +199,7 @@ TEST_P(StraightRays, SkipsBendsOfLessThanAQuarterOfTheBeamWithinItsBound) {
   EXPECT_EQ(off.last_statistics().skipped.of(SkipRule::straight_rays), 0u);
   EXPECT_NEAR(on_m, first_range_m(limit_rad, 0), 0.05);
   EXPECT_NEAR(off_m, first_range_m(limit_rad, curvature / 2), 0.05);
-  // Both are the lowest ray: one is heard that much below where the other is.
+  // Both are the lowest ray; the rule's error is the difference of their elevations.
   const double apart_rad =
       limit_rad - std::asin(altitude_m / on_m) + std::asin(altitude_m / off_m) - limit_rad;
   EXPECT_GT(apart_rad, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Water of another sound speed than the client reckons with (docs/physics.md 2.12): a range r is displayed as
-// r c_d / c. From the client's settings by way of the head's job to the image.
+// Water with another sound speed than the client assumes (docs/physics.md 2.12): a range r is displayed as
+// r c_d / c. The tests go from the client's settings over the head's job to the image.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ using namespace test;
 
 constexpr double assumed_mps = 1500.0;
 
-/// What a client that counts 20 m at 1500 m/s makes the head ask for, in water of another speed.
+/// The job of a head whose client requests 20 m at 1500 m/s, in water of another speed.
 PingJob gemini_job(double water_mps) {
   gemini::PingSettings settings;
   settings.range_m = 20.0;
@@ -32,7 +32,7 @@ PingJob gemini_job(double water_mps) {
   return gemini::plan_ping(gemini::make_ping_config(settings), device)->job;
 }
 
-/// As a client shows it: lines times the speed that it assumes.
+/// Range that a client shows, m: lines times the speed that it assumes.
 double shown_m(double lines, double line_rate_hz) {
   return lines * assumed_mps / (2 * line_rate_hz);
 }
@@ -49,7 +49,7 @@ class SoundSpeed : public EngineTest {
  protected:
   static render::EchoImage image_of(const render::World& world, render::SonarSettings settings) {
     settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
-    settings.physical.range_cell_m = 0;  // a pulse is heard before and behind where it came back from
+    settings.physical.range_cell_m = 0;  // a pulse spreads an echo before and behind its range
     render::SonarRenderer renderer(world, options());
     return renderer.render_echo({{}, settings});
   }
@@ -85,7 +85,7 @@ TEST_P(SoundSpeed, MicronToo) {
   }
 }
 
-// sin psi' = sin psi c_d / c: in slow water a post to port is heard farther to port.
+// sin psi' = sin psi c_d / c: in slow water a post to port appears farther to port.
 TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
   const double bearing = 35 * degree;
   const auto at = static_cast<float>(10 * std::sin(bearing));
@@ -100,7 +100,7 @@ TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
     const auto loudest = std::max_element(image.intensity.begin(), image.intensity.end());
     ASSERT_GT(*loudest, 0.0F);
     const auto beam = (loudest - image.intensity.begin()) / image.lines;
-    // Beam b of 256 stands for the sines of bearing to port from that of 60 degrees downwards.
+    // The 256 beams are even in the sine of the bearing, from 60 degrees to port downwards.
     const double shown_sin = std::sin(bearing) * (error ? assumed_mps / 1450.0 : 1.0);
     EXPECT_EQ(beam, static_cast<int>(128 - 128 * shown_sin / std::sin(60 * degree))) << error;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Echo energy against closed forms (docs/physics.md 3.2) at the lines the demo runs with: what accuracy_test
-// does not hold `gpu` to, and fixed grids.
+// Echo energy against closed forms (docs/physics.md 3.2) in the range bins of the demo, and on fixed grids.
+// accuracy_test does not test these for `gpu`.
 #include <cmath>
 
 #include "tests/support/closed_forms.hpp"
@@ -83,8 +83,8 @@ TEST_P(ClosedForm, T1_ObliqueSlope) {
   expect_truth(compare(renderer.render_echo(request), request, PlaneTruth{9 * n.x, n.x, n.y, n.z, limit}));
 }
 
-// Footprints near the limb reach beyond it: silhouettes converge with first order, so the total is right on
-// a coarse grid (T4 total 1.411161e-4 is the document's worked value) and the shape at a finer one.
+// Footprints near the limb reach beyond it, so silhouettes converge with first order. The total, 1.411161e-4
+// by T4, is right on a coarse grid, the shape on a finer one.
 TEST_P(ClosedForm, T4_Sphere) {
   Body sphere = make_body("sphere", test::make_sphere(0.5F, 256));
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
@@ -161,7 +161,7 @@ TEST_P(ClosedForm, T7_ShadowOfAWall) {
     }
     EXPECT_GT(image.at(beam, line(13.0) - 2), 0);
     EXPECT_GT(image.at(beam, line(17.857) + 10), 0);
-    // Lay-over of wall and bed in front of it is brighter than the bed alone.
+    // The wall and the bed in front of it share these ranges, so they are brighter than the bed alone.
     EXPECT_GT(image.at(beam, line(12.7)), 2 * image.at(beam, line(12.3)));
   }
 }

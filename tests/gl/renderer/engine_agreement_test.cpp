@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two ways to the same samples (docs/physics.md 4.3, S21): rasterised and traced images agree bin by bin.
-// What may differ are samples within 1/512 of a pixel of an edge: GL moves vertices to a raster of 1/256
-// pixel, so such a sample can see the other side of the edge.
+// Rasterised and traced images agree bin by bin (docs/physics.md 4.3, S21). Samples within 1/512 of a pixel
+// of an edge may differ: GL moves vertices to a raster of 1/256 pixel, so such a sample can see the other
+// side of the edge.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,7 @@ using test::make_quad;
 using test::make_sphere;
 using test::make_world;
 
-/// A world and where it is heard from.
+/// A world and the sonar's pose in it.
 struct View {
   World world;
   Pose T_world_sonar;
@@ -42,7 +42,7 @@ View tank() {
   return {std::move(world), looking({0, 0, 1.6}, 5, 8)};
 }
 
-/// Waves in a normal map of odd size over a wavy bed, repeated often: averaging and repetition count.
+/// A wavy bed with a normal map of odd size, repeated often, so that averaging and repetition matter.
 View normal_mapped_bed() {
   constexpr int cells = 60;
   TriangleMesh bed;
@@ -97,7 +97,7 @@ PingRequest quiet_request(const Pose& T_world_sonar) {
 
 struct Difference {
   std::size_t bins = 0;
-  std::size_t echoes = 0;     ///< bins that hold any
+  std::size_t echoes = 0;     ///< bins with an echo
   std::size_t different = 0;  ///< by more than 1e-3 of the beam's strongest bin
   std::size_t off_by_2 = 0;   ///< eight-bit samples that differ by more than one
 };
@@ -208,7 +208,7 @@ TEST_F(EngineAgreement, S21_FarFromTheOriginAndRotated) {
   expect_agreement_of(view, "far away");
 }
 
-// What GL does not say: an explicit choice is kept, and each says what it is.
+// An explicit choice of engine is kept, and each engine describes itself.
 TEST_F(EngineAgreement, EnginesNameThemselves) {
   const SonarRenderer gpu(World{}, {EngineKind::gpu, 0});
   EXPECT_EQ(gpu.engine(), EngineKind::gpu);

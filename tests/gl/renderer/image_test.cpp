@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold for any image: repeatability, frames, moving bodies, bad input.
+// Properties of every image: repeatability, frames, moving bodies, bad input.
 #include <cmath>
 #include <numeric>
 
@@ -65,7 +65,7 @@ TEST_P(Image, SameRequestGivesTheSameBytes) {
   EXPECT_NE(other.render_ping(next).u8, first.u8);
 }
 
-// What a daemon relies on that makes an echo nobody gets before its first ping.
+// A daemon renders an unused echo before its first ping.
 TEST_P(Image, AnEchoOfAnotherPlaceBeforeChangesNoPing) {
   PingRequest request = small_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::ou;
@@ -111,7 +111,7 @@ TEST_P(Image, BodiesMove) {
   EXPECT_EQ(renderer.render_echo(request).intensity, before.intensity);
 }
 
-// As a vehicle is hidden from its own sonar.
+// A vehicle is hidden from its own sonar in this way.
 TEST_P(Image, ABodyOutOfReachChangesNothing) {
   World world = bed_and_ball({8, 2, 0.5});
   world.bodies.push_back(make_body("hull", make_sphere(1.0F, 32)));
@@ -130,7 +130,7 @@ TEST_P(Image, ABodyOutOfReachChangesNothing) {
   }
 }
 
-// docs/physics.md 4.3 S2: far from the origin and rotated, the picture stays.
+// docs/physics.md 4.3 S2: the image is the same far from the origin and rotated.
 TEST_P(Image, FarFromTheOriginTheImageIsTheSame) {
   const PingRequest request = small_request();
   SonarRenderer renderer(bed_and_ball({8, 1, 0.5}), options());
@@ -175,7 +175,7 @@ TEST_P(Image, BadRequestsAreRefusedByName) {
   EXPECT_NO_THROW(renderer.render_ping(small_request()));
 }
 
-// S3: a sonar lying in a surface, or touching it, sees no NaN.
+// S3: the image of a sonar that lies in a surface or touches it holds no NaN.
 TEST_P(Image, GrazingAndTouchingSurfacesStayFinite) {
   SonarRenderer renderer(bed_and_ball({0, 0, 0}), options());
   PingRequest request = small_request();

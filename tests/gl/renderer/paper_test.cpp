@@ -36,7 +36,7 @@ class Paper : public EngineTest {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, Paper, test::all_engines(), test::engine_name);
 
-// I_bin is the mean of S over the bin: S(rho D / r) for a plane, whatever the distance: no spreading, no
+// I_bin is the mean of S over the bin. On a plane it is S(rho D / r) at any distance, without spreading or
 // absorption.
 TEST_P(Paper, PlaneFollowsTheSigmoid) {
   for (const double rho : {0.35, 0.8, 1.0}) {
@@ -48,7 +48,7 @@ TEST_P(Paper, PlaneFollowsTheSigmoid) {
       for (int k = 1; k + 1 < image.lines; ++k) {
         if (image.at(beam, k - 1) > 0 && image.at(beam, k + 1) > 0) {
           const double range_m = (k + 0.5) * 0.025;
-          // The slope of S over one line bounds what averaging inside the line can do.
+          // The slope of S over one line bounds the effect of averaging inside the line.
           EXPECT_NEAR(image.at(beam, k), sigmoid(std::min(1.0, rho * 10 / range_m)), 0.006)
               << "beam " << beam << " line " << k;
           ++compared;
@@ -88,12 +88,12 @@ TEST_P(Paper, BackFacesCanBeDropped) {
       renderer.set_body_pose("towards", {{20, 0, 0}, glm::angleAxis(std::numbers::pi, glm::dvec3(0, 0, 1))}));
   const float turned = brightest(renderer.render_echo(request));
   EXPECT_GT(two_sided, 0);
-  // The quad is wound so that its front faces the sonar; turned about, it shows its back.
+  // The quad is wound so that its front faces the sonar; turned by 180 degrees, it shows its back.
   EXPECT_EQ(front_only, two_sided);
   EXPECT_EQ(turned, 0);
 }
 
-// A4: floor(r / R_max (N - 1)) puts a wall at 10 m of 20 m, 1001 lines of it, into line 500 instead of 500.5.
+// A4: floor(r / R_max (N - 1)) puts a wall at 10 m of 25 m, in 1000 lines, into line 399 instead of 400.
 TEST_P(Paper, LegacyBinIndexAndPointSamples) {
   SonarRenderer renderer(wall_world(1.0), options());
   PingRequest request = paper_request(1000, 0.025);

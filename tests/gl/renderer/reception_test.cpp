@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What array, pulse and TVG make of simple targets, against closed forms, on all engines.
+// Responses of array, pulse and TVG to simple targets, against closed forms, on all engines.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -23,7 +23,7 @@ constexpr double pi = std::numbers::pi;
 
 class Reception : public test::EngineTest {
  protected:
-  /// Slices find what is small by themselves; a grid has to be fine enough.
+  /// Slices find small targets by themselves; a grid must be fine enough.
   static Sampling sampling_of_small_things() {
     return GetParam() == EngineKind::cpu ? Sampling{} : Sampling::of_grid(1, 1024, 512);
   }
@@ -37,7 +37,7 @@ World ball_at(double range_m, double azimuth_rad, double radius_m) {
   return world;
 }
 
-/// The middle of a Gemini's fan: beams as wide as its, within 10 degrees of the axis.
+/// The middle of a Gemini's fan: beams of a Gemini's width, within 10 degrees of the axis.
 constexpr double gemini_spacing = 2 * 0.8660254037844386 / 256;
 constexpr int beams = 50;
 
@@ -89,7 +89,7 @@ TEST_P(Reception, APointIsHeardWithThePatternOfTheArray) {
   EXPECT_GE(compared, 6);
 }
 
-// The same ball against a chirp of 25 kHz, followed down to -30 dB.
+// The same ball with a chirp of 25 kHz, compared down to -30 dB.
 TEST_P(Reception, APointIsHeardWithTheResponseOfThePulse) {
   constexpr double cell_m = 0.03;
   constexpr double line_m = 0.002;
@@ -107,7 +107,7 @@ TEST_P(Reception, APointIsHeardWithTheResponseOfThePulse) {
       lines[k] += static_cast<double>(echo.at(b, static_cast<int>(k)));
     }
   }
-  // T4, spread by sinc^2 where it is.
+  // T4 convolved with sinc^2.
   const auto truth = [&](int line) {
     double sum = 0;
     constexpr double dr = 1e-4;
@@ -123,7 +123,7 @@ TEST_P(Reception, APointIsHeardWithTheResponseOfThePulse) {
   int compared = 0;
   for (int k = peak - 100; k <= peak + 100; ++k) {
     const double here = truth(k) / truth(peak);
-    // Not where the response goes through zero.
+    // Skips lines near the zeros of the response.
     if (here > 1e-3 && here > 0.5 * std::max(truth(k - 3), truth(k + 3)) / truth(peak)) {
       EXPECT_NEAR(10 * std::log10(lines[static_cast<std::size_t>(k)] / truth(k)) - scale_db, 0, 0.5)
           << k - peak;
@@ -157,7 +157,7 @@ TEST_P(Reception, AWallKeepsItsLevel) {
   }
 }
 
-/// Sine of the bearing at which the echo has its centre, and the whole echo.
+/// Sine of the bearing of the echo's centroid, and the whole echo.
 std::pair<double, double> centre_and_sum(const EchoImage& echo, const std::vector<double>& edges_rad) {
   double sum = 0;
   double moment = 0;
@@ -193,14 +193,14 @@ TEST_P(Reception, AStraightArrayMeasuresConeAngles) {
     request.settings.aperture.bearing = Aperture::Bearing::conical;
     const auto [conical, same] =
         centre_and_sum(renderer.render_echo(request), request.settings.aperture.beam_edges_rad);
-    // A fine beam is 0.0034 wide.
+    // A fine beam is 0.0034 wide in the sine of the bearing.
     EXPECT_NEAR(planar, std::sin(psi), 4e-4);
     EXPECT_NEAR(conical, std::sin(psi) * std::cos(theta), 4e-4);
     EXPECT_NEAR(same / whole, 1, 0.02);
   }
 }
 
-// Dead ahead both are the same, and what lies beyond the end of the fan is heard inside of it.
+// A target beyond the end of the fan appears inside of it.
 TEST_P(Reception, ConesReachBeyondTheFan) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
@@ -227,7 +227,7 @@ TEST_P(Reception, ConesReachBeyondTheFan) {
   EXPECT_EQ(std::max_element(sums.begin(), sums.end()) - sums.begin(), beam);
 }
 
-// One array, and noise of many seeds: the mean echo is that of the array.
+// With an element seed, the mean echo does not depend on the seed of the ping.
 TEST_P(Reception, ElementsHaveASeedOfTheirOwn) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(64, 60 * degree);
@@ -247,8 +247,8 @@ TEST_P(Reception, ElementsHaveASeedOfTheirOwn) {
   EXPECT_NE(echo(1, 6), first);
 }
 
-// docs/physics.md 2.16, as a client gets it: the median of a row beyond 60 beams from a strong target is some
-// 35 dB below its peak with the errors that a Gemini has by default.
+// docs/physics.md 2.16, in the samples of a client: more than 60 beams from a strong target, the median of a
+// row is about 35 dB below its peak, with the default errors of a Gemini.
 TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
   PingRequest request;
   request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
@@ -277,7 +277,7 @@ TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
     leaks_db.push_back(20 * std::log10(far[far.size() / 2] /
                                        static_cast<double>(samples.u16[static_cast<std::size_t>(peak)])));
   }
-  // The peak of a single row is one draw of speckle, some decibels wide.
+  // The peak of a single row is one draw of speckle and varies by some decibels.
   const double mean =
       std::accumulate(leaks_db.begin(), leaks_db.end(), 0.0) / static_cast<double>(leaks_db.size());
   RecordProperty("leak_db", std::to_string(mean));
@@ -302,8 +302,7 @@ double level_db(SonarRenderer& renderer, PingRequest request, double tvg_log_coe
   return 10 * std::log10(sum);
 }
 
-// T10. The balls are as wide as a tenth of a beam, whatever their range, so their target strength goes with
-// the square of it.
+// T10. The balls are 2 mrad wide at every range, so their target strength grows with the square of the range.
 TEST_P(Reception, Tvg40KeepsTheLevelOfAPoint) {
   std::vector<double> levels_db;
   for (const double range_m : {1.0, 3.0, 10.0, 30.0, 100.0}) {
@@ -354,7 +353,7 @@ TEST_P(Reception, Tvg30LeavesABedFallingWithTheSquareOfTheRange) {
   const World bed = make_world({make_body("bed", make_quad({-60, -60, 0}, {120, 0, 0}, {0, 120, 0}))});
   std::vector<double> levels_db;
   for (const int lines : {125, 245, 485}) {
-    // A range of which the last lines are looked at: those before are blanked.
+    // Only the last ten lines count: the lines before them are blanked.
     request.settings.range = {lines, 0.1, 0, false};
     request.settings.physical.gain_db = 35;
     SonarRenderer renderer(bed, options());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volume reverberation: closed forms, and what stands in the water's way (docs/physics.md 2.10).
+// Volume reverberation (docs/physics.md 2.10): closed forms, and surfaces that hide water.
 #include <cmath>
 #include <numbers>
 
@@ -32,7 +32,7 @@ Body screen(const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3&
   return make_body("screen", make_quad(corner, along, up), 0.0);
 }
 
-/// s_v times the solid angle of a beam that is open times dr r^-2 10^(-alpha r / 5), in the middle of a line.
+/// s_v times the open solid angle of a beam times dr r^-2 10^(-alpha r / 5), in the middle of a line.
 double expected_echo(const PingRequest& request, double open_sr, int line) {
   const RangeLines& range = request.settings.range;
   const double range_m = (line + 0.5) * range.step_m;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the three scenes of figure 7 must show. Places and sizes are those of configs/worlds/generate and of
-// the trajectories, worked out by hand; nothing is measured in the images themselves.
+// Features that the three scenes of figure 7 must show. Places and sizes are computed by hand from
+// configs/worlds/generate and the trajectories, not measured in the images.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ INSTANTIATE_TEST_SUITE_P(Engines, FanScenes, all_engines(), engine_name);
 
 const render::RendererOptions on_cpu{render::EngineKind::cpu};
 
-// The manifold: from (0, -11.9) and 5.5 m above its level bed, 1.8 m high, its back 13.3 m ahead.
-// docs/physics.md T7: shadow on (r_base, r_top h / (h - H)), both of the back.
+// The manifold, seen from (0, -11.9), 5.5 m above its level bed: 1.8 m high, its back 13.3 m ahead.
+// docs/physics.md T7: shadow on (r_base, r_top h / (h - H)), both ranges of the back.
 constexpr double altitude_m = 5.5;
 constexpr double height_m = 1.8;
 constexpr double front_m = 10.5;
@@ -48,7 +48,7 @@ TEST(FanScenesOnRay, FrontalFaceOfTheManifold) {
     const double top_m = std::hypot(along, altitude_m - height_m);
     const double face = scene.strongest(beam, top_m - 0.3, top_m + 0.8);
     EXPECT_GT(face, 10 * bed) << bearing;
-    // Seen from where its upper edge is; receptacles reach 0.18 m further.
+    // The face begins at its upper edge; receptacles are up to 0.18 m nearer.
     const double seen_m = scene.first_range_m(beam, top_m - 0.5, 0.1 * face);
     EXPECT_GT(seen_m, top_m - 0.25) << bearing;
     EXPECT_LT(seen_m, top_m + 0.05) << bearing;
@@ -78,8 +78,8 @@ TEST(FanScenesOnRay, FlowlinesOfTheManifoldGoOn) {
   }
 }
 
-// The docking station: from (-2.136, -11.913, -25.6), heading 80 degrees. The pipeline, 0.6 m thick, half
-// buried in places, runs along y = -3.7 + 0.7 sin^2((x + 3) / 15) - 0.3 sin(x / 6.5) on a bed 30 m deep.
+// The docking station, seen from (-2.136, -11.913, -25.6), heading 80 degrees. The pipeline, 0.6 m thick,
+// half buried in places, runs along y = -3.7 + 0.7 sin^2((x + 3) / 15) - 0.3 sin(x / 6.5) on a bed 30 m deep.
 double pipeline_y(double x) {
   const double wave = std::sin((x + 3) / 15);
   return -3.7 + 0.7 * wave * wave - 0.3 * std::sin(x / 6.5);
@@ -88,7 +88,7 @@ double pipeline_y(double x) {
 /// Horizontal distance from the sonar to the pipeline along a heading.
 double distance_to_pipeline(double heading_rad) {
   double distance = 8;
-  for (int i = 0; i < 50; ++i) {  // a fixed point: the line hardly bends
+  for (int i = 0; i < 50; ++i) {  // a fixed point: the line is nearly straight
     const double x = -2.136 + distance * std::cos(heading_rad);
     distance = (pipeline_y(x) + 11.913) / std::sin(heading_rad);
   }
@@ -130,11 +130,11 @@ TEST(FanScenesOnRay, DockingStationIsBrighterThanTheBedAndCastsAShadow) {
   }
 }
 
-// The SSIV: from 13.5 (cos -70, sin -70) and z = -37.7, heading 110 degrees. Its bed is at -42.249; the long
-// member of its base ring, radius a = 0.17, runs along y = -2.5 at 0.22 above the bed. The first line of
-// 8.3 mm of a tube of mu -15 dB has 2 a / R * mu cos^2(off) * 0.31 of the energy, a line of the bed of -13 dB
-// mu sin(gamma) tan(gamma) / R * 8.3 mm. 15 to 32 degrees off its normal a beam of 0.4 degrees spreads the
-// tube over 3 to 7 lines, which leaves it 14 to 4.6 times as strong as the bed.
+// The SSIV, seen from 13.5 (cos -70, sin -70) and z = -37.7, heading 110 degrees. Its bed is at -42.249. The
+// long member of its base ring, radius a = 0.17, runs along y = -2.5 at 0.22 above the bed. In its first line
+// of 8.3 mm a tube of mu -15 dB has the energy 2 a / R * mu cos^2(off) * 0.31. A line of the bed of -13 dB
+// has mu sin(gamma) tan(gamma) / R * 8.3 mm. At 15 to 32 degrees off its normal a beam of 0.4 degrees spreads
+// the tube over 3 to 7 lines, so the tube is 14 to 4.6 times as strong as the bed.
 TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
   const SceneEcho scene("ssiv", on_cpu);
   const double sonar_x = 13.5 * std::cos(-70 * degree);
@@ -152,8 +152,8 @@ TEST(FanScenesOnRay, FrontalFaceOfTheValve) {
 
 TEST(FanScenesOnRay, ShadowOfTheValve) {
   const SceneEcho scene("ssiv", on_cpu);
-  // Its roof, 3.1 m high, hides the bed far beyond the range: what lies behind its far side, 3.6 m from the
-  // middle at most, is heard through gaps only.
+  // Its roof, 3.1 m high, shadows the bed far beyond the range. Behind its far side, at most 3.6 m from the
+  // middle, the bed echoes through gaps only.
   const double beside = scene.energy(scene.beam_at(-29 * degree), 17.5, 19.5);
   for (double bearing = -4; bearing <= 8; bearing += 1) {
     const int beam = scene.beam_at(bearing * degree);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the three scenes of figure 8 must show: docs/worlds.md has their geometry in closed form.
+// Features that the three scenes of figure 8 must show: docs/worlds.md has their geometry in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, ScannedScenes, all_engines(), engine_name);
 
 const render::RendererOptions scanned_on_cpu{render::EngineKind::cpu};
 
-/// Distance from a point inside an upright rectangle to its sides.
+/// Distances, m, from a point inside an upright rectangle to its sides.
 struct Room {
   double ahead, port, astern, starboard;
 
@@ -66,7 +66,7 @@ TEST_P(ScannedScenes, WallsOfTheTank) {
     const double strongest = scene.strongest(line, 0, 12);
     EXPECT_NEAR(scene.first_range_m(line, 0, 1e-3 * strongest), tank.nearest(azimuth), 1.5 * scene.step_m())
         << azimuth / degree;
-    // Nothing beyond what the beam's upper and lower edge, 17.5 degrees off, hear of the farthest wall.
+    // Nothing lies beyond the farthest wall at the beam's upper and lower edge, 17.5 degrees off.
     EXPECT_EQ(scene.energy(line, tank.farthest(azimuth) / std::cos(17.5 * degree) + 0.1, 12), 0)
         << azimuth / degree;
     ++walls;
@@ -76,8 +76,8 @@ TEST_P(ScannedScenes, WallsOfTheTank) {
 
 TEST(ScannedScenesOnRay, PillarOfTheTankHidesTheWall) {
   const SceneEcho scene("tank", scanned_on_cpu);
-  // Radius 0.3 m about (5, 1.3) from the sonar: nearest at hypot(5, 1.3) - 0.3, wide by asin(0.3 / 5.166)
-  // = 3.3 degrees.
+  // Radius 0.3 m about (5, 1.3) from the sonar: nearest at hypot(5, 1.3) - 0.3, half as wide as
+  // 2 asin(0.3 / 5.166), 3.3 degrees.
   const double bearing = std::atan2(1.3, 5.0);
   const int line = scene.beam_at(bearing);
   EXPECT_NEAR(scene.first_range_m(line, 0, 1e-3 * scene.strongest(line, 0, 12)), std::hypot(5, 1.3) - 0.3,
@@ -93,16 +93,15 @@ TEST(ScannedScenesOnRay, TargetInTheTank) {
               1.5 * scene.step_m());
 }
 
-/// Yaw of the vehicle while a line of the grid was heard: lines are 0.05 s apart and the turn of 2 degrees
-/// per second begins with the first.
+/// Yaw of the vehicle, rad, during a line of the scene `grid`: lines are 0.05 s apart and the turn of 2
+/// degrees per second begins with the first.
 double yaw_at(int line) {
   return 2 * degree * 0.05 * line;
 }
 
 const Room cage{4, 4, 4, 4};
 
-/// Ranges of the nearest thing in the beam of a line: from bars and rails of up to 0.1 m on the walls of the
-/// cage.
+/// True if the first echo of a line comes from the walls of the cage, with bars and rails of up to 0.1 m.
 bool agrees_with_cage(const SceneEcho& scene, int line, double yaw) {
   const double heading = scene.azimuth_rad(line) + yaw;
   const double first = scene.first_range_m(line, 0, 1e-2 * scene.strongest(line, 0, 8));
@@ -131,13 +130,13 @@ TEST(ScannedScenesOnRay, CageIsShearedByTheTurn) {
   }
   EXPECT_GT(lines, 180);
   EXPECT_EQ(agree, lines);
-  EXPECT_LT(agree_at_rest, 0.6 * lines);  // the picture of a vehicle at rest is another one
+  EXPECT_LT(agree_at_rest, 0.6 * lines);  // a vehicle at rest has another picture
 }
 
 TEST(ScannedScenesOnRay, BarsOfTheCageDriftAgainstTheTurn) {
   const SceneEcho scene("grid", scanned_on_cpu);
   const auto energy_near = [&](double heading, double range_m, int& line) {
-    // The line during which the vehicle's own turn brings the head to look along this heading.
+    // The line in which the head, with the vehicle's turn, points along this heading.
     line = 0;
     const auto off = [&](int l) {
       return std::abs(std::remainder(scene.azimuth_rad(l) + yaw_at(l) - heading, 2 * std::numbers::pi));
@@ -149,8 +148,7 @@ TEST(ScannedScenesOnRay, BarsOfTheCageDriftAgainstTheTurn) {
   };
   for (const double side : {0.0, 90.0, 180.0, 270.0}) {
     for (int y = -2; y < 2; ++y) {
-      // The gate has no bar and no rails, and the turn takes 20 degrees off the end of the scan, beyond
-      // astern.
+      // The gate has no bar and no rails. The turn takes 20 degrees off the end of the scan, beyond astern.
       if ((side == 0.0 && (y == -1 || y == 0)) || (side == 180.0 && y >= 0)) {
         continue;
       }
@@ -200,8 +198,8 @@ TEST(ScannedScenesOnRay, SpoolsBelowAndManifoldToPort) {
 
 TEST(ScannedScenesOnRay, RisersToStarboard) {
   const SceneEcho scene("oil_and_gas", scanned_on_cpu);
-  // They stand at y = -13.5 + 6 + 0.75 where they leave the bed's bend, 0.75 m above it, and lean away over
-  // the 30.26 m from there to their top by a twelfth of their whole 31.01 m; x = -0.9, radius 0.2.
+  // The risers leave the bend at the bed at y = -13.5 + 6 + 0.75, 0.75 m above the bed. Over the 30.26 m to
+  // their top they lean away by a twelfth of their whole 31.01 m. x = -0.9, radius 0.2.
   const auto riser_m = [](double azimuth) {
     constexpr double lean = 31.01 / 12 / 30.26;
     const double distance =
@@ -219,9 +217,9 @@ TEST(ScannedScenesOnRay, RisersToStarboard) {
 
 TEST(ScannedScenesOnRay, BedLiesBelow) {
   const SceneEcho scene("oil_and_gas", scanned_on_cpu);
-  // Levelled round the manifold; between it and the spools' supports the strongest echo is the bed's or the
-  // spools', and beyond the bed nothing is heard. Straight down the beam is 35 degrees wide along the
-  // vehicle.
+  // The bed is level around the manifold. Between the manifold and the spools' supports the strongest echo
+  // comes from bed or spools, and nothing lies beyond the bed. Straight down the beam is 35 degrees wide
+  // along the vehicle.
   const int line = scene.beam_at(0);
   EXPECT_EQ(scene.energy(line, (level_below + 0.35) / std::cos(17.5 * degree) + 0.2, 12), 0);
   EXPECT_GT(scene.energy(line, level_below - 0.4, level_below + 0.4), 0);

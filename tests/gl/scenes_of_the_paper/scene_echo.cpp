@@ -15,7 +15,7 @@
 namespace sonard::test {
 namespace {
 
-/// Every n-th element, from the first.
+/// Keeps the first of every `every` elements.
 template <class Element>
 void thin_out(std::vector<Element>& elements, std::size_t every) {
   std::size_t kept = 0;

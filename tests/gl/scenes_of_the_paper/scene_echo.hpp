@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean echoes of the scenes of docs/gallery.md, effects off, and where in them something is.
+// Mean echoes of the scenes of docs/gallery.md without effects, and ranges of targets in them.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,16 @@
 
 namespace sonard::test {
 
-/// A scene rendered by one engine, with preset `fast`: a fan, or a turn, whose lines stand for beams.
+/// A scene rendered by one engine with preset `fast`: a fan, or a sweep whose lines are its beams.
 class SceneEcho {
  public:
-  /// @param every_line of a turn that is rendered; with 5, a fifth of them
+  /// @param every_line of a sweep that is rendered; with 5, a fifth of the lines
   SceneEcho(const std::string& name, const render::RendererOptions& options, std::size_t every_line = 1);
 
   const pictures::View& view() const { return view_; }
   int beams() const { return beams_; }
-  /// Middle of a beam of a fan, or of a line of a turn relative to the sonar at its time: positive to port.
+  /// Azimuth of the middle of a beam or of a sweep's line, relative to the sonar at its time: positive to
+  /// port.
   double azimuth_rad(int beam) const;
   /// The beam nearest to an azimuth.
   int beam_at(double azimuth_rad) const;
@@ -34,7 +35,7 @@ class SceneEcho {
   /// Middle of the strongest line that begins in [from_m, to_m).
   double strongest_range_m(int beam, double from_m, double to_m) const;
   double strongest(int beam, double from_m, double to_m) const;
-  /// Of the lines that begin in [from_m, to_m).
+  /// Median of the lines that begin in [from_m, to_m).
   double median(int beam, double from_m, double to_m) const;
 
  private:

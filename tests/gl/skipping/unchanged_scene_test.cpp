@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SkipRule::unchanged_scene: an echo is used again for exactly as long as it would come out the same.
+// SkipRule::unchanged_scene: an echo is reused exactly as long as a new one would equal it.
 #include <functional>
 #include <string>
 #include <utility>
@@ -52,7 +52,7 @@ TEST_P(UnchangedScene, SwitchedOffItIsMadeAnewAndTheSame) {
   EXPECT_EQ(skipped(renderer), 1u);
 }
 
-// Speckle fades as the sonar moves and noise is new in every ping: on or off, the device sends the same.
+// Speckle fades as the sonar moves, and noise is new in every ping. The rule does not change the samples.
 TEST_P(UnchangedScene, SamplesAreTheSameWithTheRuleOff) {
   SonarRenderer renderer(bed_and_ball(), options());
   SonarRenderer off(bed_and_ball(), without_the_rule());
@@ -72,7 +72,7 @@ TEST_P(UnchangedScene, SamplesAreTheSameWithTheRuleOff) {
 
 using Change = std::pair<std::string, std::function<void(PingRequest&)>>;
 
-// What the echo depends on: after any of it has changed, it is that of a renderer which knows nothing.
+// After a change of anything that the echo depends on, the echo equals one made without the rule.
 TEST_P(UnchangedScene, AnythingTheEchoDependsOnMakesItAnew) {
   const std::vector<Change> changes{
       {"position", [](PingRequest& r) { r.T_world_sonar.position_m.z += 1e-9; }},
@@ -153,7 +153,7 @@ TEST_P(UnchangedScene, BodiesThatMoveMakeItAnewAndBodiesThatRestDoNot) {
   const std::vector<float> moved = renderer.render_echo(request).intensity;
   EXPECT_EQ(skipped(renderer), 0u);
   EXPECT_EQ(moved, off.render_echo(request).intensity);
-  // As a publisher that repeats itself.
+  // A publisher may repeat a pose.
   ASSERT_TRUE(renderer.set_body_pose("ball", there));
   EXPECT_FALSE(renderer.set_body_pose("no such body", there));
   renderer.render_echo(request);
@@ -183,7 +183,7 @@ TEST_P(UnchangedScene, RefusedRequestLeavesTheLastEchoAsItWas) {
   EXPECT_EQ(renderer.render_echo(small_request()).intensity, image);
 }
 
-// The loss table, in both modes of sampling; with a grid the grid too.
+// The loss table, with slices and with grids; with a grid also the grid.
 TEST_P(UnchangedScene, TablesAreKeptWhereTheSceneIsNot) {
   for (const bool grid : {false, true}) {
     RendererOptions off_options = options();

@@ -31,7 +31,7 @@ void add_triangle(TriangleMesh& mesh, const std::array<glm::vec3, 3>& corners) {
   }
 }
 
-// What a loader meets goes through validated_mesh(), as every mesh does.
+// As in a loader, the mesh passes validated_mesh().
 TEST_P(Geometry, S4_DegenerateAndDuplicateTrianglesChangeNothing) {
   TriangleMesh broken = make_sphere(0.5F, 32);
   const std::size_t good = broken.indices.size();
@@ -43,7 +43,7 @@ TEST_P(Geometry, S4_DegenerateAndDuplicateTrianglesChangeNothing) {
     add_triangle(broken, {glm::vec3(x, 0, 0), glm::vec3(x + 1, 0, 0), glm::vec3(x + 2, 0, 0)});
   }
   for (std::size_t i = 0; i < 300; ++i) {
-    broken.indices.push_back(broken.indices[good - 1200 + i]);  // the same again
+    broken.indices.push_back(broken.indices[good - 1200 + i]);  // duplicates
   }
   for (std::size_t i = 0; i < broken.normals.size(); i += 3) {
     broken.normals[i] *= i % 2 == 0 ? 1e-3F : 1e3F;
@@ -77,11 +77,11 @@ TEST_P(Geometry, S4_ZeroOrMissingNormalsBecomeGeometricOnes) {
   }
 }
 
-// A normal map where the mesh cannot carry one changes nothing.
+// A normal map on a mesh that cannot carry one changes nothing.
 TEST_P(Geometry, S4_NormalMapWithoutTangentsOrTextureCoordinatesIsLeftOut) {
   auto map = std::make_shared<NormalMap>();
   map->width_px = map->height_px = 1;
-  map->rgb = {255, 128, 128};  // along the tangent: it would darken all that faces the sonar
+  map->rgb = {255, 128, 128};  // along the tangent: it would darken all surfaces that face the sonar
   const TriangleMesh plain = make_sphere(0.5F, 32);
   const std::size_t count = plain.positions.size();
   std::vector<TriangleMesh> meshes(3, plain);
@@ -115,7 +115,7 @@ TEST_P(Geometry, S5_PrimitivesThatAreNoNumbersAreRejectedAndOthersUnaffected) {
   EXPECT_LE(different_share(clean, image, 1e-6), silhouette_share);
 }
 
-// Finite, but of the size of the solar system: out of range, so it changes nothing.
+// Finite coordinates of the size of the solar system are out of range, so they change nothing.
 TEST_P(Geometry, S5_SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
   const EchoImage clean = SonarRenderer(small_harbour(), options()).render_echo(quiet_request());
   World world = small_harbour();
@@ -129,12 +129,12 @@ TEST_P(Geometry, S5_SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
   world.bodies.back().T_world_body.position_m = {5, 0, 1};
   const EchoImage image = SonarRenderer(world, options()).render_echo(quiet_request());
   EXPECT_TRUE(is_sane(image));
-  // What is beyond the range can still tip the division of a beam into slices; the preset's accuracy stays.
+  // Surfaces beyond the range can still change the slices of a beam, within the preset's accuracy.
   const double allowed = GetParam() == Way::cpu_slices ? 1e-3 : 1e-4;
   EXPECT_LE(different_share(clean, image, allowed), silhouette_share);
 }
 
-// Eight bits hold no NaN; what a map can do is to leave no normal at all.
+// Eight bits hold no NaN, but the texels can cancel to no normal at all.
 TEST_P(Geometry, S5_NormalMapWhoseTexelsCancelStaysFinite) {
   auto map = std::make_shared<NormalMap>();
   map->width_px = map->height_px = 2;
@@ -174,8 +174,8 @@ TriangleMesh soup(int count, double leg_m) {
 
 // Triangles of random direction and density n hide each other like fog: with k = n times half their area, a
 // ray meets its first at s with density k exp(-k s), and E[cos phi | met] = 2/3. So per steradian and metre
-// the echo is 2/3 mu k exp(-k (r - r0)) / r^2. A tenth of what docs/physics.md asks for, for the time it
-// takes.
+// the echo is 2/3 mu k exp(-k (r - r0)) / r^2. The test has a tenth of the triangles of the design, to save
+// time.
 TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   constexpr int count = 1'000'000;
   constexpr double leg_m = 0.012;
@@ -190,7 +190,7 @@ TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   ASSERT_TRUE(is_sane(image));
   const double k = count / (4.0 * 8.0 * 3.0) * (leg_m * leg_m / 2) / 2;
   const double limit = request.settings.aperture.elevation_limit_rad();
-  // Away from the near face, which triangles cross: two layers of a metre, r0 being 4 m over the cosines.
+  // Away from the near face, which triangles cross: two layers of a metre. r0 is 4 m over the cosines.
   for (const double from_m : {5.0, 6.5}) {
     double truth = 0;
     constexpr int steps = 60;
@@ -217,9 +217,8 @@ TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   }
 }
 
-// docs/physics.md 4.1, equation 6: a strip s samples wide, s < 1, is met with probability s, one of a sample
-// always. Along the elevation slices miss nothing; across it they are a degree wide at most, and what is thin
-// and upright makes them divide.
+// A strip s samples wide is found with probability min(1, s) (docs/stability.md, S14). Slices miss nothing
+// along the elevation. Across it they are a degree wide at most, and thin upright objects divide them.
 TEST_P(Geometry, S14_ThinStripsAreFoundAsOftenAsTheirWidthSays) {
   const bool slices = GetParam() == Way::cpu_slices;
   PingRequest request = level_request();
@@ -257,8 +256,8 @@ TEST_P(Geometry, S14_ThinStripsAreFoundAsOftenAsTheirWidthSays) {
   }
 }
 
-// Two walls of the same triangles in the same place: the first of the world is heard. Packets of rays decide
-// by the order in which they meet them, each for itself but always the same way.
+// Two walls of the same triangles in the same place: the first of the world echoes. On a fixed grid of the
+// CPU each packet of rays decides for itself, but always in the same way.
 TEST_P(Geometry, S14_TieBetweenCoplanarSurfaces) {
   const TriangleMesh quad = make_quad({0, -20, -20}, {0, 40, 0}, {0, 0, 40});
   Body strong = make_body("strong", quad, 0.2);
@@ -287,7 +286,7 @@ TEST_P(Geometry, S14_TieBetweenCoplanarSurfaces) {
   }
 }
 
-// The same wall in two triangulations: each sample may see either, but it is the same every time.
+// The same wall in two triangulations: each sample may see either, but always the same one.
 TEST_P(Geometry, S14_FightOfCoplanarTriangulationsIsRepeatable) {
   TriangleMesh other = make_quad({0, -20, -20}, {0, 40, 0}, {0, 0, 40});
   other.indices = {0, 1, 3, 1, 2, 3};
@@ -325,7 +324,7 @@ TEST_P(Geometry, S14_OpenMeshFromBehind) {
   EXPECT_EQ(sum(from_behind.render_echo(request)), 0);
 }
 
-// 2^18 samples, as points, in the only bin of the only beam, of the strongest surface there is. With cos phi
+// 2^18 samples, as points, of the strongest possible surface in the only bin of the only beam. With cos phi
 // = cos theta cos psi the integral over the fan is 2 sin(psi_m) (theta_m + sin(theta_m) cos(theta_m)).
 TEST_P(Geometry, S19_AQuarterOfAMillionSamplesInOneBin) {
   PingRequest request = level_request();

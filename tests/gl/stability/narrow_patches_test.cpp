@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Defects of binning and slices that the stress list has found: patches
-// narrower than their neighbours' distance, or than float resolves at their
-// range; edges that lie along a slice; surfaces that hold the sonar.
+// Tests of former defects of binning and slices: patches narrower than their neighbours' distance or than
+// float resolves at their range, edges along a slice, surfaces through the sonar.
 #include <random>
 
 #include "tests/gl/stability/stability_test.hpp"
@@ -14,8 +13,8 @@ using namespace test;
 
 SONARD_STABILITY_SUITE(NarrowPatches);
 
-// Both ends of the range in one image: a plate at 5 cm before half of the fan,
-// a wall at 9 km behind all of it.
+// Both ends of the range in one image: a plate at 5 cm in front of half of the fan, a wall at 9 km behind all
+// of it.
 TEST_P(NarrowPatches, S1_NearPlateAndFarWallInOneImage) {
   Body plate = make_body("plate", make_quad({0, 0.005F, -0.1F}, {0, 0.2F, 0}, {0, 0, 0.2F}), full_mu);
   plate.T_world_body.position_m.x = 0.05;
@@ -50,8 +49,7 @@ TEST_P(NarrowPatches, S1_NearPlateAndFarWallInOneImage) {
   }
 }
 
-// A curtain along the axis of the fan, in the plane of its middle, is seen
-// edge-on: it has no echo.
+// A curtain in the upright plane of the fan's axis is seen edge-on: it has no echo.
 TEST_P(NarrowPatches, S3_CurtainThatHoldsTheSonar) {
   SonarRenderer curtain(make_world({make_body("curtain", make_quad({-5, 0, -5}, {20, 0, 0}, {0, 0, 10}))}),
                         options());
@@ -60,8 +58,8 @@ TEST_P(NarrowPatches, S3_CurtainThatHoldsTheSonar) {
   EXPECT_LT(sum(edge_on), 1e-6);
 }
 
-// From inside a ball of radius a every direction is met at a with cos phi = 1:
-// a beam of width w hears 2 w sin(theta_m) mu / a^2.
+// Inside a ball of radius a, every ray meets it at a with cos phi = 1. The echo of a beam of width w is
+// 2 w sin(theta_m) mu / a^2.
 TEST_P(NarrowPatches, S9_EveryFanHearsTheSameFromInsideABall) {
   SonarRenderer renderer(make_world({make_body("ball", make_sphere(4.99F, 128), full_mu)}), options());
   for (const double width_deg : {0.01, 120.0, 179.0, 180.0, 360.0}) {
@@ -86,9 +84,8 @@ TEST_P(NarrowPatches, S9_EveryFanHearsTheSameFromInsideABall) {
   }
 }
 
-// 2^18 samples in the only bin of the only beam, of the strongest surface there
-// is. With cos phi = cos theta cos psi the integral over the fan is 2
-// sin(psi_m) (theta_m + sin(theta_m) cos(theta_m)).
+// 2^18 samples of the strongest possible surface in the only bin of the only beam. With cos phi = cos theta
+// cos psi the integral over the fan is 2 sin(psi_m) (theta_m + sin(theta_m) cos(theta_m)).
 TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(1, 60 * degree);
@@ -110,8 +107,7 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
       request.settings.sampling = Sampling::of_grid(1, 512, 512);
     }
     const EchoImage image = renderer.render_echo(request);
-    // A slice takes one cos phi for what lies in one line, here all of a
-    // triangle.
+    // A slice takes one cos phi for the part of a triangle in one line, here the whole triangle.
     const double allowed = GetParam() == Way::cpu_slices && footprint ? 1e-2 : 1e-3;
     EXPECT_NEAR(static_cast<double>(image.at(0, 0)) / truth, 1.0, allowed) << footprint;
     if (GetParam() != Way::cpu_slices) {
@@ -127,10 +123,10 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
   EXPECT_LE(mean, 1.0F);
 }
 
-// What is thin and upright makes slices divide: none is missed, however it lies to their middles and borders.
+// Thin upright objects divide slices, so that slices miss no strip at any place.
 TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
   if (GetParam() != Way::cpu_slices) {
-    return;  // grids find them as often as their width says (geometry_test.cpp)
+    return;  // grids find them by their width (geometry_test.cpp)
   }
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(64, 40 * degree);
@@ -143,9 +139,8 @@ TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
   }
 }
 
-// A face of a box whose range hardly changes along a slice, cut off by a steep edge: its whole echo lies
-// within a part of a line, whatever its ends do across the wedge. Held to a fine grid of rays, which knows no
-// slices.
+// A face of a box whose range hardly changes along a slice ends at a steep edge. Its whole echo lies within a
+// part of a line, wherever its ends are across the wedge. The truth is a fine grid of rays.
 TEST_P(NarrowPatches, S3_FacesAlongASliceStayInTheirLines) {
   if (GetParam() != Way::cpu_slices) {
     return;

@@ -25,8 +25,8 @@ Body wall_at(double x_m, double mu = full_mu) {
   return wall;
 }
 
-// A wall two thousandths of a bin behind the border between two bins is heard in the one, two thousandths
-// before it in the other, from 3 cm to 10 km.
+// A wall 0.002 bins behind the border of two bins echoes in the far bin, 0.002 bins before it in the near
+// bin, from 3 cm to 10 km.
 TEST_P(Precision, S1_RangesAreExactFromThreeCentimetresToTenKilometres) {
   for (const double about_m : {0.03, 0.1, 1.0, 10.0, 100.0, 1e3, 9.9e3}) {
     const double line_m = about_m / 900;
@@ -40,8 +40,7 @@ TEST_P(Precision, S1_RangesAreExactFromThreeCentimetresToTenKilometres) {
   }
 }
 
-// What is a hundred-thousandth of the range behind something else is hidden by it, wherever it comes in the
-// world.
+// A wall hides one that is 1e-5 of the range behind it, in either order of the world's bodies.
 TEST_P(Precision, S1_NearerWallHidesTheOneRightBehindIt) {
   for (const double front_m : {0.03, 1.0, 100.0, 9e3}) {
     const PingRequest request = telescope(level_request(), front_m / 900, 1000);
@@ -79,9 +78,9 @@ TEST_P(Precision, S2_ImageStaysFarFromTheOriginAndRotated) {
   }
 }
 
-// A plane through (8, 0, 0) that every ray meets at a grazing angle between gamma / 2 and 3 gamma / 2, the
-// fan being gamma high. With x = gamma - theta: cos phi = x and r = 8 gamma / x, so per azimuth the echo is
-// mu / (64 gamma^2) times the integral of x^3, or 5 mu gamma^2 / 256.
+// A plane through (8, 0, 0) that every ray meets at a grazing angle between gamma / 2 and 3 gamma / 2; the
+// fan is gamma high. With x = gamma - theta: cos phi = x and r = 8 gamma / x, so per azimuth the echo is mu /
+// (64 gamma^2) times the integral of x^3, or 5 mu gamma^2 / 256.
 TEST_P(Precision, S3_GrazingIncidence) {
   double before = INFINITY;
   for (const double gamma_deg : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
@@ -105,8 +104,8 @@ TEST_P(Precision, S3_GrazingIncidence) {
   }
 }
 
-// Fewer rows than the range cells they cross: the footprint is cut, the image stays finite and holds no more
-// than the plane's own echo, and some of it.
+// Fewer rows than the range cells they cross: the footprint is cut, and the image stays finite and has an
+// echo.
 TEST_P(Precision, S3_FootprintIsCutWhereOneSampleSeesHundredsOfBins) {
   const Body bed = make_body("bed", make_quad({-100, -100, -0.01F}, {200, 0, 0}, {0, 200, 0}), full_mu);
   PingRequest request = level_request();
@@ -134,8 +133,8 @@ TEST_P(Precision, S3_SonarInAPlaneTouchingItOrInsideABodyStaysFinite) {
   }
 }
 
-// A closed ball around the sonar: its echo and nothing else, or nothing where it is nearer than the near
-// limit.
+// A closed ball around the sonar: the image holds its echo only. If the ball is nearer than the near limit,
+// the image may be empty.
 TEST_P(Precision, S3_InsideABallOnlyTheBallIsHeard) {
   for (const float radius_m : {0.005F, 0.5F, 5.0F}) {
     World world =
@@ -145,7 +144,7 @@ TEST_P(Precision, S3_InsideABallOnlyTheBallIsHeard) {
     const EchoImage image = renderer.render_echo(level_request());
     ASSERT_TRUE(is_sane(image)) << radius_m;
     if (radius_m < 0.02F) {
-      continue;  // whether it is seen is left open
+      continue;  // its echo is optional
     }
     for (int beam = 0; beam < image.beams; ++beam) {
       for (int k = 0; k < image.lines; ++k) {

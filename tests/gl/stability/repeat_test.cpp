@@ -74,8 +74,8 @@ TEST_P(Repeat, S12_SameInputGivesTheSameBitsAHundredTimesUnderLoadAndWithAnyThre
   }
 }
 
-// Bodies are moved, taken out of the world (that is, far away) and put back, apertures, ranges and samplings
-// change from ping to ping, two sonars take turns: every image is that of a renderer that knows nothing else.
+// Bodies move, leave the world (far away) and return. Apertures, ranges and samplings change from ping to
+// ping, and two sonars take turns. Every image equals the image of a fresh renderer.
 TEST_P(Repeat, S18_EveryPingAfterAChangeIsThatOfAFreshRenderer) {
   SonarRenderer renderer(small_harbour(), options());
   const auto fresh = [](const Pose& ball, const Pose& crate, const PingRequest& request) {

@@ -24,8 +24,7 @@ World wall(double x_m, double mu = full_mu) {
   return make_world({body});
 }
 
-// Poses come in through pose::normalize(), which refuses or scales; what the renderer then gets it checks
-// again.
+// pose::normalize() refuses or scales incoming poses; the renderer checks its poses again.
 TEST_P(Settings, S6_PosesAreRefusedOrScaledAndTheSignOfAQuaternionDoesNotMatter) {
   using pose::TransformFault;
   const auto fault = [](pose::Transform transform) { return pose::normalize(transform); };
@@ -88,8 +87,8 @@ TEST_P(Settings, S7_RangesAreRefusedOrGiveAValidImage) {
   EXPECT_THROW(renderer.render_echo(with(100, 0.02, 5)), RequestError);
   EXPECT_THROW(renderer.render_echo(with(100, 0.02, -1)), RequestError);
 
-  // A millimetre of range, and lines of a micrometre: more than float resolves at the wall is not asked for,
-  // as 65535 lines are the most.
+  // A millimetre of range, and lines of a micrometre. With at most 65535 lines, no request resolves more than
+  // float does at the wall.
   for (const auto& [lines, step_m] :
        std::vector<std::pair<int, double>>{{10, 1e-4}, {65535, 1e-6}, {1, 1e-6}}) {
     const EchoImage image = renderer.render_echo(with(lines, step_m));
@@ -107,7 +106,7 @@ TEST_P(Settings, S7_RangesAreRefusedOrGiveAValidImage) {
     const PingSamples samples = renderer.render_ping(request);
     EXPECT_EQ(samples.u8.size(), image.intensity.size());
   }
-  // A surface right in front of the sonar: r^-2 is that of the middle of the line.
+  // A surface right in front of the sonar: r^-2 is taken in the middle of the line.
   renderer.set_body_pose("wall", {{0.021, 0, 0}, {1, 0, 0, 0}});
   const EchoImage near = renderer.render_echo(with(100, 0.5));
   EXPECT_TRUE(is_sane(near));
@@ -124,7 +123,7 @@ TEST_P(Settings, S8_SmallestImageAndTarget) {
   SonarRenderer renderer(wall(8), options());
   const EchoImage image = renderer.render_echo(request);
   ASSERT_EQ(image.intensity.size(), 1U);
-  // All of the fan, as in S19; one sample takes cos phi and solid angle on the axis for all of it, 9 % too
+  // The whole fan, as in S19. One sample takes cos phi and solid angle on the axis for all of it, 9 % too
   // much.
   const double limit = request.settings.aperture.elevation_limit_rad();
   const double truth =
@@ -179,8 +178,8 @@ TEST_P(Settings, S8_NothingAndTooMuchAreRefusedBeforeAllocation) {
   EXPECT_GT(sum(renderer.render_echo(level_request())), 0) << "and then goes on";
 }
 
-// A bed at depth h below a level fan of half height theta_m: per azimuth it echoes mu h^2 / 4 times
-// (sin(theta_m) / h)^4 - R^-4 up to range R (docs/physics.md 3.2, T3), at every azimuth the same.
+// A bed at depth h below a level fan of half height theta_m: its echo per azimuth is mu h^2 / 4 times
+// (sin(theta_m) / h)^4 - R^-4 up to range R (docs/physics.md 3.2, T3), equal at every azimuth.
 TEST_P(Settings, S9_EveryFanHearsTheBedBelow) {
   const TriangleMesh bed = make_quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
   SonarRenderer renderer(make_world({make_body("bed", bed, full_mu)}), options());
@@ -208,8 +207,8 @@ TEST_P(Settings, S9_EveryFanHearsTheBedBelow) {
   }
 }
 
-// Turned by half a turn a full circle hears the same half the beams away: what is ahead in one image lies
-// across the seam in the other.
+// After half a turn, the image of a full circle is shifted by half the beams: the view ahead in one image
+// lies across the seam in the other.
 TEST_P(Settings, S9_FullCircleHasNoSeam) {
   SonarRenderer renderer(small_harbour(), options());
   constexpr int beams = 72;
@@ -242,15 +241,14 @@ TEST_P(Settings, S9_FansThatCannotBeAreRefused) {
   refused([](Aperture& a) { a.beam_edges_rad = equal_angle_edges(8, 0); });
   refused([](Aperture& a) { a.beam_edges_rad = {-0.1, 0.1}; });
   refused([](Aperture& a) { a.beam_edges_rad = {nan, 0.0}; });
-  // Azimuths are those of (-pi, pi]: a fan across half a turn is a full circle or a turned sonar.
+  // Azimuths lie in (-pi, pi]: a fan across half a turn needs a full circle or a turned sonar.
   refused([](Aperture& a) { a.beam_edges_rad = {182 * degree, 178 * degree}; });
   for (const double height_deg : {0.0, -1.0, 180.0, 360.0, nan}) {
     refused([&](Aperture& a) { a.vertical_beamwidth_rad = height_deg * degree; });
   }
 }
 
-// A scanning head is one beam whose bearing turns: 6400 units a turn, as integers. The head itself is not
-// built yet; this is what it will ask of the renderer.
+// A scanning head is one beam whose bearing turns: 6400 units a turn, as integers.
 TEST_P(Settings, S10_ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
   World world = make_world({make_body("ball", make_sphere(0.3F, 32), full_mu)});
   world.bodies[0].T_world_body.position_m = {-6, 0, 0};  // at bearing 180 degrees
@@ -268,7 +266,7 @@ TEST_P(Settings, S10_ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
         glm::angleAxis(2 * std::numbers::pi * encoder / units_per_turn, glm::dvec3(0, 0, 1));
     return renderer.render_echo(request);
   };
-  // 3199, 3200 = -3200, -3199: the same bearing by either name, the same image on either side of it.
+  // 3199, 3200 = -3200, -3199: both names of a bearing give one image, and the scan is symmetric about it.
   const auto wrapped = [](int encoder) {
     return encoder > units_per_turn / 2 ? encoder - units_per_turn : encoder;
   };
@@ -282,7 +280,7 @@ TEST_P(Settings, S10_ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
   for (std::size_t i = 0; i < scan.size(); ++i) {
     EXPECT_NEAR(sum(scan[i]), sum(scan[scan.size() - 1 - i]), 0.03 * sum(scan[scan.size() / 2])) << i;
   }
-  // The ball is 5.7 degrees wide: heard within 4.4 degrees of 180, or 78 units, and nowhere else. Its very
+  // The ball is 5.7 degrees wide: it echoes within 4.4 degrees of 180, or 78 units, and nowhere else. Its
   // limb may fall between two slices.
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const int offset = static_cast<int>(i) * step - half_sector;
@@ -316,7 +314,7 @@ TEST_P(Settings, S15_AbsorptionFromNoneToTenDecibelsAMetre) {
       }
     }
   }
-  // Over ten kilometres 10 dB/m leave nothing, and no number that is none.
+  // Over ten kilometres 10 dB/m leave nothing, and no NaN.
   request.settings.range = {1000, 10.0, 0, false};
   for (const double tvg : {0.0, 10.0}) {
     request.settings.physical.tvg_absorption_db_per_m = tvg;
@@ -353,7 +351,7 @@ TEST_P(Settings, S16_MaterialsOutsideWhatIsPassive) {
   };
   EXPECT_EQ(sum(heard(material(0.0, {}), Model::physical)), 0);
   EXPECT_GT(sum(heard(glaring, Model::physical)), 0);
-  // S(0) = 6.1e-6 and S(1) = .9975 (docs/physics.md 1.2). Means are coarse where a line holds a sliver of a
+  // S(0) = 6.1e-6 and S(1) = .9975 (docs/physics.md 1.2). Means are coarse if a line holds a sliver of a
   // slice.
   EXPECT_NEAR(strongest(heard(material(0.0, {}), Model::paper)), 6.1e-6,
               GetParam() == Way::cpu_slices ? 1e-6 : 1e-7);
@@ -378,7 +376,7 @@ TEST_P(Settings, S17_GainFromNothingToSaturationEverywhere) {
     EXPECT_EQ(*std::min_element(loud.begin(), loud.end()), full);
     const auto silent = codes(-400);
     EXPECT_EQ(*std::max_element(silent.begin(), silent.end()), 0);
-    // Everything in between only rises: no code wraps round.
+    // In between, codes only rise: they do not wrap around.
     std::vector<std::uint16_t> before = silent;
     for (double gain_db = 0; gain_db <= 240; gain_db += 24) {
       const auto now = codes(gain_db);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixture for the stress list of docs/physics.md 4.3: every test that concerns an image runs on every way to
-// one.
+// Fixture for the stress list of docs/stability.md: each test of an image runs on each way to render one.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +16,12 @@
 
 namespace sonard::test {
 
-/// Of a passive, fully diffuse surface: the largest there is.
+/// Lambert's mu of a passive, fully diffuse surface: the largest possible.
 inline constexpr double full_mu = std::numbers::inv_pi;
 
 enum class Way {
   gpu,         ///< rasterised grid
-  cpu_slices,  ///< engine `cpu` as presets use it: exact in slices, refined where neighbours disagree
+  cpu_slices,  ///< engine `cpu` as presets use it: exact in slices, refined if neighbours disagree
   cpu_grid,    ///< engine `cpu` on a fixed grid
 };
 
@@ -77,7 +76,7 @@ class StabilityTest : public ::testing::TestWithParam<Way> {
     return request;
   }
 
-  /// The same from the origin, straight ahead along x.
+  /// quiet_request() from the origin, straight ahead along x.
   static render::PingRequest level_request() {
     render::PingRequest request = quiet_request();
     request.T_world_sonar = {};

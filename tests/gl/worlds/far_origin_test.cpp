@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds in UTM coordinates: seven digits before the point, and the echo of a millimetre behind it.
+// Worlds in UTM coordinates: seven digits before the decimal point, and the echo of a millimetre.
 #include <algorithm>
 #include <cmath>
 
@@ -52,7 +52,7 @@ double worst_of_maximum(const EchoImage& a, const EchoImage& b) {
   return worst;
 }
 
-/// Both engines with a grid; `cpu` by its slices too.
+/// Both engines use a grid; `cpu` uses slices too.
 std::vector<bool> ways_for(EngineKind engine) {
   return engine == EngineKind::cpu ? std::vector<bool>{true, false} : std::vector<bool>{true};
 }
@@ -85,7 +85,7 @@ TEST_P(FarOrigin, BodiesMoveThereAsWell) {
   const glm::dvec3 utm(500'000, 6'000'000, -1024);
   SonarRenderer near(world_at({}), options());
   SonarRenderer far(world_at(utm), options());
-  const glm::dvec3 there(12.0009765625, -2, -3);  // a millimetre, in what doubles keep at either place
+  const glm::dvec3 there(12.0009765625, -2, -3);  // a millimetre, exact in doubles at both places
   near.set_body_pose("ball", {there, {1, 0, 0, 0}});
   far.set_body_pose("ball", {utm + there, {1, 0, 0, 0}});
   EXPECT_EQ(far.render_echo(request_at(utm, true)).intensity,

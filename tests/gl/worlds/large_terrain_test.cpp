@@ -20,7 +20,7 @@ class LargeTerrain : public EngineTest {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, LargeTerrain, all_engines(), engine_name);
 
-/// 16-bit PGM, whose rows go from the top down and whose numbers have their high byte first.
+/// Writes a 16-bit PGM: rows from the top down, high byte first.
 void write_ground(const std::filesystem::path& file, int side_px) {
   const GreyImage picture = ground_picture(side_px);
   std::ofstream stream(file, std::ios::binary);

@@ -33,7 +33,7 @@ PingRequest request_for(EngineKind engine) {
   return request;
 }
 
-// Straight ahead, with the far upper edge of the box at x and z = h: nothing is heard between that edge, at
+// Straight ahead, with the far upper edge of the box at x and z = h: there is no echo between that edge, at
 // hypot(x, H - h), and the end of the shadow on the bed, at x H / (H - h).
 void expect_shadow(const EchoImage& image, double far_edge_m) {
   const int beam = image.beams / 2;
@@ -62,7 +62,7 @@ TEST_P(MovingBodies, TakeTheirShadowsAlong) {
   }
 }
 
-// 200 bodies that have come somewhere are heard as in a world where they always were.
+// 200 moved bodies echo as in a world that has them there from the start.
 TEST_P(MovingBodies, AreHeardWhereTheyAre) {
   const Scene scene = make_bodies_scene("bodies");
   World there = scene.world;
@@ -84,7 +84,7 @@ TEST_P(MovingBodies, AreHeardWhereTheyAre) {
       EXPECT_EQ(renderer.last_statistics().skipped.of(SkipRule::unchanged_scene), 0U);
       EXPECT_EQ(fresh.render_echo(request).intensity, image.intensity) << "ping " << ping;
     }
-    for (const Body& body : there.bodies) {  // what is said again moves nothing
+    for (const Body& body : there.bodies) {  // a repeated pose moves nothing
       ASSERT_TRUE(renderer.set_body_pose(body.name, body.T_world_body));
     }
     renderer.render_echo(ways.back());

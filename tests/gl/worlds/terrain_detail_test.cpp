@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SkipRule::terrain_detail: tiles as coarse as the sonar can bear against every pixel of the map.
+// SkipRule::terrain_detail: tiles as coarse as the sonar allows against every pixel of the map.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -20,8 +20,8 @@ class TerrainDetail : public EngineTest {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, TerrainDetail, all_engines(), engine_name);
 
-/// A map of 1024 x 1024 pixels, 0.1 m each, heard over 30 degrees. Exactly by slices; with OpenGL by a grid,
-/// the same with the rule and without.
+/// A map of 1024 x 1024 pixels, 0.1 m each, in a fan of 30 degrees. `cpu` uses slices; `gpu` uses a grid, the
+/// same with the rule and without.
 Scene scene_for(EngineKind engine) {
   Scene scene = make_terrain_scene("terrain", 1024);
   scene.settings.aperture.beam_edges_rad = equal_angle_edges(64, 30 * std::acos(-1.0) / 180);
@@ -83,7 +83,7 @@ TEST_P(TerrainDetail, StaysWithinItsBound) {
   }
 }
 
-// The detail of a ping is that of its own place and settings, whatever was drawn before.
+// The detail of a ping depends on its own place and settings, not on earlier pings.
 TEST_P(TerrainDetail, DependsOnThePingAlone) {
   const Scene scene = scene_for(GetParam());
   PingRequest here = scene.request();
@@ -105,7 +105,7 @@ TEST_P(TerrainDetail, DependsOnThePingAlone) {
   }
 }
 
-// Noise that no coarser level comes near: what is drawn is still limited.
+// Noise that no coarser level approximates: the number of triangles is still limited.
 TEST_P(TerrainDetail, DrawsNoMoreThanTwoMillionTriangles) {
   GreyImage noise{1100, 1100, {}};
   std::uint32_t random = 1;
@@ -128,7 +128,7 @@ TEST_P(TerrainDetail, DrawsNoMoreThanTwoMillionTriangles) {
   EXPECT_LT(renderer.last_statistics().skipped.of(SkipRule::terrain_detail), all);
 }
 
-// A plane is one at any level: its echo is that of two triangles, across all the seams of tiles.
+// A plane is a plane at any level: tiles have the echo of two triangles, across all their seams.
 TEST_P(TerrainDetail, OfAPlaneIsThePlane) {
   World tiles;
   tiles.bodies.push_back({"bed", {{0, 0, -5}, {1, 0, 0, 0}}, {}});
@@ -172,7 +172,7 @@ std::shared_ptr<const NormalMap> ripples() {
   return std::make_shared<const NormalMap>(std::move(map));
 }
 
-// At their finest, tiles are heard as the whole map in one mesh is, with a normal map or without.
+// At their finest, tiles echo like the whole map in one mesh, with a normal map or without.
 TEST_P(TerrainDetail, TilesAreHeardAsOneMesh) {
   const glm::dvec3 size_m(30, 28, 1);
   for (const bool mapped : {false, true}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the meshes and normal maps of a world take of video memory, and the bound that they keep.
+// Video memory of the meshes and normal maps of a world, and its bound.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -24,7 +24,7 @@ using namespace test;
 
 constexpr std::uint64_t mib = 1 << 20;
 
-/// Says in `log` what happens to it.
+/// Logs each upload (+) and release (-) in `log`.
 class LoggedItem final : public VideoMemory::Item {
  public:
   LoggedItem(char name, std::uint64_t bytes, std::string& log) : Item(bytes), name_(name), log_(log) {}
@@ -52,7 +52,7 @@ TEST_F(VideoMemoryOrder, ReleasesWhatWasDrawnLongestAgo) {
   memory.hold({&a});
   memory.hold({&c, &c});
   EXPECT_EQ(log, "+a+b+c");
-  memory.hold({&d});  // b would do
+  memory.hold({&d});  // b was drawn longest ago, and its place is enough
   EXPECT_EQ(log, "+a+b+c-b+d");
   EXPECT_EQ(memory.bytes(), 90U);
   memory.hold({&b, &d});  // a is the oldest, and its place is enough
@@ -96,7 +96,7 @@ class VideoMemoryOfWorlds : public ::testing::Test {
   }
 };
 
-/// The sizes of all buffers of a context, asked of OpenGL.
+/// The total size of all buffers of a context, from OpenGL.
 std::uint64_t buffer_bytes(EglContext& context) {
   const auto& gl = *context.getState()->get<osg::GLExtensions>();
   std::uint64_t bytes = 0;
@@ -112,7 +112,7 @@ std::uint64_t buffer_bytes(EglContext& context) {
   return bytes;
 }
 
-/// A square of 2 * cells^2 triangles before the sonar, with all attributes.
+/// A square of 2 * cells^2 triangles in front of the sonar, with all attributes.
 TriangleMesh make_square(unsigned cells) {
   TriangleMesh mesh;
   for (unsigned row = 0; row <= cells; ++row) {
@@ -143,7 +143,7 @@ SampleGrid forward_grid(double width_rad) {
 }
 
 // 12 bytes a position and a normal, 8 a texture coordinate, 16 a tangent and the plane of a facet; 2 an
-// index. Each triangle ends with a vertex of its own; with some vertices none does.
+// index. Each triangle ends with its own vertex; some vertices end no triangle.
 TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
   constexpr unsigned cells = 30;  // one chunk
   constexpr std::uint64_t triangles = 2 * cells * cells;
@@ -184,7 +184,7 @@ TEST_F(VideoMemoryOfWorlds, HoldsNormalMapsToo) {
   EXPECT_EQ(sampler.video_memory().bytes(), rows * 4096 * 8 + 4 * 64 + 6 * 2);
 }
 
-/// Renders with a bound and without from every pose.
+/// Renders each request with a bound and without.
 class BoundedAndUnbounded {
  public:
   BoundedAndUnbounded(const World& world, const RendererOptions& bounded, std::uint64_t bound_bytes)
