@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints results of sonard_bench for presets as the Markdown table of docs/benchmark.md.
+"""Prints results of sonard_bench for presets as the Markdown table of docs/benchmark.md. Each cell has the values of
+`fast / default / reference`.
 
   tests/bench/tables.py out/bench.json
 """
@@ -19,8 +20,10 @@ COLUMNS = (("ping ms", "ping_ms", 1), ("least", "ping_ms_min", 1), ("samples k",
 OTHERS = ("bodies", "terrain", "recording", "b2_seabed_10m")
 
 
-def number(values, metric, scale):
-    return f"{values[metric] * scale:.3g}" if metric in values else "-"
+def cell(presets, metric, scale):
+    """One value for each preset; a single dash if the metric was not measured."""
+    numbers = [f"{values[metric] * scale:.3g}" if metric in values else "-" for values in presets]
+    return " / ".join(numbers) if set(numbers) != {"-"} else "-"
 
 
 def print_row(cells):
@@ -31,15 +34,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("json")
     results = Results(parser.parse_args().json)
-    print_row(["scene", "engine", "preset"] + [title for title, _, _ in COLUMNS])
-    print("|" + "---|" * (3 + len(COLUMNS)))
+    print_row(["scene", "engine"] + [title for title, _, _ in COLUMNS])
+    print("|" + "---|" * (2 + len(COLUMNS)))
     for scene in results.scenes():
         if "@" in scene or scene.startswith(OTHERS):
             continue
         for engine in results.engines():
-            for preset, values in results.of(scene, engine).items():
-                if preset in PRESETS and "ping_ms" in values:
-                    print_row([f"`{scene}`", engine, preset] + [number(values, *column[1:]) for column in COLUMNS])
+            measured = results.of(scene, engine)
+            presets = [measured.get(preset, {}) for preset in PRESETS]
+            if any("ping_ms" in values for values in presets):
+                print_row([f"`{scene}`", engine] + [cell(presets, *column[1:]) for column in COLUMNS])
 
 
 if __name__ == "__main__":
