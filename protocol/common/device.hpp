@@ -16,8 +16,7 @@
 
 namespace sonard {
 
-/// The other end of a message. On a line that all clients share, such as a serial line, it is the default
-/// value.
+/// The other end of a message. Default-constructed on a line that all clients share, such as a serial line.
 struct Peer {
   int channel = 0;  ///< number of the device's socket or line; each device kind has its own numbering
   Endpoint remote;  ///< the sender or the receiver
@@ -140,8 +139,7 @@ class Device {
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// Handles an event and runs everything that is due. After a late call the device catches up as far as it
-  /// can.
+  /// Handles an event and runs everything that is due. After a late call the device catches up if it can.
   virtual Actions step(TimePoint now, const Event& event) = 0;
 
   virtual PingProgress progress() const = 0;

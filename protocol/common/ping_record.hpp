@@ -42,8 +42,7 @@ struct PingRecord {
   std::vector<std::uint8_t> wire;  ///< the message on the wire without its samples; empty: not kept
 };
 
-/// A recorded ping to send again unchanged. A head that plays back sends it whatever settings a client
-/// requests.
+/// A recorded ping to send again unchanged. A head that plays back ignores a client's settings and sends it.
 struct RecordedPing {
   std::uint64_t record = 0;  ///< PingJob::record
   RecordedSettings settings;

@@ -12,8 +12,7 @@ namespace sonard {
 
 /// Holds either a T or an E. Both convert implicitly:
 ///   Result<int, WireError> parse(...) { if (bad) return WireError{...}; return 42; }
-/// Check has_value() first: access to the missing one asserts in debug builds and is undefined in release
-/// builds.
+/// Check has_value() first: access to the missing one asserts in debug builds, else it is undefined.
 template <class T, class E>
 class [[nodiscard]] Result {
   static_assert(!std::is_same_v<T, E> && !std::is_reference_v<T> && !std::is_reference_v<E>);

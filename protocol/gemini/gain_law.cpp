@@ -9,8 +9,7 @@ namespace sonard::gemini {
 namespace {
 
 // The early library sends trunc(500 exp((g - 100) / 25)) for g percent, so percent is logarithmic in
-// `spreading`. 0 percent gives 9, 100 percent gives 500. Values outside are assumed to have no further
-// effect.
+// `spreading`. 0 percent gives 9, 100 percent gives 500. No effect is known of values outside.
 constexpr double percent_per_neper = 25.0;
 constexpr double spreading_at_0_percent = 9.0;
 constexpr double spreading_at_100_percent = 500.0;

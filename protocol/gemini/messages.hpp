@@ -392,7 +392,7 @@ struct GoingOffline {
 std::uint16_t temperature_code(double celsius);
 /// Inverse of temperature_code; nullopt if bit 15 is clear.
 std::optional<double> temperature_celsius(std::uint16_t code);
-/// Code of the FPGA's die temperature, code * 503.975 / 1024 - 273.15 degC; rounded, clamped to 10 bits
+/// Code of the FPGA's die temperature: code * 503.975 / 1024 - 273.15 degC, rounded, clamped to 10 bits
 /// (3.3).
 std::uint16_t die_temperature_code(double celsius);
 double die_temperature_celsius(std::uint16_t code);
@@ -492,8 +492,7 @@ struct PingHead {
 
   bool eight_bit() const { return (ext_mode & ext_bits::eight_bit) != 0; }
   int compression_log2() const { return gemini::compression_log2(range_compression); }
-  /// Number of lines that follow: floor((end_range - start_range) / 2^compression_log2), never negative
-  /// (6.1).
+  /// Number of lines that follow: floor((end_range - start_range) / 2^compression_log2), at least 0 (6.1).
   int line_count() const;
   double sound_speed_mps() const { return (sound_speed_used & 0x7FFF) * 0.1; }
 

@@ -47,8 +47,7 @@ class Pacer {
   int configured_burst_;
   std::chrono::nanoseconds period_{};
   int burst_ = 1;
-  /// When the next datagram would leave if all kept the period exactly. Initially far in the past: a free
-  /// line.
+  /// When the next datagram would leave if all kept the period exactly. Far in the past: the line is free.
   TimePoint next_ = TimePoint::min() / 2;
 };
 

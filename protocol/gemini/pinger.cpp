@@ -234,8 +234,7 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
     return;
   }
   PingHead head = acquisition_->plan.head;
-  head.ping_id =
-      static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients require 0..255 (6.3)
+  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients need 0..255 (6.3)
   head.transmit_time_us = clock_us(acquisition_->transmit_time);
   acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
   acquisition_->record = record_of(head, image);

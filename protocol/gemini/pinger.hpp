@@ -20,8 +20,7 @@
 
 namespace sonard::gemini {
 
-/// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the connected
-/// topside.
+/// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the topside.
 ///
 /// A ping has three stages. *Wanted*: a configuration, the interval or a trigger edge requests it.
 /// *Acquired*: its transmit time is fixed, its job has been issued, its image is pending. *On the wire*: from

@@ -10,9 +10,8 @@
 
 namespace sonard::gemini {
 
-/// The record of an image that is sent with the complete `head`. Samples are as a topside has them after
-/// decoding: zero below the run-length threshold, and the high byte of 16 bits. Number, time and gain are not
-/// set.
+/// The record of an image that is sent with the complete `head`, without number, time and gain. Samples are
+/// as a topside has them after decoding: zero below the run-length threshold, and the high byte of 16 bits.
 PingRecord record_of(const PingHead& head, const PingImage& image);
 
 /// The settings in a ping head, which does not contain the gain.
@@ -32,8 +31,7 @@ std::optional<RecordedForm> recorded_form(const RecordedSettings& settings);
 /// requested interval. Requires a recorded_form().
 PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device);
 
-/// Differences between `asked` and the ping that is sent instead. Rounding on the wire and in logs is
-/// ignored.
+/// Differences between `asked` and the ping that is sent instead, except rounding on the wire and in logs.
 std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
                                     const RecordedSettings& recorded);
 

@@ -30,8 +30,7 @@ std::uint32_t crc_of(const std::string& text) {
   return crc.value();
 }
 
-/// Size of `size` bytes in stored blocks. It is always larger, so a reader can detect that nothing is
-/// compressed.
+/// Size of `size` bytes in stored blocks. It is always larger, so readers detect that nothing is compressed.
 std::uint32_t stored_size(std::uint32_t size) {
   const std::size_t blocks = (size + pack_block_size - 1) / pack_block_size + 1;
   return static_cast<std::uint32_t>(size + blocks * zip::block_header_size);

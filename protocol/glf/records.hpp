@@ -10,8 +10,7 @@
 
 namespace sonard::glf {
 
-/// Types of records. Logs of other programs contain more types, at which third-party readers lose their
-/// position.
+/// Types of records. Logs of other programs contain more types, at which third-party readers lose track.
 enum class RecordType : std::uint8_t { image = 0, status = 3 };
 
 /// Time and source of a record, from its header.

@@ -87,8 +87,7 @@ std::optional<BlockHeader> block_header_at(std::span<const std::uint8_t> bytes, 
   return header;
 }
 
-/// The size of the block with a damaged header at `offset`: a candidate size after which another block
-/// follows.
+/// The size of the block with a damaged header at `offset`: a size after which another block follows.
 std::optional<std::size_t> size_of_damaged_block(std::span<const std::uint8_t> bytes, std::size_t offset,
                                                  const BlockHeader& header, std::size_t size_before) {
   for (const std::size_t size :
@@ -108,8 +107,7 @@ PiecewiseBytes stored_front(std::span<const std::uint8_t> bytes) {
   for (std::size_t offset = 0; const auto header = block_header_at(bytes, offset);) {
     const auto found = header->is_stored() ? std::optional(std::size_t{header->size})
                                            : size_of_damaged_block(bytes, offset, *header, size);
-    // The flag for the last block may itself be damaged. It counts only in an empty block, which ends our
-    // archives.
+    // The flag for the last block may be damaged. It counts only in an empty block, which ends our archives.
     if (!found || (*found == 0 && (header->kind & 0x01) != 0)) {
       break;
     }

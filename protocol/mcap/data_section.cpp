@@ -37,8 +37,7 @@ std::optional<WireError> take(const Record& record, Chunk& chunk) {
   return std::nullopt;
 }
 
-/// True if the sizes in the front of a chunk match the length of its record. Other content does not pass by
-/// chance.
+/// True if the sizes in the front of a chunk match the length of its record, which is no coincidence.
 bool looks_like_chunk(ByteView content) {
   ByteReader reader{content};
   reader.skip(8 + 8 + 8 + 4, "chunk.front");
@@ -101,8 +100,7 @@ bool looks_like_no_chunk(ByteView content) {
   return std::ranges::any_of(others, [&](Opcode opcode) { return has_form(content, opcode); });
 }
 
-/// True if the unreadable record at `at` is a chunk. Assumes one wrong bit, so its type or its length is
-/// correct.
+/// True if the unreadable record at `at` is a chunk. With one wrong bit its type or its length is correct.
 bool was_chunk(ByteView file, std::size_t at) {
   const auto record = record_at(file, at);
   const bool named = file[at] == static_cast<std::uint8_t>(Opcode::chunk);

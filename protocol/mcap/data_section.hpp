@@ -66,8 +66,7 @@ struct DataSection {
   std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 if there is no chunk
   MessageIndexes last_indexes;     ///< message indexes of the last chunk
   bool last_chunk_open = false;    ///< the last chunk has no CRC
-  /// Why the scan stopped before DataEnd or the end of the bytes. Other readers may be able to read what
-  /// follows.
+  /// Why the scan stopped before DataEnd or the end of the bytes. Other readers may be able to read the rest.
   std::optional<WireError> error;
   std::vector<DamagedChunk> damaged;  ///< parts that were skipped (OnDamage::skip)
 };

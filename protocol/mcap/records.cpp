@@ -36,7 +36,7 @@ void write_map(ByteWriter& writer, const std::map<std::string, std::string>& map
   write_sized(writer, entries);
 }
 
-/// Calls `read` with a reader at the front of the content. Ignores further bytes, which belong to later
+/// Calls `read` with a reader at the front of the content. Ignores further bytes, which are of later
 /// versions.
 template <class Value, class Read>
 Result<Value, WireError> read_content(const Record& record, Read read) {

@@ -128,8 +128,7 @@ class RecordScope {
   std::size_t content_start_;
 };
 
-// ---- Reading. Offsets in errors are relative to the bytes of record_at(): the file or the records of a
-// chunk.
+// ---- Reading. Offsets in errors are relative to the bytes of record_at(): the file or a chunk's records.
 
 struct Record {
   std::uint8_t opcode = 0;  ///< Opcode or another value

@@ -188,8 +188,7 @@ void Host::request(TimePoint now) {
   due_ = now + line_timeout();
 }
 
-/// Compares the parameters as drivers do, except gain and window, which may change while lines are in
-/// transit.
+/// Compares the parameters as drivers do, except gain and window, which may change during a scan.
 bool Host::matches(const HeadData& line) const {
   const HeadCommand& asked = programme_->parameters;
   constexpr unsigned compared = control_bits::eight_bit | control_bits::continuous | control_bits::invert;

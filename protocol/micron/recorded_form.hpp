@@ -21,8 +21,7 @@ std::vector<std::uint8_t> recorded_wire(const HeadData& line, std::uint8_t node)
 /// The line in a recorded frame; nullopt if the frame does not contain a line.
 std::optional<HeadData> recorded_line(std::span<const std::uint8_t> wire);
 
-/// Differences between `asked` and the line that is sent instead. Rounding on the wire and in logs is
-/// ignored.
+/// Differences between `asked` and the line that is sent instead, except rounding on the wire and in logs.
 std::vector<Difference> differences(const HeadCommand& asked, const PingJob& sent, const HeadData& recorded);
 
 }  // namespace sonard::micron

@@ -26,8 +26,7 @@ class Scanner {
   /// Starts centred. `config` and `counters` must outlive the scanner.
   Scanner(const DeviceConfig& config, DeviceCounters& counters);
 
-  /// Restarts after power-up or a reboot: keeps only the unanswered job and turns to the centre from `begin`
-  /// on.
+  /// Restarts after power-up or a reboot: keeps only the unanswered job, turns to the centre from `begin` on.
   void restart(TimePoint now, TimePoint begin);
 
   void configure(TimePoint now, const HeadCommand& parameters);

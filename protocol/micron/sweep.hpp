@@ -32,8 +32,7 @@ class Sweep {
 
   int bearing() const { return wrapped(sector_.left + offset_); }
   SweepCode code() const;
-  /// Moves to the next bearing and returns the angle of the step in units, >= 0. At a limit the scan
-  /// reverses.
+  /// Moves to the next bearing and returns the size of the step in units, >= 0. At a limit it reverses.
   int step();
   /// Reverses the scan from its next step on.
   void reverse() { clockwise_ = !clockwise_; }

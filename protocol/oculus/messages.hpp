@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of an Oculus as plain values. Source: docs/protocols/oculus.md, with section numbers in
-// brackets.
+// The messages of an Oculus as plain values. Source: docs/protocols/oculus.md (section numbers in brackets).
 #pragma once
 
 #include <array>
@@ -81,8 +80,7 @@ struct FireExtension {
 };
 
 struct SimpleFire {
-  std::uint16_t version =
-      0;  ///< as stated in the header; the real version is 2 if there is an extension (3.1)
+  std::uint16_t version = 0;  ///< as stated in the header; the extension decides the real version (3.1)
   Fire fire;
   std::optional<FireExtension> extension;
 

@@ -18,8 +18,7 @@ struct PlanConfig {
   Model model = m750d;
   double temperature_c = 20.0;  ///< of the water; keep below 30, or clients put the head into standby
   double pressure_bar = 1.25;   ///< reported if the depth of the head is unknown
-  /// Pressure reported at the water surface; each metre of depth adds 0.1 bar. 1.013, or 0 for gauge
-  /// pressure.
+  /// Reported at the water surface; each metre of depth adds 0.1 bar. 1.013, or 0 for gauge pressure.
   double surface_pressure_bar = 1.013;
   // Factors on the reported SensorReadings: 1 unchanged, -1 negated, 0 not reported (4.2).
   int heading_sign = 1;
@@ -56,8 +55,7 @@ double pressure_bar(std::optional<double> depth_m, const PlanConfig& config);
 /// Writes sensor readings into a ping: in degrees, heading in [0, 360).
 void report_readings(const SensorReadings& readings, const PlanConfig& config, PingResult& ping);
 
-/// The job of a plan, without number and transmit time. Its mode is 0 for the low and 1 for the high
-/// frequency.
+/// The job of a plan, without number and transmit time. Mode 0 is the low frequency, 1 the high frequency.
 PingJob job_of(const PingPlan& plan, const PlanConfig& config);
 
 /// The image on the wire: in each row a gain word of 1, if the fire requests it, and samples widened to the

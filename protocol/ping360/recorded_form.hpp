@@ -17,8 +17,7 @@ std::vector<std::uint8_t> recorded_wire(const PingForm& form, std::uint8_t devic
 /// The form of the ping in PingRecord::wire; nullopt if it is not a ping.
 std::optional<PingForm> recorded_form(std::span<const std::uint8_t> wire);
 
-/// Differences between `asked` and the ping that is sent instead. Rounding on the wire and in logs is
-/// ignored.
+/// Differences between `asked` and the ping that is sent instead, except rounding on the wire and in logs.
 std::vector<Difference> differences(const PingForm& asked, const PingJob& sent, const PingForm& recorded);
 
 }  // namespace sonard::ping360

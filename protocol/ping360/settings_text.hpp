@@ -13,8 +13,7 @@
 
 namespace sonard::ping360 {
 
-/// Settings of a ping: range, sampling, pulse, gain and scan. Without the angle, which changes from ping to
-/// ping.
+/// Settings of a ping: range, sampling, pulse, gain, scan. Without the angle, which changes with each ping.
 std::vector<Setting> settings_of(const PingJob& job, const PingForm& form);
 
 /// "0 to 399 gradians, step 1"

@@ -12,8 +12,7 @@ namespace {
 
 using Kind = PoseError::Kind;
 
-/// Protobuf prints a line to stderr for each name that is not UTF-8. With these lines a peer could fill a
-/// disk.
+/// Protobuf prints a line to stderr for each name that is not UTF-8, so a peer could fill a disk.
 void keep_library_quiet() {
   [[maybe_unused]] static const auto before = google::protobuf::SetLogHandler(nullptr);
 }
