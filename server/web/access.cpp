@@ -9,7 +9,7 @@
 namespace sonard::server {
 namespace {
 
-/// Takes as long for a wrong text of the right length as for the right one.
+/// Takes the same time for a right and a wrong text of the same length.
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) {
     return false;

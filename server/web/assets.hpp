@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of the page, which are part of the program.
+// The files of the page, compiled into the program.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,10 @@ namespace sonard::server {
 struct Asset {
   std::string_view path;   ///< "/index.html"
   std::string_view type;   ///< "text/html; charset=utf-8"
-  std::string_view bytes;  ///< lives as long as the program
+  std::string_view bytes;  ///< valid for the life of the program
 };
 
-/// Null where the page has no such file.
+/// Null if the page has no such file.
 const Asset* find_asset(std::string_view path);
 
 }  // namespace sonard::server

@@ -29,8 +29,8 @@ json object_schema(json properties) {
   return {{"type", "object"}, {"properties", std::move(properties)}};
 }
 
-/// foxglove.CompressedImage and foxglove.FrameTransform, as
-/// docs.foxglove.dev/docs/visualization/message-schemas gives their fields.
+/// Schemas of foxglove.CompressedImage and foxglove.FrameTransform, with the fields of
+/// docs.foxglove.dev/docs/visualization/message-schemas.
 json timestamp_schema() {
   return object_schema({{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}});
 }
@@ -73,7 +73,7 @@ json transform_json(const render::Pose& T_world_head, const std::string& head, j
           {"rotation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
 }
 
-/// @throws std::invalid_argument for what is no whole number of 32 bits
+/// @throws std::invalid_argument if the value is not an unsigned 32-bit integer
 std::uint32_t id_of(const json& value) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
     throw std::invalid_argument(text_of(value) + " is no ID");
@@ -131,7 +131,7 @@ void FoxgloveSession::advertise(const DaemonStatus& status) {
   send_text(text_of({{"op", "advertise"}, {"channels", std::move(list)}}));
 }
 
-// ---- What the other side asks for
+// ---- Requests of the other side
 
 void FoxgloveSession::take(const std::string& text) {
   const json message = json_of_peer(text);
@@ -169,7 +169,7 @@ void FoxgloveSession::complain(const std::string& what) {
   send_text(text_of({{"op", "status"}, {"level", 2}, {"message", what}}));
 }
 
-// ---- What it gets
+// ---- Messages to the other side
 
 void FoxgloveSession::every_second() {
   for (const auto& [channel, id] : subscriptions_) {
@@ -194,7 +194,7 @@ void FoxgloveSession::every_second() {
 void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
   const auto head = static_cast<std::size_t>(ping->head);
   if (head >= heads_.size()) {
-    return;  // before the channels were made known
+    return;  // the channels have not been announced yet
   }
   if (subscriptions_.contains({head, Kind::transform}) && ping->T_world_mount && has_room()) {
     send_on({head, Kind::transform}, std::make_shared<const std::string>(text_of(transform_json(
@@ -213,7 +213,7 @@ void FoxgloveSession::show_picture(int head, const Text& picture) {
   }
 }
 
-/// A subscriber begins with the newest picture.
+/// Shows a new subscriber the newest picture.
 void FoxgloveSession::show_last(std::size_t head) {
   shown_.erase(head);
   if (const Pings& pings = site().last_pings(static_cast<int>(head)); !pings.empty()) {
@@ -221,7 +221,7 @@ void FoxgloveSession::show_last(std::size_t head) {
   }
 }
 
-/// Message data: the opcode 1, the subscription, the time, and the message.
+/// Sends message data: opcode 1, the subscription, the time, and the message.
 void FoxgloveSession::send_on(const Channel& channel, Text json_text) {
   const auto subscription = subscriptions_.find(channel);
   if (subscription == subscriptions_.end()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings, places and the status for Foxglove and its kin: the protocol "foxglove.websocket.v1"
-// (github.com/foxglove/ws-protocol, docs/spec.md), with messages in JSON.
+// Sends pings, poses and the status to Foxglove and compatible viewers, by the protocol
+// "foxglove.websocket.v1" (github.com/foxglove/ws-protocol, docs/spec.md), with messages in JSON.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@
 namespace sonard::server {
 
 /// Channels of each head: "/NAME/image" (foxglove.CompressedImage, PNG) and "/NAME/transform"
-/// (foxglove.FrameTransform, "world" to NAME); for all "/status". A channel without a subscriber costs
-/// nothing; one who reads too slowly misses messages.
+/// (foxglove.FrameTransform, "world" to NAME). One channel for all: "/status". A channel without a subscriber
+/// costs nothing. A subscriber that reads too slowly misses messages.
 class FoxgloveSession final : public WebSocket {
  public:
   static constexpr std::string_view protocol = "foxglove.websocket.v1";
@@ -33,7 +33,7 @@ class FoxgloveSession final : public WebSocket {
  private:
   enum class Kind : std::uint8_t { image, transform, status };
   struct Channel {
-    std::size_t head = 0;  ///< its place in the configuration; of status: 0
+    std::size_t head = 0;  ///< index in the configuration; 0 for the status
     Kind kind = Kind::status;
 
     auto operator<=>(const Channel&) const = default;
@@ -48,9 +48,9 @@ class FoxgloveSession final : public WebSocket {
   void complain(const std::string& what);
 
   std::map<std::uint32_t, Channel> channels_;       ///< by id
-  std::map<Channel, std::uint32_t> subscriptions_;  ///< ids that the other side chose
-  std::vector<std::string> heads_;                  ///< their names
-  std::map<std::size_t, Text> shown_;               ///< by head, the picture that went last
+  std::map<Channel, std::uint32_t> subscriptions_;  ///< with the IDs that the other side chose
+  std::vector<std::string> heads_;                  ///< names of the heads
+  std::map<std::size_t, Text> shown_;               ///< the last picture shown, by head
   boost::asio::steady_timer timer_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head's picture for Foxglove, drawn once for all viewers.
+// Draws a head's picture for Foxglove, once for all viewers.
 #pragma once
 
 #include <chrono>
@@ -11,19 +11,19 @@
 
 namespace sonard::server {
 
-/// Belongs to the thread of the page, except draw().
+/// Belongs to the page's thread, except draw().
 class HeadPicture {
  public:
-  /// Whether the caller must draw() and then call drawn(): there is a newer ping, the last drawing began at
-  /// least `interval` ago, and none is under way.
+  /// True if the caller must call draw() and then drawn(): there is a newer ping, the last drawing began at
+  /// least `interval` ago, and no drawing is in progress.
   bool begin(const std::shared_ptr<const ShownPing>& newest, TimePoint now,
              std::chrono::nanoseconds interval);
-  /// The picture as text of a foxglove.CompressedImage; null if there is none yet. Drawing thread.
+  /// The picture as the text of a foxglove.CompressedImage; null if there is none yet. Drawing thread.
   /// @param pings of the head, the newest last; not empty
   Text draw(const Pings& pings, const std::string& head);
-  /// @param picture null: there is none
+  /// @param picture null: no picture
   void drawn(Text picture);
-  /// The newest picture that is drawn; null: none.
+  /// The newest finished picture; null: no picture.
   const Text& text() const { return text_; }
 
  private:

@@ -25,9 +25,9 @@ constexpr std::uint32_t most_header_bytes = 8192;
 constexpr std::uint64_t most_body_bytes = 4096;
 constexpr std::size_t most_drained_bytes = 256 << 10;
 constexpr std::chrono::seconds drain_patience{2};
-constexpr std::chrono::seconds patience{30};  // for a request to come, and for an answer to go
+constexpr std::chrono::seconds patience{30};  // to receive a request, and to send an answer
 
-/// Whether a client that asks for a WebSocket would speak this on it.
+/// True if a client that requests a WebSocket offers this protocol.
 bool offers(const HttpRequest& request, std::string_view protocol) {
   http::token_list offered{request[http::field::sec_websocket_protocol]};
   return offered.exists(beast::string_view(protocol.data(), protocol.size()));
@@ -51,7 +51,7 @@ void HttpSession::start() {
   read();
 }
 
-/// Another connection got the place of this one.
+/// Closes this connection, because another one gets its place.
 void HttpSession::displace() {
   place_.reset();
   stream_.close();
@@ -80,7 +80,7 @@ void HttpSession::on_read(beast::error_code error) {
     return;
   }
   if (!place_) {
-    return;  // displaced while this handler waited for its turn
+    return;  // displaced while this handler was queued
   }
   site_.connections().used(*place_);
   HttpRequest request = parser_->release();
@@ -94,12 +94,12 @@ void HttpSession::on_read(beast::error_code error) {
       return;
     }
   }
-  stream_.expires_never();  // the answer may take a while, and is not theirs to make
+  stream_.expires_never();  // the server, not the client, takes the time for the answer
   site_.answer(request, peer_,
                [self = shared_from_this()](HttpResponse response) { self->send(std::move(response)); });
 }
 
-/// Answers a request that cannot be read. One that did not come to its end gets no answer.
+/// Answers an invalid request. An incomplete request gets no answer.
 void HttpSession::refuse(beast::error_code why) {
   const bool malformed = why.category() == http::make_error_code(http::error::bad_method).category();
   if (!malformed || why == http::error::end_of_stream || why == http::error::partial_message) {
@@ -121,8 +121,8 @@ void HttpSession::refuse(beast::error_code why) {
   }
 }
 
-/// What comes after a refused request is read and dropped for a while: a connection that is closed with bytes
-/// unread is reset, and the answer may be lost with it.
+/// Reads and drops further bytes after a refused request for a while. Closing a connection with unread bytes
+/// would reset it, and the answer could be lost.
 void HttpSession::drain() {
   buffer_.clear();
   stream_.expires_after(drain_patience);

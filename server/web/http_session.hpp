@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection of a browser or a monitor: requests one after the other, until it becomes a WebSocket.
+// An HTTP connection: serves requests one after the other, until it becomes a WebSocket.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,7 @@
 
 namespace sonard::server {
 
-/// Belongs to the thread of the page. It lives as long as one of its operations is under way; `site` outlives
-/// it.
+/// Belongs to the page's thread. Lives while one of its operations is in progress; `site` outlives it.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(Site& site, boost::asio::ip::tcp::socket socket, const Endpoint& peer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in binary messages of WebSockets.
+// Writes numbers for binary messages of WebSockets.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace sonard::server {
 
-/// Appends the number, lowest byte first.
+/// Appends the number, least significant byte first.
 template <class Number>
 void append_number(std::string& out, Number number) {
   static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");

@@ -12,7 +12,7 @@
 namespace sonard::server {
 namespace {
 
-/// How many rows become one, so that no more than `most` are left.
+/// How many rows to merge into one, so that at most `most` rows are left.
 int rows_in_one(int rows, int most) {
   return std::max(1, (rows + most - 1) / most);
 }

@@ -27,7 +27,7 @@ void LiveSession::close() {
   WebSocket::close();
 }
 
-// ---- What the viewer asks for
+// ---- Requests of the viewer
 
 void LiveSession::take(const std::string& text) {
   const auto message = json_of_peer(text);
@@ -62,7 +62,7 @@ void LiveSession::want(int head, int max_rows) {
   }
 }
 
-// ---- What it gets
+// ---- Messages to the viewer
 
 bool LiveSession::is_due(const Wanted& wanted) const {
   return wanted.asked && has_room() && site().now() - wanted.answered >= site().interval();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket that shows pings and status to one viewer, as fast as that viewer asks for them.
+// A WebSocket that sends pings and status to one viewer, as fast as the viewer requests them.
 #pragma once
 
 #include <map>
@@ -14,8 +14,8 @@
 
 namespace sonard::server {
 
-/// Belongs to the thread of the page. A viewer gets one ping, or one status, for each time it asked: one that
-/// is hidden or slow asks for nothing, and costs nothing. docs/page.md lists the messages.
+/// Belongs to the page's thread. A viewer gets one ping, or one status, per request. A hidden or slow viewer
+/// requests nothing, and costs nothing. docs/page.md lists the messages.
 class LiveSession final : public WebSocket {
  public:
   LiveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer);
@@ -24,12 +24,12 @@ class LiveSession final : public WebSocket {
   void close() override;
 
  private:
-  /// What this viewer wants of one head.
+  /// A viewer's request for one head.
   struct Wanted {
-    bool asked = false;  ///< and not answered
+    bool asked = false;  ///< requested and not yet answered
     int max_rows = 1;
     TimePoint answered{};
-    Pings pings;  ///< since the last answer, as Site::last_pings()
+    Pings pings;  ///< since the last answer, as in Site::last_pings()
   };
 
   void take(const std::string& text) override;

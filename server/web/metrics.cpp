@@ -29,7 +29,7 @@ std::string escaped(std::string_view value) {
   return text;
 }
 
-/// One metric: its lines of help and type come before its first value, and not at all without one.
+/// Writes one metric: help and type come before the first value, and only if there is a value.
 class Metric {
  public:
   Metric(std::string& out, std::string_view name, std::string_view type, std::string_view help)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Status in the text format of Prometheus, version 0.0.4.
+// Status in the Prometheus text format, version 0.0.4.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace sonard::server {
 
-/// The answer to GET /metrics. Every name begins with "sonard_"; docs/page.md lists them.
+/// The response to GET /metrics. Every name begins with "sonard_"; docs/page.md lists them.
 std::string metrics_text(const DaemonIdentity& identity, const DaemonStatus& status,
                          std::chrono::duration<double> uptime);
 

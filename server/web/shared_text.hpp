@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What takes long to make, and is made on the drawing thread.
+// Texts that take long to make; the drawing thread makes them.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 namespace sonard::server {
 
 using Text = std::shared_ptr<const std::string>;
-/// Runs `make` on the drawing thread and then `take` on the thread of the page; `take` gets null if `make`
-/// has thrown.
+/// Runs `make` on the drawing thread and then `take` on the page's thread; `take` gets null if `make` has
+/// thrown.
 using Draw = std::function<void(std::function<Text()> make, std::function<void(Text)> take)>;
 
-/// A text that is made once for all who ask for it. Belongs to the thread of the page.
+/// A text that is made once for all who request it. Belongs to the page's thread.
 class SharedText : public std::enable_shared_from_this<SharedText> {
  public:
   /// Calls `take` with the text, at once or when it is made; with null if it cannot be made. The next call
@@ -36,7 +36,7 @@ class SharedText : public std::enable_shared_from_this<SharedText> {
     }
   }
 
-  /// Forgets who waits.
+  /// Drops all waiting calls.
   void close() { waiting_.clear(); }
 
  private:

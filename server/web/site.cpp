@@ -26,7 +26,7 @@ namespace {
 constexpr std::chrono::milliseconds status_age{250};
 constexpr std::chrono::milliseconds least_interval{50};
 constexpr std::chrono::milliseconds interval_of_each{15};
-constexpr std::size_t most_frames = 8;   // of different heads and sizes, at one moment
+constexpr std::size_t most_frames = 8;   // of different heads and sizes at one time
 constexpr std::size_t most_lines = 400;  // of a scanning head: one turn of its finest steps
 
 std::string_view as_view(boost::beast::string_view text) {
@@ -46,7 +46,7 @@ HttpResponse response(const HttpRequest& request, http::status status, std::stri
   answer.body() = std::move(body);
   answer.prepare_payload();
   if (request.method() == http::verb::head) {
-    answer.body().clear();  // the length stays that of the answer to GET
+    answer.body().clear();  // the Content-Length stays as for GET
   }
   return answer;
 }
@@ -125,7 +125,7 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer,
                     metrics_text(sources_.identity, status, uptime())));
     });
   } else if (path == "/health") {
-    // An answer proves that the I/O thread runs; a renderer that fails ends the daemon.
+    // An answer proves that the I/O thread runs; a failing renderer ends the daemon.
     with_status([request, send](const DaemonStatus&) {
       send(json_response(request, http::status::ok, {{"status", "ok"}}));
     });
@@ -315,7 +315,7 @@ void Site::with_frame(const Pings& pings, int max_rows, std::function<void(Text)
     draw_(make, std::move(take));
     return;
   }
-  // A frame says how old its ping is, so it does not serve for long.
+  // A frame contains the age of its ping, so it is valid only for a short time.
   std::erase_if(frames_, [this](const Frame& frame) { return now() - frame.made > status_age; });
   const auto known = std::ranges::find_if(
       frames_, [&](const Frame& frame) { return frame.ping == ping && frame.max_rows == max_rows; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all connections of the page share.
+// State that all connections of the page share.
 #pragma once
 
 #include <chrono>
@@ -26,19 +26,19 @@
 
 namespace sonard::server {
 
-/// What the page asks of the daemon. Called on the thread of the page.
+/// The page's access to the daemon. Called on the page's thread.
 struct WebSources {
-  /// Hands the status to a function, later, on the thread of the page.
+  /// Passes the status to a function, later, on the page's thread.
   std::function<void(std::function<void(DaemonStatus)>)> ask_status;
   std::function<void(bool on)> turn_recording;  ///< empty: nothing is recorded
   DaemonIdentity identity;
-  const render::World& world;  ///< outlives the page
+  const render::World& world;  ///< must outlive the page
 };
 
 using Pings = std::vector<std::shared_ptr<const ShownPing>>;
 
-/// Adds a ping behind those of the same head. A fan replaces the one before; the lines of a scanning head
-/// stay for a turn of its finest steps, if they have the size of the new one.
+/// Adds a ping to the pings of the same head. A fan replaces the one before. Lines of a scanning head stay
+/// for a turn of its finest steps, if they have the size of the new one.
 void keep_newest(Pings& pings, const std::shared_ptr<const ShownPing>& ping);
 
 class HeadPicture;
@@ -52,9 +52,9 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   virtual void show(const std::shared_ptr<const ShownPing>& ping) = 0;
-  /// A picture of a head was drawn that somebody asked for by Site::picture_of().
+  /// A picture of a head was drawn after a call of Site::picture_of().
   virtual void show_picture(int /*head*/, const Text& /*picture*/) {}
-  /// Since when the message waits that is being sent; nullopt: none waits.
+  /// Time at which the current message began to wait; nullopt: no message waits.
   virtual std::optional<TimePoint> waits_since() const = 0;
   virtual void close() = 0;
 };
@@ -66,7 +66,7 @@ using HttpResponse = boost::beast::http::response<boost::beast::http::string_bod
 HttpResponse error_response(const HttpRequest& request, boost::beast::http::status status,
                             const std::string& text);
 
-/// Belongs to the thread of the page.
+/// Belongs to the page's thread.
 class Site {
  public:
   Site(WebConfig config, WebSources sources, Draw draw);
@@ -77,10 +77,10 @@ class Site {
   const WebConfig& config() const { return config_; }
   const WebSources& sources() const { return sources_; }
 
-  /// Answers a request that is no WebSocket's.
+  /// Answers a request other than a WebSocket's.
   void answer(const HttpRequest& request, const Endpoint& peer,
               const std::function<void(HttpResponse)>& send);
-  /// Why a request is not served, whatever it asks for; nullopt: it is.
+  /// Why a request is refused, whatever its target; nullopt: it is served.
   std::optional<std::string> refusal(const HttpRequest& request) const;
   /// The status, no older than a quarter of a second.
   void with_status(std::function<void(const DaemonStatus&)> take);
@@ -90,27 +90,27 @@ class Site {
   // ---- Connections
 
   Connections& connections() { return connections_; }
-  /// Logs the first, second, fourth, ... time that this happens to a peer.
+  /// Logs a refusal: the 1st, 2nd, 4th, ... time for each reason.
   void log_refusal(const Endpoint& peer, const std::string& why);
   void add(const std::shared_ptr<Viewer>& viewer);
-  /// Keeps the ping, and gives it to all viewers.
+  /// Keeps the ping and passes it to all viewers.
   void show(const std::shared_ptr<const ShownPing>& ping);
-  /// What a new viewer of a head begins with: the newest ping, or the last lines of a scanning head, all of
-  /// one size, the oldest first. Empty: no ping went out yet.
+  /// First pings for a new viewer of a head: the newest ping, or the last lines of a scanning head, all of
+  /// one size, oldest first. Empty: no ping was sent yet.
   const Pings& last_pings(int head) const;
-  /// Counts bytes that begin to wait for viewers, or (negative) do so no longer. If there are more than
-  /// most_waiting_bytes, the viewer whose message waits longest is closed.
+  /// Counts bytes that begin to wait for viewers, or (negative) that no longer wait. If more than
+  /// most_waiting_bytes wait, closes the viewer whose message has waited longest.
   void count_waiting(std::ptrdiff_t bytes);
-  /// Closes all viewers, and forgets all who wait for an answer.
+  /// Closes all viewers, and drops all waiting requests.
   void close();
 
-  /// Between two pings of one head to one viewer: the more there are, the longer.
+  /// Interval between two pings of one head to one viewer: the more viewers, the longer.
   std::chrono::milliseconds interval() const;
-  /// Hands live_frame() of these pings to a function, at once or later; null: it cannot be made. That of a
-  /// fan is made once for all viewers who want it in one size.
+  /// Passes live_frame() of these pings to a function, at once or later; null: it cannot be made. The frame
+  /// of a fan is made once for all viewers that request the same size.
   void with_frame(const Pings& pings, int max_rows, std::function<void(Text)> take);
-  /// The newest picture of a head for Foxglove; null: none is drawn yet. If it is time for a newer one, it is
-  /// drawn once for all viewers and given to them by Viewer::show_picture().
+  /// The newest picture of a head for Foxglove; null: not drawn yet. If a newer one is due, it is drawn once
+  /// for all viewers and passed to them by Viewer::show_picture().
   Text picture_of(int head, const std::string& name);
   TimePoint now() const { return clock_.now(); }
 
@@ -134,11 +134,11 @@ class Site {
   std::size_t waiting_bytes_ = 0;
   std::vector<std::weak_ptr<Viewer>> viewers_;
   std::map<int, Pings> last_pings_;                       ///< by head
-  std::map<int, std::shared_ptr<HeadPicture>> pictures_;  ///< by head; of those that were asked for
+  std::map<int, std::shared_ptr<HeadPicture>> pictures_;  ///< by head; only requested ones
 
-  std::optional<DaemonStatus> status_;  ///< the newest
+  std::optional<DaemonStatus> status_;  ///< newest
   TimePoint status_at_{};
-  std::vector<std::function<void(const DaemonStatus&)>> waiting_;  ///< for the status that was asked for
+  std::vector<std::function<void(const DaemonStatus&)>> waiting_;  ///< for the requested status
 
   struct Frame {
     std::shared_ptr<const ShownPing> ping;
@@ -148,7 +148,7 @@ class Site {
   };
   std::vector<Frame> frames_;  ///< of the newest pings
 
-  std::map<std::string, std::shared_ptr<SharedText>, std::less<>> world_;  ///< by path; once asked for
+  std::map<std::string, std::shared_ptr<SharedText>, std::less<>> world_;  ///< by path; only requested ones
 };
 
 }  // namespace sonard::server

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the daemon says of itself to people and monitors.
+// Status of the daemon, for people and monitors.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@
 
 namespace sonard::server {
 
-/// What stays as it is while a daemon runs.
+/// Constant properties of a running daemon.
 struct DaemonIdentity {
   std::string configuration;  ///< the file
   std::string world;
@@ -30,7 +30,7 @@ struct PoseInputStatus {
   std::string publisher;  ///< PoseSource::received()
   PoseStatistics::Summary poses;
   PoseSourceCounters counters;
-  std::vector<Finding> findings;  ///< what looks wrong about it
+  std::vector<Finding> findings;  ///< about this input
 };
 
 struct RecordingStatus {
@@ -39,10 +39,10 @@ struct RecordingStatus {
   RecorderCounters counters;
 };
 
-/// The daemon at one moment.
+/// Status of the daemon at one moment.
 struct DaemonStatus {
   TimePoint at{};
-  std::string engine;  ///< the one in use now, one line
+  std::string engine;  ///< currently in use, one line
   std::vector<HeadStatus> heads;
   std::vector<PoseInputStatus> inputs;
   std::optional<render::Pose> T_world_vehicle;

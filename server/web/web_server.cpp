@@ -28,7 +28,7 @@ namespace {
 constexpr int page_nice = 10;
 constexpr int drawing_nice = 19;
 constexpr int send_buffer_bytes = 256 << 10;  // of a connection, in the kernel; Linux doubles it
-constexpr int most_pings_waiting = 64;        // where this thread gets no time, pings are not kept for it
+constexpr int most_pings_waiting = 64;        // further pings are dropped while this thread gets no time
 
 }  // namespace
 
@@ -50,7 +50,7 @@ struct WebServer::Impl {
       } catch (const std::exception& error) {
         spdlog::error("page: cannot draw: {}", error.what());
       }
-      make = nullptr;  // what it holds is given back on this thread, before anybody waits for the next one
+      make = nullptr;  // destroys its captures on this thread, before the next drawing
       asio::post(io, [take = std::move(take), made = std::move(made)] { take(made); });
     });
   }
@@ -62,7 +62,7 @@ struct WebServer::Impl {
       try {
         io.run();
       } catch (const std::exception& error) {
-        // The page is not worth the daemon: the connection at fault is lost, the others go on.
+        // An error must not end the daemon: this connection is lost, the others continue.
         spdlog::error("page: {}", error.what());
         again = true;
       }
@@ -70,14 +70,14 @@ struct WebServer::Impl {
   }
 
   const WebConfig config;
-  std::optional<Site> site;  // before what its connections are part of, so that it outlives them
+  std::optional<Site> site;  // declared before its connections' contexts, so that it outlives them
   asio::io_context io{1};
   asio::executor_work_guard<asio::io_context::executor_type> work{asio::make_work_guard(io)};
   std::shared_ptr<TcpListener> listener;
-  asio::io_context drawing_io{1};  // after io, whose sockets what it holds may own
+  asio::io_context drawing_io{1};  // after io: its handlers may own sockets of io
   asio::executor_work_guard<asio::io_context::executor_type> drawing_work{asio::make_work_guard(drawing_io)};
   std::atomic<bool> serving{false};
-  std::atomic<int> pings_waiting{0};  // for this thread, which has the lowest priority
+  std::atomic<int> pings_waiting{0};  // for the page's thread, which has a low priority
   std::thread thread;
   std::thread drawing_thread;
 };
@@ -108,7 +108,7 @@ void WebServer::stop() {
   if (!impl_->thread.joinable()) {
     return;
   }
-  impl_->io.stop();  // not posted: it would wait for all that is queued
+  impl_->io.stop();  // not posted: that would wait for all queued handlers
   impl_->drawing_io.stop();
   impl_->thread.join();
   if (impl_->drawing_thread.joinable()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page in the browser, /metrics and the rest, on threads of their own.
+// The page in the browser, /metrics and other endpoints, on threads of their own.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,9 @@
 
 namespace sonard::server {
 
-/// One thread has all connections, and answers monitors while the other one draws. Both have low priorities,
-/// so that viewers do not slow down pings. show() is called on the I/O thread, everything else on main.
+/// One thread has all connections, and answers monitors while the other thread draws. Both have low
+/// priorities, so that viewers do not slow down pings. show() is called on the I/O thread, everything else on
+/// main.
 class WebServer final : public PingViewer {
  public:
   /// Opens the port. @throws SocketError
@@ -20,9 +21,9 @@ class WebServer final : public PingViewer {
 
   /// Serves from now on. Called once.
   void start(WebSources sources);
-  /// Closes all connections and ends the thread. Harmless when called again.
+  /// Closes all connections and ends the threads. Can be called again.
   void stop();
-  /// Runs a function on the thread of the page. Any thread.
+  /// Runs a function on the page's thread. Any thread.
   void on_page(std::function<void()> task);
 
   /// "http://127.0.0.1:8014"

@@ -14,15 +14,15 @@ namespace websocket = beast::websocket;
 
 namespace {
 
-constexpr std::chrono::seconds write_patience{30};  // with one message
+constexpr std::chrono::seconds write_patience{30};  // for one message
 
 }  // namespace
 
 WebSocket::WebSocket(Site& site, beast::tcp_stream stream, const Endpoint& peer, std::string protocol,
                      std::size_t most_bytes)
     : site_(site), peer_(peer), socket_(std::move(stream)), patience_(socket_.get_executor()) {
-  socket_.auto_fragment(false);  // a message goes by few calls of the kernel, not by one for each 4 KiB
-  // One that is gone without a word is noticed by its silence to our pings.
+  socket_.auto_fragment(false);  // fewer system calls than one for each 4 KiB
+  // Detects a vanished peer: it does not answer WebSocket pings.
   socket_.set_option(
       websocket::stream_base::timeout{std::chrono::seconds{10}, std::chrono::seconds{20}, true});
   if (!protocol.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A WebSocket of the page's server, whatever it carries.
+// A WebSocket of the page's server, for any content.
 #pragma once
 
 #include <cstddef>
@@ -18,45 +18,44 @@
 
 namespace sonard::server {
 
-/// Belongs to the thread of the page. It lives as long as one of its operations is under way; `site` outlives
-/// it.
+/// Belongs to the page's thread. Lives while one of its operations is in progress; `site` outlives it.
 class WebSocket : public Viewer, public std::enable_shared_from_this<WebSocket> {
  public:
   ~WebSocket() override;
 
-  /// Answers the request that asks for a WebSocket.
+  /// Accepts the request for a WebSocket.
   void start(HttpRequest request);
   std::optional<TimePoint> waits_since() const override { return waits_since_; }
   void close() override;
 
  protected:
   struct Message {
-    std::string head;  ///< of this connection alone
-    Text bytes;        ///< shared with others
+    std::string head;  ///< for this connection only
+    Text bytes;        ///< shared with other connections
     bool binary = false;
   };
 
+  /// The site's Connections must have a place for it.
   /// @param protocol Sec-WebSocket-Protocol of the answer; empty: none
-  /// @param most_bytes of a message from the other side; a longer one ends the connection
-  /// The site's Connections have a place for it.
+  /// @param most_bytes limit of a message from the other side; a longer one ends the connection
   WebSocket(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer, std::string protocol,
             std::size_t most_bytes);
 
-  /// The connection stands.
+  /// Called when the connection is established.
   virtual void opened() {}
-  /// A message has come.
+  /// Called for each received message.
   virtual void take(const std::string& text) = 0;
 
-  /// Whether there is room for a message: one who reads too slowly gets nothing more.
+  /// True if there is room for a message: a slow reader gets no more messages.
   bool has_room() const { return !closed_ && queue_.size() + promised_ < most_queued; }
-  /// Drops it where there is no room.
+  /// Drops the message if there is no room.
   void send(Message message);
   void send_text(std::string text) {
     send({"", std::make_shared<const std::string>(std::move(text)), false});
   }
-  /// Keeps room for a message that is not made yet.
+  /// Reserves room for a message that is still being made.
   void promise() { ++promised_; }
-  /// Sends a message that was promised; without bytes it is dropped.
+  /// Sends a promised message; drops it if it has no bytes.
   void send_promised(Message message);
   boost::beast::tcp_stream::executor_type executor() { return socket_.get_executor(); }
   Site& site() { return site_; }
@@ -80,8 +79,8 @@ class WebSocket : public Viewer, public std::enable_shared_from_this<WebSocket> 
   boost::beast::flat_buffer buffer_;
   std::deque<Message> queue_;  ///< the first is being written
   std::size_t promised_ = 0;
-  std::optional<TimePoint> waits_since_;  ///< the first of queue_
-  boost::asio::steady_timer patience_;    ///< with the first of queue_
+  std::optional<TimePoint> waits_since_;  ///< for the first of queue_
+  boost::asio::steady_timer patience_;    ///< for the first of queue_
   bool closed_ = false;
 };
 

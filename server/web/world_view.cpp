@@ -21,7 +21,7 @@ namespace {
 
 constexpr int longest_side_px = 1024;
 
-/// Calls `take` with each corner of a body's meshes in the frame of the body.
+/// Calls `take` with each corner of a body's meshes, in the body's frame.
 template <class Take>
 void each_corner(const render::Body& body, Take take) {
   for (const render::BodyPart& part : body.parts) {
@@ -66,7 +66,7 @@ std::vector<glm::dvec2> hull_of(std::vector<glm::dvec2> points) {
       }
       hull.push_back(*point);
     }
-    hull.pop_back();  // the other half begins with it
+    hull.pop_back();  // the other half begins with this point
   };
   half(points.begin(), points.end());
   half(points.rbegin(), points.rend());
@@ -91,7 +91,7 @@ std::size_t triangles_of(const render::Body& body) {
   return triangles;
 }
 
-/// A picture of triangles by orthographic projection, with a depth for each pixel.
+/// An orthographic picture of triangles, with a depth for each pixel.
 class Relief {
  public:
   Relief(const Extent& extent, ViewFrom from)
@@ -129,7 +129,7 @@ class Relief {
         const double a = turn(p[1], p[2], centre) / twice_area;
         const double b = turn(p[2], p[0], centre) / twice_area;
         const double c = 1 - a - b;
-        // Seen edge-on it is a line, which shows where it is.
+        // A triangle seen edge-on is drawn as a line.
         if (std::abs(twice_area) > 1e-9 && (a < 0 || b < 0 || c < 0)) {
           continue;
         }
@@ -164,7 +164,7 @@ class Relief {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  /// Both sides of a surface look alike.
+  /// Both sides of a surface have the same shade.
   std::uint8_t shade(glm::dvec3 normal) const {
     if (glm::dot(normal, toward_) < 0) {
       normal = -normal;
@@ -184,12 +184,12 @@ class Relief {
     }
   }
 
-  int up_;               ///< the axis of the world that is up in the picture
-  glm::dvec3 toward_;    ///< from the world to who looks
+  int up_;               ///< the world axis that is up in the picture
+  glm::dvec3 toward_;    ///< from the world to the viewer
   glm::dvec2 corner_;    ///< lower left, metres
   glm::dvec2 scale_{0};  ///< pixels per metre
   int width_ = 0, height_ = 0;
-  std::vector<double> nearness_;  ///< by pixel, from the lowest row up; -infinity: nothing is there
+  std::vector<double> nearness_;  ///< by pixel, from the lowest row up; -infinity: empty
   std::vector<std::uint8_t> grey_;
 };
 

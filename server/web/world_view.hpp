@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The world seen from above and from the side, for people who look for their vehicle in it.
+// Views of the world from above and from the side, to find the vehicle in it.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,18 @@ enum class ViewFrom {
   south,  ///< x to the right, z up
 };
 
-/// Where all of a world lies, in its own frame.
+/// Bounding box of a world, in its own frame.
 struct Extent {
   glm::dvec3 min_m{0.0}, max_m{0.0};
 };
 Extent extent_of(const render::World& world);
 
-/// The answer to GET /api/world: name, extent, and for each body its outlines, its pose at the start, and how
-/// many triangles it has.
+/// The response to GET /api/world: name, extent, and each body's outlines, initial pose and number of
+/// triangles.
 nlohmann::json world_json(const render::World& world);
 
-/// A grey picture of the bodies where they stand at the start, as PNG with alpha, which covers exactly the
-/// extent of the world: what is nearest to who looks is seen, lit from the upper left.
+/// A grey picture of the bodies at their initial poses, as PNG with alpha, that covers exactly the extent of
+/// the world. It shows the surface nearest to the viewer, lit from the upper left.
 std::string world_png(const render::World& world, ViewFrom from);
 
 }  // namespace sonard::server
