@@ -169,8 +169,8 @@ TEST(ScannedScenesOnRay, GateOfTheCageIsOpen) {
   int open = 0;
   for (int line = 0; line < scene.beams(); ++line) {
     const double heading = std::remainder(scene.azimuth_rad(line) + yaw_at(line), 2 * std::numbers::pi);
-    // No bar at y = 0, no rails between y = -1 and 1, 2 m above and below: the beam, 1.26 m high there, goes
-    // out.
+    // No bar at y = 0, no rails between y = -1 and 1, 2 m above and below: the beam, 1.26 m high there,
+    // passes.
     if (std::abs(heading) < std::atan2(0.9, 4.0) - half_beam) {
       EXPECT_EQ(scene.energy(line, 0, 6), 0) << heading / degree;
       ++open;
