@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the array makes of fine beams, against the sum over its elements.
+// The array's beams from fine beams, against the sum over its elements.
 #include "renderer/acoustics/beam_pattern.hpp"
 
 #include <cmath>
@@ -30,7 +30,7 @@ Aperture with_errors(Aperture aperture) {
   return aperture;
 }
 
-/// Pattern of 155 half-wave elements under a Hamming taper, which make 1 degree (docs/physics.md 2.8).
+/// Pattern, dB, of 155 half-wave elements under a Hamming taper: 1 degree wide (docs/physics.md 2.8).
 double hamming_db(double sine_offset) {
   constexpr int elements = 155;
   double sum = 0;
@@ -73,7 +73,7 @@ TEST(BeamPattern, APointIsHeardWithThePatternOfTheArray) {
       fine.intensity[static_cast<std::size_t>(target * 7 + 3)] = 5.0F;
       const EchoImage out = heard(pattern, fine);
       const double spacing = 2 * std::sin(gemini_half_rad) / 256;
-      // Of the target, re the middle of its beam.
+      // Sine of the target's bearing, re the middle of its beam.
       const double target_offset = -spacing / 2 + spacing / fine_beams / 2;
       const double level = db(out.at(beam, 3)) - hamming_db(target_offset);
       int compared = 0;
@@ -92,8 +92,8 @@ TEST(BeamPattern, APointIsHeardWithThePatternOfTheArray) {
   }
 }
 
-// docs/physics.md 2.5: what fills the fan evenly in angle keeps its level in every beam, whatever the beams,
-// the taper and the errors.
+// docs/physics.md 2.5: an echo that fills the fan evenly in angle keeps its level in every beam, with any
+// beams, taper and errors.
 TEST(BeamPattern, AnEvenEchoKeepsItsLevel) {
   std::vector<Aperture> apertures{gemini(1), gemini(2), with_errors(gemini(2))};
   Aperture wide = gemini(2);  // each beam seven times as wide as the array's
@@ -119,8 +119,8 @@ TEST(BeamPattern, AnEvenEchoKeepsItsLevel) {
   }
 }
 
-// A beam's share of what is far away is the mean power of the errors, re its own main lobe, which keeps
-// exp(-sd^2) of its power.
+// A beam's share of a far echo is the mean power of the errors, re its own main lobe, which keeps exp(-sd^2)
+// of its power.
 TEST(BeamPattern, ErrorsOfTheElementsLeakIntoAllBeams) {
   const double floor = (1 + 0.45 * 0.45 - std::exp(-0.45 * 0.45)) * 1.3628 / 154.5;
   const double main_lobe = std::exp(-0.45 * 0.45);
@@ -140,7 +140,7 @@ TEST(BeamPattern, ErrorsOfTheElementsLeakIntoAllBeams) {
   EXPECT_NEAR(mean, 10 * std::log10(floor / main_lobe), 0.3);
 }
 
-// A tilted bed, a ball and nothing: any echo, in lines of which some are even, some empty.
+// Lines without echo, with an uneven echo and with an even one.
 EchoImage some_echo(int beams, int lines) {
   EchoImage image = image_of(beams, lines, 0.0F);
   for (int b = 0; b < beams; ++b) {

@@ -23,7 +23,7 @@ namespace {
 TEST(InstructionSets, TheOnePickedAtLoadTimeGivesTheBitsOfTheBaseline) {
   const std::vector<std::uint16_t> baseline = pings_for_baseline();
   EXPECT_GT(std::set<std::uint16_t>(baseline.begin(), baseline.end()).size(),
-            10000);  // there is something to see
+            10000);  // the pings are not empty
   EXPECT_EQ(baseline, (several_pings<Receiver, PointSpread, PingRequest, EchoImage, WorkerPool>()));
 }
 
@@ -35,7 +35,7 @@ TEST(InstructionSets, Avx2GivesTheBitsOfTheBaseline) {
   EXPECT_EQ(pings_for_baseline(), pings_for_avx2());
 }
 
-// With FMA in addition, which AVX-512 implies: were it used, sums would be rounded once instead of twice.
+// AVX-512 implies FMA. If the loops used it, sums would be rounded once instead of twice.
 TEST(InstructionSets, Avx512GivesTheBitsOfTheBaseline) {
   if (!__builtin_cpu_supports("avx512f")) {
     GTEST_SKIP() << "this machine has no AVX-512";

@@ -73,7 +73,7 @@ TEST(LineArray, HasTheBeamwidthAskedFor) {
   }
 }
 
-// 155 half-wave elements under a Hamming taper: sum w^2 / (sum w)^2 = 1.3628 / 154.5, nearly.
+// 155 half-wave elements under a Hamming taper: sum w^2 / (sum w)^2 is about 1.3628 / 154.5.
 TEST(LineArray, ErrorsOfTheElementsLeaveAFloor) {
   Aperture aperture;
   aperture.element_amplitude_sd = 0.3;

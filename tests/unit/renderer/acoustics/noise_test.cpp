@@ -55,14 +55,14 @@ TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
   EXPECT_NEAR(hit / pings, 0.07, 4 * std::sqrt(0.07 / pings));
   EXPECT_NEAR(first / hit, 500, 4 * 289 / std::sqrt(hit));
   EXPECT_NEAR(raise_db / hit, 6.5, 4 * 2.6 / std::sqrt(hit));
-  // Of 50 m: 0.1, and of the others those that begin within their length of the end, which is
-  // 4 m * 3 / (4 ln 2) / 50 m = 0.0866 of them: one in six.
+  // Of 50 m: 0.1 by choice, and of the others those that begin within their length of the end, a share of
+  // 4 m * 3 / (4 ln 2) / 50 m = 0.0866.
   EXPECT_NEAR(to_the_end / hit, 0.1 + 0.9 * 0.0866, 4 * 0.39 / std::sqrt(hit));
-  // Half of those of 4 m that end by themselves, where there is room, and those to the end.
+  // Half of the bursts of 4 m that end by themselves, and those to the end, if there is room.
   EXPECT_NEAR(longer / hit, 0.92 * (0.1 + 0.9 / 2), 4 * 0.5 / std::sqrt(hit) + 0.005);
 }
 
-// The strongest echo re what hides it: the noise of its bin, -40 dB, and half a step of 16 bits.
+// The strongest echo re the floor: the noise of its bin, -40 dB, and half a step of 16 bits.
 TEST(Noise, TellsHowFarTheStrongestEchoStandsOutOfIt) {
   WorkerPool workers;
   const auto over_floor = [&](const PingRequest& request, const EchoImage& echo) {
@@ -87,7 +87,8 @@ TEST(Noise, TellsHowFarTheStrongestEchoStandsOutOfIt) {
   EXPECT_EQ(over_floor(request, even_echo(request, 0.1)), std::numeric_limits<double>::infinity());
 }
 
-// A ping that is hit: noise rises by the drawn factor from the drawn line to the drawn end, in all beams.
+// In a ping with interference, noise rises by the drawn factor from the drawn line to the drawn end, in all
+// beams.
 TEST(Noise, InterferenceRaisesNoiseWithinItsBurst) {
   WorkerPool workers;
   PingRequest request = bare_request(400);
@@ -128,8 +129,7 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
   EXPECT_EQ(ring_down_lines({}, range), 0);
 }
 
-// The pulse overdrives the receiver: what is sent is even from the first line up to the peak, whatever the
-// TVG.
+// The pulse overdrives the receiver: samples are even from the first line up to the peak, with any TVG.
 TEST(RingDown, IsEvenFromTheFirstLineWhereThePulseOverdrivesTheReceiver) {
   PhysicalModel model;
   model.ring_down = {.on = true, .level_db = -6, .peak_m = 0.3, .end_m = 0.9, .from_start = true};
@@ -147,7 +147,7 @@ TEST(RingDown, IsEvenFromTheFirstLineWhereThePulseOverdrivesTheReceiver) {
   EXPECT_NEAR(20 * std::log10(static_cast<double>(amplitude[900])), -86, 0.1);
 }
 
-// Without echo and noise it is all there is; with noise it is the steady part of it.
+// Without echo and noise, the samples are the ring-down alone.
 TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
   WorkerPool workers;
   PingRequest request = bare_request(200);
@@ -162,7 +162,7 @@ TEST(RingDown, IsHeardBeforeTheGainLikeAnEcho) {
                 1)
         << line;
   }
-  // Its level differs from ping to ping: sd 2 dB, here of 400 pings, which know it to 0.07 dB.
+  // Its level varies from ping to ping: sd 2 dB, here over 400 pings, which give it to 0.07 dB.
   request.settings.physical.ring_down.sd_db = 2;
   request.settings.range.count = 40;
   double sum_db = 0, squares_db = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The receiver once more, compiled for one instruction set alone and in a namespace of its own. The build
-// compiles this file several times, with
+// The receiver, compiled for one instruction set in its own namespace. The build compiles this file several
+// times, with
 //   SONARD_SIMD_CLONES  the attribute that picks the instruction set (renderer/simd.hpp)
 //   sonard              the namespace, so that all versions fit into one program
 //   MAKE_PINGS          name of the function that the test calls

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples in half decibels, as a DST head puts them out: v = floor(k 255 / 160) with k = round(2 L / dB), and
-// nothing above k = 120 (docs/physics.md 2.16), full scale is 80 dB; and in powers of the amplitude.
+// Samples in half decibels, as a DST head sends them: v = floor(k 255 / 160) with k = round(2 L / dB), at
+// most k = 120 (docs/physics.md 2.16); full scale is 80 dB. Samples in powers of the amplitude.
 #include <cmath>
 #include <cstdint>
 #include <set>
@@ -66,7 +66,7 @@ TEST(OutputScale, AMeanOfNativeLinesIsOneOfAmplitudes) {
   WorkerPool workers(1);
   Receiver receiver;
   EchoImage echo{1, 64, std::vector<float>(64, 0.0F)};
-  echo.intensity[8] = 1e-4F;  // amplitude 0.01; with three lines of nothing 0.0025: 80 - 52.04 dB
+  echo.intensity[8] = 1e-4F;  // amplitude 0.01; with three empty lines 0.0025: 80 - 52.04 dB
   const PingSamples samples = receiver.receive(echo, request, 0, workers);
   EXPECT_EQ(samples.u8[2], 56 * 255 / 160);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ping that is passed leaves the receiver as one that is received.
+// Receiver::pass() leaves the receiver in the state that receive() does.
 #include <algorithm>
 #include <functional>
 #include <ostream>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int lines = 200;
 
-/// Of a sonar that moves and turns a little from ping to ping.
+/// A ping of a sonar that moves and turns a little from ping to ping.
 PingRequest ping(int number, const std::function<void(SonarSettings&)>& adjust) {
   PingRequest request = bare_request(lines);
   request.ping_number = static_cast<std::uint64_t>(number);
@@ -31,7 +31,7 @@ PingRequest ping(int number, const std::function<void(SonarSettings&)>& adjust) 
   return request;
 }
 
-/// Every third line is silent, another one in each ping.
+/// Every third line is empty, a different third in each ping.
 EchoImage echo_of(const PingRequest& request) {
   const int beams = request.settings.aperture.beam_count();
   EchoImage echo{beams, lines, std::vector<float>(static_cast<std::size_t>(beams * lines), 0.01F)};
@@ -67,7 +67,7 @@ TEST_P(Passed, TheNextPingIsTheSame) {
   }
 }
 
-// Or the test above would pass with a pass() that does nothing.
+// Otherwise the test above would pass with a pass() that does nothing.
 TEST_P(Passed, WithoutThePingsBetweenOnlySpeckleThatIsKeptDiffers) {
   WorkerPool workers;
   Receiver whole, forgetful;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Correlation along the range where lines are shorter than the pulse (docs/physics.md 2.8).
+// Correlation along the range if lines are shorter than the pulse (docs/physics.md 2.8).
 #include "renderer/acoustics/pulse.hpp"
 
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr auto chirp = PhysicalModel::Pulse::chirp;
 constexpr double step_m = 0.01;
 constexpr double cell_m = 0.035;  // three and a half lines
 
-/// Correlation of two lines `lag` apart: white numbers weighed with the main lobe of sinc(x / cell).
+/// Correlation of two lines `lag` apart: white numbers weighted with the main lobe of sinc(x / cell).
 double field_correlation(int lag) {
   const auto amplitude = [](int line) {
     const double x = std::numbers::pi * line * step_m / cell_m;
@@ -32,8 +32,8 @@ double field_correlation(int lag) {
   return sum / power;
 }
 
-/// Correlation of intensities `lag` lines apart in one beam; of complex Gaussian fields it is the square of
-/// theirs.
+/// Correlation of intensities `lag` lines apart in one beam. For complex Gaussian fields it is the square of
+/// the fields' correlation.
 double intensity_correlation(const PingSamples& samples, int lag) {
   const std::vector<double> intensities = intensities_of(samples);
   const auto apart = static_cast<std::size_t>(lag * samples.beams);
@@ -56,8 +56,7 @@ PingRequest fine_request(int lines) {
   return request;
 }
 
-// 3000 lines of 256 beams hold some 20000 independent cells: standard error 0.007 where fields are
-// correlated.
+// 3000 lines of 256 beams hold about 20000 independent cells: standard error 0.007 for correlated fields.
 void expect_correlation(const PingSamples& samples, double power) {
   for (int lag = 1; lag <= 8; ++lag) {
     EXPECT_NEAR(intensity_correlation(samples, lag), std::pow(field_correlation(lag), 2), 0.03) << lag;
@@ -123,7 +122,7 @@ TEST(PulseCorrelation, LinesOfACellShareNothing) {
               0.01);
 }
 
-// A field that is kept keeps its correlation while it fades, also where there was no echo for a while.
+// A kept field keeps its correlation while it fades, even after pings without echo.
 TEST(PulseCorrelation, KeptSpeckleKeepsItsCorrelationAsItFades) {
   WorkerPool workers;
   Receiver receiver;

@@ -29,8 +29,8 @@ double sum(const EchoImage& image) {
   return std::accumulate(image.intensity.begin(), image.intensity.end(), 0.0);
 }
 
-/// Energy of an echo that lies evenly in its line heard in the line `lines` away: the response integrated
-/// over both by the midpoint rule.
+/// Share of an echo, spread evenly over its line, in the line `lines` away: the response integrated over both
+/// by the midpoint rule.
 double integral(double step_m, int lines) {
   constexpr int n = 400;
   double total = 0;
@@ -48,7 +48,7 @@ TEST(PulseResponse, SharesAreTheIntegralOfTheChirp) {
     const PulseResponse response(Pulse::chirp, pulse_m, step_m);
     ASSERT_GT(response.taps(), 3);
     for (int lines = 0; lines < 4; ++lines) {
-      // Beyond 16 cells lie 0.6 % of the energy, which are spread over what is left.
+      // 0.6 % of the energy lies beyond 16 cells; the response spreads it over the rest.
       EXPECT_NEAR(response.share(lines), integral(step_m, lines), 0.007 * response.share(0))
           << step_m << ' ' << lines;
     }
@@ -104,21 +104,21 @@ TEST(PulseResponse, PulsesHaveTheWidthAndSideLobesOfTheirKind) {
     highest = std::max(highest, level_db(Pulse::windowed_chirp, cells * pulse_m));
   }
   EXPECT_NEAR(highest, -31.5, 0.1);
-  // A tone is heard evenly over its length, and not beyond.
+  // A tone is even over its length and zero beyond.
   EXPECT_NEAR(level_db(Pulse::tone, 0.45 * pulse_m), 0, 1e-6);
   const PulseResponse tone(Pulse::tone, pulse_m, pulse_m / 40);
   EXPECT_EQ(tone.taps(), 21);  // the last one catches half a line
   EXPECT_NEAR(tone.share(20), tone.share(0) / 2, 1e-6);
 }
 
-// A tone of length l whose middle lies evenly in a line of length d >= l is outside of it by l / 4d.
+// A tone of length l, its middle anywhere in a line of length d >= l, is outside of it by l / 4d in the mean.
 TEST(PulseResponse, ToldWhatIsHeardOutsideOfTheLine) {
   EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
   EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
   EXPECT_NEAR(PulseResponse(Pulse::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * pulse_m, 0), 0.01);
 }
 
-/// A tone of this length, where levels are stated for one of 20 mm in lines of 5 mm.
+/// A tone of length `cell_m`; levels are stated for a tone of 20 mm in lines of 5 mm.
 PhysicalModel tone_of(double cell_m, double rounding_m = 0) {
   PhysicalModel model;
   model.pulse = Pulse::tone;
@@ -132,7 +132,7 @@ PulseResponse response_of(const PhysicalModel& model, double step_m) {
   return {model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, pulse_energy(model, step_m)};
 }
 
-/// What an even echo becomes.
+/// Level of an even echo of 1.
 double bed(const PulseResponse& response) {
   double sum = response.share(0);
   for (int lines = 1; lines < response.taps(); ++lines) {
@@ -141,8 +141,8 @@ double bed(const PulseResponse& response) {
   return sum;
 }
 
-// The source level is fixed: 4 lines of 5 mm lie in the usual tone, so a point that its lines resolve has a
-// quarter of its echo, and an even echo as many times a quarter as there are lines in the tone.
+// The source level is fixed. The usual tone is 4 lines of 5 mm long, so a resolved point has a quarter of its
+// echo, and an even echo has a quarter for each line in the tone.
 TEST(PulseEnergy, ALongerToneLeavesAPointAndRaisesABed) {
   for (const double cell_m : {0.005, 0.02, 0.1, 0.75}) {
     const PhysicalModel model = tone_of(cell_m);
@@ -152,8 +152,8 @@ TEST(PulseEnergy, ALongerToneLeavesAPointAndRaisesABed) {
   EXPECT_NEAR(bed(response_of(tone_of(0.02), 0.005)), 1, 1e-6);
 }
 
-// An even echo has its energy per line, so lines twice as long hold twice as much and show the same. A tone
-// shorter than its line shows what the mean over the line leaves of it.
+// An even echo has its energy per line, so lines twice as long hold twice as much and have the same level. A
+// tone shorter than its line has its mean over the line.
 TEST(PulseEnergy, LevelsDoNotDependOnTheLengthOfLines) {
   for (const double step_m : {0.001, 0.005, 0.01, 0.04}) {
     EXPECT_NEAR(bed(response_of(tone_of(0.1), step_m)) * step_m / 0.005, 0.1 / 0.02, 1e-3) << step_m;
@@ -162,7 +162,7 @@ TEST(PulseEnergy, LevelsDoNotDependOnTheLengthOfLines) {
   EXPECT_NEAR(bed(response), 0.25 * 0.005 / 0.5, 1e-6);
 }
 
-// Rounded ends leave a tone its peak and its length, of which none is shorter than the square of the lobe:
+// A tone with rounded ends keeps its peak and its length, but is at least as long as the square of the lobe:
 // 0.9028 of its half, by quadrature of (sin(pi x) / (pi x))^2 in other software.
 TEST(PulseEnergy, ARoundedToneKeepsItsPeakAndItsLength) {
   constexpr double rounding_m = 0.018;
@@ -174,8 +174,8 @@ TEST(PulseEnergy, ARoundedToneKeepsItsPeakAndItsLength) {
   }
 }
 
-// The convolution of a box with the main lobe of a sinc, written down once more. The box that leaves a length
-// of 33.2 mm was found with other software.
+// The convolution of a box with the main lobe of a sinc, computed again. Other software found the box that
+// gives a length of 33.2 mm.
 TEST(PulseResponse, ARoundedToneIsABoxBehindABand) {
   constexpr double rounding_m = 0.018, box_m = 0.0417, dx = 1e-5, step_m = 0.0005;
   const auto amplitude = [](double x) {
@@ -206,7 +206,7 @@ TEST(PulseEnergy, IsOneWhereLevelsDoNotFollowTheLength) {
   EXPECT_EQ(pulse_energy(model, 0.005), 1);  // exactly: pictures of the usual pulse do not change
 }
 
-// Worked out by hand: of a band of 200 kHz around 743.3 kHz the quality is 3.717; 500 kHz are detuned by
+// By hand: a band of 200 kHz around 743.3 kHz has a quality of 3.717. 500 kHz is detuned by
 // 3.717 (500 / 743.3 - 743.3 / 500) = -3.026, which leaves 1 / 10.16 of the power each way.
 TEST(TransducerBand, LosesWhatAResonanceDoesTwice) {
   const TransducerBand band{650e3, 850e3};

@@ -89,7 +89,7 @@ struct Field {
   std::complex<float> value(std::size_t i) const { return {re[i], im[i]}; }
 };
 
-/// What make_random_key() and fill_complex_gaussian() state, in double precision and with library functions.
+/// As make_random_key() and fill_complex_gaussian() document, in double precision with library functions.
 std::complex<double> plain_gaussian(RandomKey key, std::uint32_t row, std::uint32_t column) {
   std::uint64_t k = (key.value ^ row) + 0x9E3779B97F4A7C15U;
   k = (k ^ (k >> 30)) * 0xBF58476D1CE4E5B9U;
@@ -170,7 +170,7 @@ TEST(Random, AmplitudeAndPhaseAreUniform) {
 }
 
 /// Correlation of two fields of n numbers in standard errors: of the complex values, and of the powers
-/// (variance 1), which sees dependence that phases hide.
+/// (variance 1), which shows dependence that phases hide.
 struct Correlation {
   std::complex<double> field;
   double power = 0;

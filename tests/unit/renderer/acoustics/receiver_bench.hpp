@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A receiver without gain, blanking or noise, and what its samples say.
+// Requests without gain, blanking or noise, and the intensities in samples.
 #pragma once
 
 #include <cmath>

@@ -77,7 +77,7 @@ TEST(Receiver, NoiseFillsEmptyWaterWithTheSameCorrelation) {
   expect_rayleigh(Receiver().receive(uniform_echo(1500, 0), request, 0, workers), 0.1);
 }
 
-/// Amplitudes in full scale of every 8th beam: they are not correlated over so many, so they are independent.
+/// Amplitudes, re full scale, of every 8th beam: beams that far from each other are independent.
 std::vector<double> independent_amplitudes(const PingSamples& samples) {
   std::vector<double> amplitudes;
   for (std::size_t i = 0; i < samples.u16.size(); i += 8) {
@@ -242,7 +242,7 @@ TEST(Receiver, SpeckleOfAStillSonarIsFrozenAndFadesWithMotion) {
 }
 
 // rho = exp(-(dx / l)^2 - (dpsi / l_psi)^2) per ping (docs/physics.md 2.8), rho^2 between intensities,
-// products over several pings; noise is another in each ping.
+// products over several pings; noise differs in each ping.
 TEST(Receiver, SpeckleFadesByTheLawOfMotionAndNoiseAtOnce) {
   WorkerPool workers;
   Receiver receiver;
@@ -273,7 +273,7 @@ TEST(Receiver, SpeckleFadesByTheLawOfMotionAndNoiseAtOnce) {
   EXPECT_NEAR(intensity_correlation(noise, receiver.receive(silence, request, 0, workers), 0, 0), 0, bound);
 }
 
-// Lines without echo do not evolve their speckle; when the echo is back they have faded like the others.
+// Lines without echo do not evolve their speckle; when the echo returns, they have faded like the others.
 TEST(Receiver, SpeckleOfLinesThatHadNoEchoFadesAllTheSame) {
   WorkerPool workers;
   Receiver receiver;
@@ -292,8 +292,7 @@ TEST(Receiver, SpeckleOfLinesThatHadNoEchoFadesAllTheSame) {
   EXPECT_NEAR(statistics_of(last).cv, 0.5227, 0.005);
 }
 
-// The rule that works out noise alone where there is no echo: an echo far below one code takes the other
-// path.
+// A rule computes noise alone in lines without echo. An echo far below one code takes the other path.
 TEST(Receiver, LinesWithoutEchoAreThoseWithAnEchoThatVanishes) {
   WorkerPool workers;
   PingRequest request = bare_request(300);
@@ -328,7 +327,7 @@ TEST(Receiver, FrozenAndPerPingSpeckleDependOnTheRequestAlone) {
   }
 }
 
-// What is worked out from the settings is kept between pings, but never beyond a change of them.
+// Tables from the settings are kept between pings, but not beyond a change of the settings.
 TEST(Receiver, FollowsEveryChangeOfItsSettings) {
   WorkerPool workers;
   Receiver receiver;
@@ -382,8 +381,8 @@ std::vector<std::complex<double>> plain_field(RandomKey key, int line, const std
   return field;
 }
 
-// The whole chain written out plainly, in double precision: equations (3) of docs/physics.md 2.8 and 2.9,
-// TVG, stripe, mean of two lines, 16 bits.
+// The whole chain in plain double precision: docs/physics.md 2.8 and 2.9, TVG, stripe, mean of two lines, 16
+// bits.
 TEST(Receiver, AgreesWithPlainDoubleArithmetic) {
   constexpr int lines = 60;
   PingRequest request = bare_request(lines);

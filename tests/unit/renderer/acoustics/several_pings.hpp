@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One set of pings, whichever version of array, pulse and receiver makes them.
+// The same pings for every version of array, pulse and receiver.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <vector>
 
 /// 16 bit samples of three pings of a moving sonar with all effects on, and of one in mode `paper`. Odd sizes
-/// leave remainders to every vector length.
+/// leave remainders at every vector length.
 template <class Receiver, class PointSpread, class PingRequest, class EchoImage, class WorkerPool>
 std::vector<std::uint16_t> several_pings() {
   constexpr int beams = 203;
@@ -37,7 +37,7 @@ std::vector<std::uint16_t> several_pings() {
   WorkerPool workers(1);
   Receiver receiver;
   PointSpread reception;
-  auto skipped = receiver.skipped();  // whatever it counts
+  auto skipped = receiver.skipped();  // its counts are not used
   reception.prepare(request.settings, 1, 0, {}, skipped);
   EchoImage heard;
   reception.form_beams(echo, request.settings, heard, workers, {}, skipped);

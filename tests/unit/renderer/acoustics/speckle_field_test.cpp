@@ -16,7 +16,7 @@ constexpr int field_beams = 512;
 constexpr int field_lines = 200;
 constexpr double numbers = field_beams * field_lines;
 
-/// Innovations are white here: the field does not care.
+/// Innovations are white here; the field accepts any.
 void bring_up_to_date(SpeckleField& field, int line, std::uint64_t ping) {
   if (field.is_current(line)) {
     return;
@@ -81,7 +81,7 @@ TEST(SpeckleField, FadesByTheDecayAndKeepsItsPower) {
     const Values faded = values_of(field);
     EXPECT_NEAR(correlation(faded, faded), 1, field_bound);
     EXPECT_NEAR(correlation(first, faded), std::exp(-decay), field_bound);
-    // Small steps are resolved too: what was lost is 1 - rho, seen in the difference |a - b|^2 = 2 (1 - rho).
+    // Small steps are resolved too: the loss 1 - rho shows in the difference |a - b|^2 = 2 (1 - rho).
     double difference = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {
       difference += std::norm(first[i] - faded[i]);
@@ -105,8 +105,7 @@ TEST(SpeckleField, ManySmallStepsAddUp) {
   EXPECT_NEAR(correlation(first, last), std::exp(-1), field_bound);
 }
 
-// Lines that nobody asked for catch up in one step: the same correlations with what was before as line by
-// line.
+// Unused lines catch up in one step, with the correlations that single steps give.
 TEST(SpeckleField, SkippedStepsAreExactInDistribution) {
   SpeckleField eager(field_beams);
   SpeckleField lazy(field_beams);

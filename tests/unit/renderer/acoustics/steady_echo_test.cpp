@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which spots of an echo are points, and what beams receive of them.
+// Points in an echo, and the share of them that beams receive.
 #include "renderer/acoustics/steady_echo.hpp"
 
 #include <cmath>
@@ -106,11 +106,11 @@ TEST(SteadyEcho, BeamsReceiveAPointThroughTheirPatternAndThePulse) {
   for (int beam = 0; beam < 32; ++beam) {
     expected += pattern.share(beam, middle);
   }
-  EXPECT_NEAR(sum / expected, 1, 0.02);  // half of an echo of 2; what leaks is left out
+  EXPECT_NEAR(sum / expected, 1, 0.02);  // half of an echo of 2, without leakage
 }
 
-// Beams closer than they resolve see nulls of each other's main lobes, below what the errors of the elements
-// leak on the average.
+// Beams closer than their resolution see nulls of each other's main lobes, below the mean leakage of the
+// elements' errors.
 TEST(SteadyEcho, NoBeamReceivesLessThanNothing) {
   Aperture aperture;
   aperture.beam_edges_rad = equal_sine_edges(512, 65 * std::numbers::pi / 180);

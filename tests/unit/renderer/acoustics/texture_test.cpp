@@ -62,9 +62,9 @@ TEST(Texture, ScatterersGrowWithTheRange) {
   EXPECT_DOUBLE_EQ(scatterers_at(model, 25), 7.5);
 }
 
-// Index var / mean^2 of the intensity in the far half of the lines, where nu goes from 2/3 to 4/3 of that in
-// the middle: on the average 1 + 2 <1 / nu>. About four cells of a line go with one that is independent; of
-// these two million, the standard error of E I^2 is 1 to 0.3 %.
+// Index var / mean^2 of the intensity in the far half of the lines, where nu is 2/3 to 4/3 of its value in
+// the middle: on the average 1 + 2 <1 / nu>. About one cell in four of a line is independent. For these two
+// million cells the standard error of E I^2 is 1 to 0.3 %.
 TEST(Texture, ScintillationIndexIsOnePlusTwoOverNu) {
   WorkerPool workers;
   constexpr int lines = 4000;
@@ -90,7 +90,7 @@ TEST(Texture, ScintillationIndexIsOnePlusTwoOverNu) {
   }
 }
 
-// Texture belongs to the scene: a sonar at rest hears the same, and what fades with motion is still K.
+// Texture belongs to the scene: it stays while the sonar rests and changes as the sonar moves.
 TEST(Texture, StaysWhileTheSonarRests) {
   WorkerPool workers;
   Receiver receiver;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single things in the water: as many as asked for, where they are, and nothing behind what hides them.
+// Single objects in the water: their density, their places, and none behind the first echo.
 #include "renderer/acoustics/water_clutter.hpp"
 #include "tests/support/degree.hpp"
 

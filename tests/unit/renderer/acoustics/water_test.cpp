@@ -27,7 +27,7 @@ double relaxation(double relaxation_khz, double f_khz) {
   return relaxation_khz <= 0.0 ? 0.0 : relaxation_khz * f2 / (relaxation_khz * relaxation_khz + f2);
 }
 
-/// Ainslie & McColm (1998): a second opinion.
+/// Ainslie & McColm (1998): an independent formula.
 double ainslie_mccolm_db_per_km(double f, const Water& water) {
   const double t = water.temperature_c;
   const double s = water.salinity_ppt;

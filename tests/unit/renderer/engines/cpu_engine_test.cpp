@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who builds search trees: only what traces rays.
+// Only a fixed grid, which traces rays, builds search trees.
 #include "renderer/engines/cpu/cpu_engine.hpp"
 
 #include <algorithm>

@@ -63,7 +63,7 @@ TEST(GlDevices, WhatIsNotThereIsToldWithWhatIs) {
   EXPECT_THAT(complaint({software}, "radeon"), HasSubstr("'radeon'"));
 }
 
-// Names that Mesa, ANGLE and OpenSWR give themselves, and two GPUs.
+// Renderer names of Mesa and ANGLE, and of two GPUs.
 TEST(GlDevices, SoftwareIsKnownByItsName) {
   EXPECT_TRUE(is_software_renderer(software.description));
   EXPECT_TRUE(is_software_renderer("Mesa/X.org / softpipe / 3.3 (Compatibility Profile) Mesa 22.3.6"));

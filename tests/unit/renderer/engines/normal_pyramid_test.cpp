@@ -45,7 +45,7 @@ TEST(NormalPyramid, KeepsTheMeanEchoOfWhatItAverages) {
 
 TEST(NormalPyramid, MakesTexelsUnitBeforeItAverages) {
   NormalMap map = make_map(1, 1, {{0, 0, 1}});
-  map.rgb = {127, 127, 200};  // short, as careless tools write it
+  map.rgb = {127, 127, 200};  // not of unit length, as some tools write it
   EXPECT_NEAR(glm::length(NormalPyramid(map).mean_normal({0.5F, 0.5F}, 0)), 1, 1e-4);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of RaySampler against the closed form of a plane, sample by sample; how they do not depend on
-// packets and threads; and surfaces that are hard to hit.
+// Samples of RaySampler against the closed form of a plane, sample by sample; independence of packets and
+// threads; surfaces that are hard to hit.
 #include "renderer/engines/cpu/ray_sampler.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using test::make_world;
 
 constexpr double far_m = 1000;
 
-/// A world and what samples it.
+/// A world and its sampler.
 class Traced {
  public:
   Traced(World world, WorkerPool& workers, const std::string& embree_settings = {})
@@ -108,7 +108,7 @@ Pose over_the_bed() {
   return {{0, 0, 3}, glm::angleAxis(20 * degree, glm::dvec3(0, 1, 0))};
 }
 
-// Equation (2) of docs/physics.md 2.3, in double. Sizes that are no multiples of a packet's sides included.
+// Equation 2 of docs/physics.md 2.3, in double precision. Some sizes are no multiples of a packet's sides.
 TEST(RaySampler, SamplesOfAPlaneFollowTheClosedForm) {
   const glm::dvec3 n =
       glm::normalize(glm::dvec3(0.8, 0.35, -0.5));  // in the world, pointing away from the sonar
@@ -266,7 +266,7 @@ TEST(RaySampler, OneMeshCanBeInManyPlacesAndMove) {
 }
 
 TEST(RaySampler, BackFacesLetRaysPassWhenAskedTo) {
-  // The front of `hidden` looks at the sonar; `facing_away` stands before it and shows its back.
+  // The front of `hidden` faces the sonar; `facing_away` stands before it and shows its back.
   const World world = make_world({make_body("facing_away", make_quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40})),
                                   make_body("hidden", make_quad({8, 20, -20}, {0, -40, 0}, {0, 0, 40}))});
   WorkerPool workers(1);
@@ -285,7 +285,7 @@ TEST(RaySampler, BackFacesLetRaysPassWhenAskedTo) {
   }
 }
 
-// S4: a vertex normal that is none leaves the triangle's own.
+// S4: the triangle's own normal replaces an invalid vertex normal.
 TEST(RaySampler, UselessVertexNormalsAreReplacedByTheTriangles) {
   const TriangleMesh flat = make_quad({5, -20, -20}, {0, 40, 0}, {0, 0, 40});
   WorkerPool workers(1);

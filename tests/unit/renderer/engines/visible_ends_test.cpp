@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the ends of visible segments run across a wedge, by hand.
+// Ends of visible segments across a wedge, computed by hand.
 #include "renderer/engines/cpu/visible_ends.hpp"
 
 #include <cmath>
@@ -25,7 +25,7 @@ class VisibleEndsTest : public ::testing::Test {
     seen.lay_out(visible);
     VisibleEnds().run_straight(width_rad, tan_limit, seen);
   }
-  /// By how much the ends of a segment are apart at a side of the wedge; negative where they have crossed.
+  /// Least distance between the ends of a segment at a side of the wedge; negative if they have crossed.
   float least_length(std::size_t i) const {
     const float turn = std::abs(seen.high_slope[i] - seen.low_slope[i]) * width_rad / 2;
     return seen.high[i] - seen.low[i] - turn;
@@ -51,7 +51,7 @@ TEST_F(VisibleEndsTest, TipInsideASurfaceStays) {
 }
 
 TEST_F(VisibleEndsTest, InnerEndsTurnWithASilhouette) {
-  add(-0.100F, -0.050F, 0.2F, 0, 1, bed);    // a crest, and what is seen beyond it
+  add(-0.100F, -0.050F, 0.2F, 0, 1, bed);    // a crest, and the segments beyond it
   add(-0.050F, -0.049F, 0.1F, 1, -1, bed);   // ends at a tip
   add(-0.049F, -0.048F, 0.1F, -1, 0, bed);   // as its low end turns, so does this one
   add(-0.048F, 0.000F, 0.1F, 0, 0.5F, bed);  // long enough
@@ -81,7 +81,7 @@ TEST_F(VisibleEndsTest, TheSameFromAbove) {
 
 TEST_F(VisibleEndsTest, AnotherBodyEndsASurface) {
   add(-0.100F, -0.050F, 0.1F, 0, 0, bed);
-  add(-0.050F, -0.049F, 0.1F, 0, 1, post);  // touches the bed, but does not go on as it does
+  add(-0.050F, -0.049F, 0.1F, 0, 1, post);  // touches the bed, but does not continue it
   add(-0.049F, 0.000F, 0.1F, 1, 0, post);
   run();
   EXPECT_EQ(seen.high_slope[0], 0);

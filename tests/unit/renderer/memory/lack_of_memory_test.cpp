@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory runs out at any allocation of a ping: that ping fails, and the next ones are as if it had never
-// been.
+// If memory runs out at any allocation of a ping, that ping fails and leaves no trace in the next ones.
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +17,10 @@
 
 namespace {
 
-constexpr std::size_t large_bytes = 64;  // what is smaller is always to be had
+constexpr std::size_t large_bytes = 64;  // smaller allocations always succeed
 std::atomic<long> large_ones_left{-1};   // -1: any number; the one after these fails
 
-// Not inlined: the compiler would take the pair of new and delete below for one of new and free.
+// Not inlined: the compiler would take the pair of new and delete below for a pair of new and free.
 [[gnu::noinline]] void* allocate(std::size_t size, std::size_t alignment) {
   if (size >= large_bytes && large_ones_left >= 0 && large_ones_left-- == 0) {
     throw std::bad_alloc();
@@ -46,8 +45,8 @@ void* operator new(std::size_t size) {
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
-// The library's sorting asks this way and does without when it gets nothing. AddressSanitizer has one of its
-// own, whose memory the operator delete below must not get.
+// The library's sorting uses this form and works without the memory if it gets none. AddressSanitizer has its
+// own form, whose memory the operator delete below must not receive.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   try {
     return allocate(size, alignof(std::max_align_t));
@@ -98,7 +97,7 @@ PingRequest ping(int lines, std::uint64_t number) {
   return request;
 }
 
-/// Of the two pings by which renderers are compared: a long one of stream 0 and a short one of stream 1.
+/// Images of two pings for comparison: a long ping of stream 0 and a short ping of stream 1.
 std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> images(SonarRenderer& renderer) {
   auto first = renderer.render_ping(ping(160, 7), 0).u8;
   return {std::move(first), renderer.render_ping(ping(80, 8), 1).u8};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The survey must never miss a facet that mirrors; facet by facet it is worked out here.
+// The survey must never miss a facet that mirrors. The test computes the gain of each facet.
 #include "renderer/multipath/mirror_survey.hpp"
 
 #include <algorithm>

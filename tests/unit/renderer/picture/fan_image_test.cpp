@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geometry of the fan against closed forms: bearing(b) = asin((2b + 1 - 256) / 256 * sin 60 deg),
-// docs/protocols/ gemini.md 6.5; line i at (i + 0.5) steps; range up, port on the left.
+// docs/protocols/gemini.md 6.5; line i at (i + 0.5) steps; range up, port on the left.
 #include "renderer/picture/fan_image.hpp"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, BrightCell,
                                          std::pair{300, 127}, std::pair{300, 128}, std::pair{480, 191},
                                          std::pair{250, 100}, std::pair{450, 254}, std::pair{450, 255}));
 
-// Labels are not mixed, and lie where the samples do, also where lines are finer than pixels.
+// Labels are not mixed, and lie at their samples, even if lines are finer than pixels.
 TEST(FanImage, LabelsAreTakenFromTheNearestSample) {
   for (const int pixels : {radius_px, lines / 5}) {
     const FanImage image(shape(), {.radius_px = pixels, .grid = false});
@@ -104,7 +104,7 @@ TEST(FanImage, PortIsOnTheLeft) {
 }
 
 TEST(FanImage, EqualAnglesWouldPutABeamElsewhere) {
-  // Beam 64 looks to -25.44 degrees; with equal angles over +-60 degrees it would be -29.77.
+  // Beam 64 points to -25.44 degrees; with equal angles over +-60 degrees it would be -29.77.
   const FanGeometry geometry(shape(), radius_px, 0);
   const double bearing_rad = std::asin(sine_of_beam(64));
   EXPECT_NEAR(bearing_rad * 180.0 / std::numbers::pi, -25.44, 0.01);

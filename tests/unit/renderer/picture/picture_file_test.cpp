@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against the reader and the writer of OpenCV.
+// Picture files against the reader and the writer of OpenCV.
 #include "renderer/picture/picture_file.hpp"
 
 #include <gtest/gtest.h>

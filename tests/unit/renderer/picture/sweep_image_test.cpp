@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the lines of a turn lie in its pictures, against closed forms: a bearing of u units looks to
-// (u - 3200) * 360 / 6400 degrees from ahead, which is up; bin k is at (k + 0.5) bin lengths.
+// Places of a sweep's lines in its pictures, against closed forms: a bearing of u units points
+// (u - 3200) * 360 / 6400 degrees to starboard of ahead, which is up; bin k is at (k + 0.5) bin lengths.
 #include "renderer/picture/sweep_image.hpp"
 
 #include <gtest/gtest.h>
@@ -91,7 +91,7 @@ TEST(SweepImage, AheadIsUpAndStarboardOnTheRight) {
   EXPECT_EQ(starboard.at<uchar>(disc_px, disc_px - 100), 0);
 }
 
-/// A line fills half a step on either side of its bearing, out to the range, and nothing else.
+/// Expects that a line fills half a step on either side of its bearing, out to the range, and nothing else.
 void expect_wedge(const SweepImage& image, int bearing, int step) {
   const auto [samples, heard] = image.project({even_line(bearing, 177)});
   const double half_rad = step * std::numbers::pi / 6400.0;

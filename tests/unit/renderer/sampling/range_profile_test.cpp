@@ -17,7 +17,7 @@
 namespace sonard::render {
 namespace {
 
-// Ends that are sharper are drawn over so many lines, narrower patches over so many too.
+// Lines over which sharper ends and narrower patches are drawn.
 constexpr double least = 1e-3;
 
 /// As EchoPatch, in lines.
@@ -63,7 +63,7 @@ double sum_of(const std::vector<float>& lines) {
 }
 
 /// Adds the echo of one azimuth, from one end to the other. The echo per line has the same mean at all
-/// azimuths: where the ends come closer there is less to hear.
+/// azimuths: if the ends are closer, the echo is weaker.
 void add_azimuth(const Patch& patch, double azimuth, double width, std::vector<double>& sums) {
   const double a = patch.a + azimuth * static_cast<double>(patch.smear_a);
   const double b = patch.b + azimuth * static_cast<double>(patch.smear_b);
@@ -88,8 +88,8 @@ std::vector<double> brute_force(const Patch& patch, std::size_t lines) {
   return sums;
 }
 
-/// How far a line may be from the truth. A sharp end that is drawn over `least` carries an eighth of that
-/// beyond itself. The rest is the float that is read and the steps of brute force.
+/// Largest error of a line. A sharp end that is drawn over `least` carries an eighth of that beyond itself.
+/// The rest is the rounding to float and the steps of brute force.
 double bound_of(const Patch& patch) {
   const int sharp_ends = (patch.smear_a > 0 ? 0 : 1) + (patch.smear_b > 0 ? 0 : 1);
   return patch.mean() * (sharp_ends * least / 8 + 2e-6);
@@ -163,21 +163,21 @@ TEST(RangeProfile, EchoWithAGradientRisesFromEndToEnd) {
   }
 }
 
-/// Surfaces make patches with a gradient only where the ends run no farther than half of their length.
+/// Surfaces make patches with a gradient only if the ends run no farther than half of their length.
 bool is_possible(const Patch& patch) {
   const auto a = static_cast<double>(patch.smear_a), b = static_cast<double>(patch.smear_b);
   return patch.gradient == 0.0F || (a + b) / 2 <= patch.spread() / 2;
 }
 
-/// Of a patch whose ends cross, how often its amount stands on one side of it, above what the other side
-/// holds below nothing; else 0.
+/// For a patch whose ends cross: its echo on one side, in units of its amount, which a negative echo on the
+/// other side balances; else 0.
 double crossing_of(const Patch& patch) {
   const double difference = std::abs(static_cast<double>(patch.smear_a - patch.smear_b));
   const double spread = std::max(patch.spread(), least);
   return difference > 2 * spread ? difference / (8 * spread) : 0.0;
 }
 
-// Also where the ends cross. Lines are floats.
+// Even if the ends cross. Lines are floats.
 TEST(RangeProfile, KeepsAllOfTheEcho) {
   for (const double begin : {150.0, 150.005, 150.37, 150.995}) {
     for (const double spread : {0.0, 1e-6, 1.3e-3, 0.5, 3.0, 100.0}) {
@@ -219,8 +219,8 @@ TEST(RangeProfile, PatchesThatContinueEachOtherAddUp) {
   }
 }
 
-/// All of it between lines 0 and 300. Some are very narrow; those have no gradient, as no visible segment is
-/// that cannot move its echo by a fiftieth of a line.
+/// Patches between lines 0 and 300. Some are very narrow and have no gradient, because a visible segment has
+/// no gradient if it would move the echo by less than a fiftieth of a line.
 std::vector<Patch> random_patches(std::size_t count, bool with_gradient) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> position(20, 280);
@@ -251,8 +251,8 @@ TEST(RangeProfile, OrderOfPatchesChangesNoBit) {
   }
 }
 
-/// Expects that patches leave nothing behind, not even less than nothing, which read() would hide: a point
-/// far beyond them is so little echo that one unit more or less would show.
+/// Expects that patches leave nothing beyond their ends, not even a negative rest, which read() would hide: a
+/// point far beyond them has so little echo that one unit more or less would show.
 void expect_nothing_beyond(const std::vector<Patch>& patches) {
   const auto total = static_cast<double>(std::bit_ceil(patches.size()));
   const auto little = static_cast<float>(total * 0x1p-20);
@@ -299,7 +299,7 @@ TEST(RangeProfile, WhatLiesOutsideIsDropped) {
   }
 }
 
-// No end lies before line 0, a range that is negative: only its smear does.
+// No end lies before line 0, at a negative range, but its smear may.
 TEST(RangeProfile, WhatLiesOutsideIsDroppedOfPatchesWithAGradientToo) {
   constexpr std::size_t lines = 40;
   for (const float gradient : {0.3F, -0.7F}) {

@@ -44,7 +44,7 @@ TEST(WorkerPool, WakesFromAnyState) {
   }
 }
 
-// What one run wrote is there for all threads of the next.
+// All threads of a run see what the run before wrote.
 TEST(WorkerPool, RunsSeeWhatEarlierOnesWrote) {
   WorkerPool pool(4);
   std::vector<int> values(257, 0);
@@ -69,7 +69,7 @@ TEST(WorkerPool, LongJobsAreWaitedFor) {
   EXPECT_EQ(done, std::vector<int>({1, 1, 1}));
 }
 
-// Memory may run out in any of them, at the caller's or at a worker's.
+// Memory may run out in any job, on the caller's thread or on a worker's.
 TEST(WorkerPool, HandsOnWhatAJobThrowsWhenAllAreDone) {
   for (const unsigned threads : {1U, 2U, 7U}) {
     WorkerPool pool(threads);
@@ -100,7 +100,7 @@ TEST(WorkerPool, EndsRightAfterWork) {
   }
 }
 
-// Spinning is bounded: an idle pool uses no processor time. Of 200 ms a worker that spun on would take 200.
+// Spinning is bounded: an idle pool uses no processor time. A worker that kept spinning would use 200 ms.
 TEST(WorkerPool, SleepsWhenIdle) {
   WorkerPool pool(2);
   pool.run(2, [](int) {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// COLLADA files as Gazebo reads them: the unit is applied, up_axis is not, each named node is a submesh.
-// Files are written here by the rules of COLLADA 1.4.1; boxes, areas and volumes are worked out by hand.
+// COLLADA files as Gazebo reads them: the unit is applied, up_axis is not, each named node is a submesh. The
+// tests write files by the rules of COLLADA 1.4.1; boxes, areas and volumes are computed by hand.
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -35,8 +35,8 @@ std::string source(const std::string& id, int stride, int values, const std::str
       id, values, numbers, values / stride, stride, parameters);
 }
 
-/// Of the corners (0 0 0) (1 0 0) (0 2 0) (0 0 3) and the texture coordinates (0 0) (1 0) (1 1) (0 1), with
-/// `primitives` that may name #ID-v and #ID-uv.
+/// A geometry with the corners (0 0 0) (1 0 0) (0 2 0) (0 0 3) and the texture coordinates (0 0) (1 0) (1 1)
+/// (0 1). `primitives` may name #ID-v and #ID-uv.
 std::string geometry(const std::string& id, const std::string& name, const std::string& primitives) {
   return fmt::format("<geometry id=\"{0}\" name=\"{1}\"><mesh>", id, name) +
          source(id + "-p", 3, 12, "0 0 0 1 0 0 0 2 0 0 0 3") + source(id + "-uv", 2, 8, "0 0 1 0 1 1 0 1") +
@@ -136,7 +136,6 @@ class Collada : public testing::Test {
 };
 
 // ---- unit and axes
-// ------------------------------------------------------------------------------------------
 
 TEST_F(Collada, TakesTheAxesOfTheFile) {
   Document document;
@@ -167,7 +166,6 @@ TEST_F(Collada, TakesAUnitWithADecimalComma) {
 }
 
 // ---- texture coordinates
-// ------------------------------------------------------------------------------------
 
 /// (0 0 0) (1 0 0) (0 2 0) with the texture coordinates (0 0) (1 0) (0 1): u along x, v along y.
 std::string mapped(const std::string& inputs, const std::string& indices) {
@@ -200,7 +198,7 @@ TEST_F(Collada, KeepsTextureCoordinatesIfAMaterialIsBound) {
                                      "<vcount>3</vcount><p>0 0 1 1 2 3</p></polylist>");
   expect_map(load(document, "", true));
 
-  // The set has the number that Blender and others count from 1, and a second one comes behind it.
+  // Blender and others number sets from 1; a second set follows.
   document.geometries =
       geometry("g", "",
                mapped("<input semantic=\"TEXCOORD\" source=\"#g-uv\" offset=\"1\" set=\"1\"/>"
@@ -250,9 +248,8 @@ TEST_F(Collada, ReadsTheShapeIfTextureCoordinatesAreDamaged) {
 }
 
 // ---- ids
-// ----------------------------------------------------------------------------------------------------
 
-// As the FBX COLLADA exporter writes it.
+// The FBX COLLADA exporter writes such ids.
 TEST_F(Collada, LooksAnIdUpAmongElementsOfItsKind) {
   Document document;
   document.scene_id = "Post";
@@ -266,7 +263,6 @@ TEST_F(Collada, LooksAnIdUpAmongElementsOfItsKind) {
 }
 
 // ---- submeshes
-// ----------------------------------------------------------------------------------------------
 
 /// A hull at the origin, a nameless part of it at x = 10, and below it a lid at x = 20 with a handle at x
 /// = 25.
@@ -289,7 +285,7 @@ TEST_F(Collada, HasASubmeshForEachNamedNode) {
   expect_box(load(boat(), "mast"), {0, 30, 0}, {1, 32, 3});
 }
 
-/// The box of what OpenSceneGraph, the second reader, finds: lowest and highest corner.
+/// Lowest and highest corner of the mesh that OpenSceneGraph, the second reader, reads.
 std::pair<glm::dvec3, glm::dvec3> box_by_osg(const std::filesystem::path& file, const std::string& submesh) {
   glm::dvec3 low(1e9), high(-1e9);
   std::vector<std::string> warnings;
@@ -304,7 +300,7 @@ std::pair<glm::dvec3, glm::dvec3> box_by_osg(const std::filesystem::path& file, 
 }
 
 TEST_F(Collada, HasTheSameSubmeshesInTheSecondReader) {
-  load(boat());  // writes it
+  load(boat());  // writes the file
   using Box = std::pair<glm::dvec3, glm::dvec3>;
   const std::filesystem::path file = folder_.path() / "mesh.dae";
   EXPECT_EQ(box_by_osg(file, ""), Box({0, 0, 0}, {26, 42, 3}));
@@ -332,7 +328,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
   return text;
 }
 
-/// Gazebo goes by the stride and ignores <param>.
+/// Gazebo uses the stride and ignores <param>.
 TEST_F(Collada, TakesValuesInTheirOrderWhateverTheirNames) {
   Document document = boat();
   const std::string whole = document.geometries;
@@ -351,7 +347,7 @@ TEST_F(Collada, TakesValuesInTheirOrderWhateverTheirNames) {
   }
 }
 
-/// As Blender writes it for a picture that is part of its own file.
+/// Blender writes this for a picture that is embedded in its own file.
 TEST_F(Collada, IsReadWithATextureThatHasNoFile) {
   for (const std::string name : {"<init_from/>", "<init_from></init_from>", "<init_from> </init_from>"}) {
     SCOPED_TRACE(name);
@@ -373,7 +369,6 @@ TEST_F(Collada, CentresASubmesh) {
 }
 
 // ---- nodes
-// --------------------------------------------------------------------------------------------------
 
 TEST_F(Collada, AppliesTransformsOfNodes) {
   Document document;
@@ -390,7 +385,7 @@ TEST_F(Collada, AppliesTransformsOfNodes) {
   EXPECT_NEAR(measures_of(load(document)).volume_m3, 1.0, 1e-5);
 }
 
-/// Gazebo composes them as translation, rotation, scale, whatever their order; a matrix stands alone.
+/// Gazebo applies translation, rotation and scale in its own order; a matrix replaces them.
 TEST_F(Collada, OrdersTransformsAsGazebo) {
   const auto box_of_node = [&](const std::string& transforms) {
     Document document;
@@ -429,7 +424,6 @@ TEST_F(Collada, PutsAGeometryWhereverItIsInstanced) {
 }
 
 // ---- primitives
-// ---------------------------------------------------------------------------------------------
 
 TEST_F(Collada, ReadsPolygonsStripsAndFans) {
   struct Case {
@@ -437,7 +431,7 @@ TEST_F(Collada, ReadsPolygonsStripsAndFans) {
     std::size_t triangles;
     double area_m2;
   };
-  // The faces in z = 0 and y = 0 have areas of 1 and 1.5, and that in x = 0 one of 3.
+  // The faces in z = 0, y = 0 and x = 0 have areas of 1, 1.5 and 3.
   const std::string v = vertex_input("g");
   for (const Case& given : {
            Case{"<polygons count=\"2\">" + v + "<p>0 2 1</p><p>0 1 3</p></polygons>", 2, 2.5},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that are known in closed form, finely divided, against what they are.
+// Finely divided surfaces against their closed forms.
 #include "renderer/scene/coplanar_facets.hpp"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ double area_of(const TriangleMesh& mesh) {
   return area;
 }
 
-/// Positive where facets are counter-clockwise seen from outside.
+/// Positive if facets are counter-clockwise seen from outside.
 double volume_of(const TriangleMesh& mesh) {
   double volume = 0.0;
   for (const Facet& facet : facets_of(mesh)) {
@@ -77,7 +77,7 @@ std::set<Place> corners_of(const TriangleMesh& mesh) {
   return corners;
 }
 
-/// Sides of facets, each from corner to corner in the direction in which it is gone along, and how often.
+/// Directed sides of facets, from corner to corner, and their counts.
 std::map<std::pair<Place, Place>, int> sides_of(const TriangleMesh& mesh) {
   std::map<std::pair<Place, Place>, int> sides;
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) {
@@ -96,7 +96,7 @@ bool is_closed(const TriangleMesh& mesh) {
   });
 }
 
-/// Sides that one facet only has, from corner to corner.
+/// Sides that only one facet has, from corner to corner.
 std::vector<std::pair<glm::dvec3, glm::dvec3>> border_of(const TriangleMesh& mesh) {
   const auto sides = sides_of(mesh);
   std::vector<std::pair<glm::dvec3, glm::dvec3>> border;
@@ -118,7 +118,7 @@ double border_length(const TriangleMesh& mesh) {
   return length;
 }
 
-/// Facets as places, whatever their order and whichever corner comes first.
+/// Facets as places, independent of their order and of their first corner.
 std::multiset<std::array<Place, 3>> places_of_facets(const TriangleMesh& mesh) {
   std::multiset<std::array<Place, 3>> facets;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -132,7 +132,7 @@ std::multiset<std::array<Place, 3>> places_of_facets(const TriangleMesh& mesh) {
   return facets;
 }
 
-/// Of a grid of cells of two facets each: places[i][j].
+/// A grid of cells of two facets each, with corners places[i][j].
 TriangleMesh grid_of(const std::vector<std::vector<glm::vec3>>& places) {
   TriangleMesh mesh;
   const auto columns = static_cast<std::uint32_t>(places.front().size());
@@ -223,8 +223,8 @@ TriangleMesh tube(int around, int along) {
   return mesh;
 }
 
-/// Strips of 1 m along y, each turned by `step_rad` from the last: an arc of a circle above x, to within
-/// floats.
+/// Strips of 1 m along y, each turned by `step_rad` from the last: an arc of a circle above x, to the
+/// precision of floats.
 TriangleMesh bent_sheet(int strips, double strip_m, double step_rad, int cells_along) {
   std::vector<std::vector<glm::vec3>> places;
   double x = 0.0, z = 0.0;
@@ -258,7 +258,7 @@ TriangleMesh moved(TriangleMesh mesh) {
   return mesh;
 }
 
-/// What holds for any merged mesh: its corners are those of the original, its facets have areas and normals.
+/// Expects that a merged mesh has corners of the original only, facets with areas, and no vertex attributes.
 void expect_sound(const TriangleMesh& merged, const TriangleMesh& original) {
   const std::set<Place> before = corners_of(original), after = corners_of(merged);
   EXPECT_TRUE(std::includes(before.begin(), before.end(), after.begin(), after.end()));
@@ -311,7 +311,7 @@ void expect_box(const TriangleMesh& divided) {
   EXPECT_NEAR(area_of(merged), 22.0, 1e-4);
 }
 
-/// The same places, but that some zeros have a sign.
+/// The same places, some zeros with a sign.
 TriangleMesh with_negative_zeros(TriangleMesh mesh) {
   for (std::size_t i = 0; i < mesh.positions.size(); i += 2) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -344,7 +344,7 @@ TEST(CoplanarFacets, WindingIsKept) {
 void expect_plate_with_hole(const TriangleMesh& divided) {
   const TriangleMesh merged = merge_coplanar_facets(divided);
   expect_sound(merged, divided);
-  // Eight corners; of an annulus there are as many triangles as corners.
+  // An annulus has as many triangles as corners: eight.
   EXPECT_EQ(corners_of(merged).size(), 8u);
   EXPECT_EQ(merged.triangle_count(), 8u);
   EXPECT_NEAR(area_of(merged), 12.0, 1e-4);
@@ -388,7 +388,7 @@ TEST(CoplanarFacets, BallStaysAsItIs) {
   }
 }
 
-// Strips so narrow that it is their angle alone that tells them apart, and wide ones.
+// Strips so narrow that only their angle distinguishes them, and wide ones.
 TEST(CoplanarFacets, BendsAreKept) {
   for (const double strip_m : {0.02, 0.25}) {
     const TriangleMesh narrow = bent_sheet(100, strip_m, 3e-4, 1);
@@ -403,8 +403,8 @@ TEST(CoplanarFacets, BendsAreKept) {
   }
 }
 
-/// Expects that at its corners no facet is turned against the arc of bent_sheet() by more than it may: those
-/// it stands for lie within flat_rad of the plane of a facet, as it does itself, and the arc turns by half a
+/// Expects that no facet is turned at its corners against the arc of bent_sheet() by more than allowed. A
+/// facet and those it replaces lie within flat_rad of the plane of one facet, and the arc turns by half a
 /// step within each. The rest is rounding.
 void expect_along_arc(const TriangleMesh& merged, double strip_m, double step_rad) {
   for (const Facet& facet : facets_of(merged)) {
@@ -418,7 +418,7 @@ void expect_along_arc(const TriangleMesh& merged, double strip_m, double step_ra
   }
 }
 
-// Each facet differs from the next by less than what counts as flat, but the sheet is not flat at all.
+// Each facet differs from the next by less than flat_rad, but the sheet is curved.
 TEST(CoplanarFacets, GentleCurvesAreKept) {
   constexpr double step_rad = 0.8e-4;
   constexpr int strips = 1250;
@@ -441,8 +441,8 @@ double distance_to_side(const glm::dvec3& p, const glm::dvec3& from, const glm::
   return glm::length(p - from - whole * way);
 }
 
-/// How far the border of a sector of a disc moves, where each of `steps` sides of its arc is `growth` times
-/// as long as the last one.
+/// Largest shift, m, of the border of a sector of a disc. Each of the `steps` sides of its arc is `growth`
+/// times as long as the last one.
 double border_shift(double radius_m, double arc_rad, int steps, double growth) {
   const double whole = growth == 1.0 ? steps : (std::pow(growth, steps) - 1) / (growth - 1);
   TriangleMesh sector;
@@ -470,8 +470,8 @@ double border_shift(double radius_m, double arc_rad, int steps, double growth) {
   return worst;
 }
 
-/// `flat_m` and the rounding of the positions; a third of it more, as of every second vertex that is taken
-/// out the side it leaves is taken out too, and a side half as long deviates by a quarter.
+/// `flat_m` and the rounding of the positions, times 4/3: the side that a removed vertex leaves may be
+/// removed too, and a side half as long deviates by a quarter.
 double allowed_shift(double radius_m) {
   return 4.0 / 3 * (flat_m + radius_m * 0x1p-23);
 }
@@ -482,8 +482,8 @@ TEST(CoplanarFacets, CurvedBordersAreKept) {
   EXPECT_LT(border_shift(30, 0.2, 1000, 1.0), allowed_shift(30));
 }
 
-// Each vertex is compared with its neighbours of the time, not with those that went before: the border moves
-// by 0.2 mm.
+// If each vertex were compared with its present neighbours only, not with those removed before, the border
+// would move by 0.2 mm.
 TEST(CoplanarFacets, CurvedBordersOfUnevenStepsAreKept) {
   EXPECT_LT(border_shift(30, 0.2, 800, 1 / 1.005), allowed_shift(30));
 }
@@ -542,8 +542,8 @@ TEST(CoplanarFacets, NothingIsMadeOfNothing) {
   EXPECT_EQ(places_of_facets(merge_coplanar_facets(points)), places_of_facets(points));
 }
 
-// Their planes are those of one facet each. Corners 30 m away are rounded by 1e-6 m: over the plate that
-// tilts the plane of one cell by 1e-6 m for every cell, and by no more than `flat_m` for 16 of them.
+// The planes compared are those of one facet each. Corners 30 m away are rounded by 1e-6 m. Over the plate
+// this tilts the plane of one cell by 1e-6 m for every cell, and by no more than `flat_m` for 16 of them.
 TEST(CoplanarFacets, PlatesInAnyAttitudeMergeToAFewTriangles) {
   for (const int cells : {2, 4, 8, 16, 32, 64}) {
     const TriangleMesh plate = moved(divided_quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, cells));

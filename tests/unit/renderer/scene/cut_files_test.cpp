@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of all formats that are cut short, as by a full disk or a download that broke off. The whole files
-// are written by the libraries of the formats, and read back first.
+// Files of all formats, cut short as by a full disk or a broken download. The libraries of the formats write
+// the whole files, which the tests read back first.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,7 +43,7 @@ std::array<unsigned int, 3> corners(unsigned int triangle) {
   return triangle % 2 == 0 ? std::array{a, a + 1, a + side + 1} : std::array{a, a + side + 1, a + side};
 }
 
-/// A scene of Assimp owns what it points to.
+/// An Assimp scene owns the objects that it points to.
 std::unique_ptr<aiScene> assimp_grid() {
   auto scene = std::make_unique<aiScene>();
   scene->mRootNode = new aiNode("grid");
@@ -171,7 +171,7 @@ TEST(CutBuffer, IsRefused) {
   EXPECT_THROW(load_mesh_file(request), WorldError);
 }
 
-// An OBJ has no count; what its faces name must be there.
+// An OBJ has no count, but the vertices that its faces name must exist.
 TEST(CutObj, IsRefusedIfAFaceNamesAVertexThatIsNotThere) {
   const test::TempFolder folder;
   MeshFileRequest request;
@@ -179,7 +179,7 @@ TEST(CutObj, IsRefusedIfAFaceNamesAVertexThatIsNotThere) {
   EXPECT_THROW(load_mesh_file(request), WorldError);
 }
 
-// OpenSceneGraph reads what is there of these.
+// OpenSceneGraph reads the remaining part of such files.
 TEST(CutCollada, IsRefusedIfNumbersAreMissing) {
   const test::TempFolder folder;
   const std::string whole =
@@ -251,7 +251,7 @@ TEST(CutTextPnm, IsRefused) {
 
 class CutElevations : public testing::TestWithParam<int> {};
 
-// Elevations around 100 m: what is missing must not become the bed.
+// Elevations around 100 m: missing data must not become the bed.
 TEST_P(CutElevations, AreRefused) {
   const test::TempFolder folder;
   const std::string file = folder.path() / "bed.tif";

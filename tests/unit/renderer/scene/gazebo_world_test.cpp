@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What worlds written for Gazebo have beside shapes: places of sonars, and much that no sonar hears.
+// Worlds written for Gazebo hold more than shapes: places of sonars, and elements without an echo.
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ void expect_at(const glm::dvec3& actual, const glm::dvec3& expected) {
 }
 
 // An arm 1 m ahead of the origin of the vehicle, turned 90 degrees to port, with a wrist half a metre out;
-// the sonar is 0.2 m above the wrist and looks 0.3 rad down. Where the vehicle stands in the world does not
+// the sonar is 0.2 m above the wrist and points 0.3 rad down. The vehicle's pose in the world does not
 // matter.
 TEST(Sonars, HaveTheirPlaceInTheModelThatStandsInTheWorld) {
   const World world = loaded(R"(<model name="rov"><pose>10 20 -3 0 0 2</pose>
@@ -73,8 +73,7 @@ TEST(Sonars, FollowTheFrameGraph) {
   expect_at(world.sonars[0].T_body_sonar.position_m, {2, 0, -1});
 }
 
-/// As vehicles usually come: a model of its own, in an older version of SDF, under the name that the world
-/// gives it.
+/// A usual vehicle: a model of its own, in an older version of SDF, under the name that the world gives it.
 TEST(Sonars, ComeWithIncludedModels) {
   const test::TempFolder folder;
   folder.write(

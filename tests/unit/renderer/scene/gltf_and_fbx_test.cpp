@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files that Assimp reads, written here to the byte by the formats' own rules (glTF 2.0
+// Mesh files that Assimp reads, written here byte by byte by the formats' own rules (glTF 2.0
 // specification 2.0.1, sections 3 and 4; ASCII FBX 7.3): the tetrahedron (0 0 0) (1 0 0) (0 2 0) (0 0 3) of
 // volume 1.
 #include <cstdint>
@@ -24,7 +24,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return bytes;
 }
 
-/// Positions, then indices. The formats are little endian, and so are the machines that this is built for.
+/// Positions, then indices. The formats are little endian, and so are the machines that run sonard.
 std::string buffer() {
   return bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3}) +
          bytes_of<std::uint16_t>({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
@@ -51,8 +51,7 @@ std::string glb(std::string text) {
          "JSON" + text + bytes_of<std::uint32_t>({size(binary.size())}) + std::string("BIN\0", 4) + binary;
 }
 
-/// In units of `unit_cm` centimetres with y up, as the format has it by default: x to the right, z to the
-/// front.
+/// In units of `unit_cm` centimetres with y up, the default of the format: x to the right, z to the front.
 std::string fbx(double unit_cm) {
   return fmt::format(R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {{

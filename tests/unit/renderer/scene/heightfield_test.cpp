@@ -36,7 +36,7 @@ TEST(ElevationMap, ReadsElevationsOfTiffs) {
               ElementsAre(39321, 52428, 65535, 0, 13107, 26214));
 }
 
-// GDAL opens these by what is in them: they name files and servers.
+// GDAL recognises these by their content; they name files and servers.
 TEST(ElevationMap, IsATiffAndNoRecipeOfGdal) {
   const test::TempFolder folder;
   const std::string source = (data / "elevation_f32.tif").string();

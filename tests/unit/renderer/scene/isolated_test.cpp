@@ -76,7 +76,7 @@ TEST(Isolated, LeavesThisProcessAlone) {
   EXPECT_EQ(value, 1);
 }
 
-/// What a child that may read `folder` says.
+/// Result of `work` in a child process that may read `folder` only.
 std::string said_in_jail(const std::filesystem::path& folder, const std::function<std::string()>& work) {
   ReaderJail jail;
   jail.readable = {folder};

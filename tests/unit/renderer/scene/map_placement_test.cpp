@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Georeferenced maps in worlds. The files are written here tag by tag after TIFF 6.0 and OGC GeoTIFF 1.1;
-// where they lie is worked out by hand: on the equator at the middle of a zone of UTM, where a metre of the
-// grid is 1 / 0.9996 m.
+// Georeferenced maps in worlds. The tests write files tag by tag after TIFF 6.0 and OGC GeoTIFF 1.1. Places
+// are computed by hand: on the equator at the middle of a zone of UTM, where a metre of the grid is 1 /
+// 0.9996 m.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,12 +20,12 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// What the files of these tests have in common: `side_px` pixels a side, of float.
+/// A TIFF of `side_px` by `side_px` pixels of float.
 struct TiffSpec {
   int side_px = 11;
   std::vector<float> elevation_m;  ///< from the upper left, row by row
   std::vector<double> scale{10, 10, 0};
-  std::vector<double> tie{0, 0, 0, 500045, 105, 0};  ///< raster 0, 0 is there
+  std::vector<double> tie{0, 0, 0, 500045, 105, 0};  ///< place of raster 0, 0
   std::vector<std::uint16_t> keys;                   ///< id, value, id, value, ...
   std::string no_data;  ///< of more than 3 characters: shorter values would lie in the directory
 };

@@ -29,8 +29,8 @@ std::string material_error(const MaterialRequest& request) {
   return "";
 }
 
-// The table of docs/physics.md 2.4, where R of rock and gravel and of wood is a span: the ends of the first,
-// the middle of the second. Its sigma of rock and gravel is "> 5".
+// The table of docs/physics.md 2.4. Its R of rock and gravel is a span with gravel and rock at its ends, its
+// R of wood a span with this value in the middle. Its sigma of rock and gravel is "> 5".
 TEST(MaterialTable, HoldsTheBackscatterTable) {
   struct Row {
     std::string name;

@@ -111,7 +111,7 @@ TEST(MeshFile, RefusesAColladaUnitThatIsNoNumber) {
 }
 
 TEST(MeshFile, InventsNoNormals) {
-  // Smooth normals over the edges of a box would make it sound like a ball.
+  // Smooth normals over the edges of a box would give it the echo of a ball.
   EXPECT_TRUE(load_mesh_file(request_for(worlds_data / "tetrahedron.ply")).parts.at(0).mesh->normals.empty());
   EXPECT_TRUE(load_mesh_file(request_for(worlds_data / "tetrahedron.stl")).parts.at(0).mesh->normals.empty());
   for (const MeshFilePart& part : load_mesh_file(request_for(worlds_data / "tetrahedron.obj")).parts) {
@@ -205,7 +205,7 @@ TEST(MeshFile, MakesTangentsForANormalMap) {
   for (const glm::vec4& tangent : mesh.tangents) {
     EXPECT_NEAR(glm::distance(tangent, glm::vec4(1, 0, 0, 1)), 0.0, 1e-6);
   }
-  // A map only refines: without texture coordinates the mesh is taken without it.
+  // Without texture coordinates the mesh is used without its normal map.
   request.file = worlds_data / "tetrahedron.obj";
   const MeshFile bare = load_mesh_file(request);
   EXPECT_EQ(triangle_count(bare), 4U);
@@ -262,7 +262,7 @@ TEST(MeshFile, NamesOnlyFilesOfItsWorld) {
   EXPECT_THAT(read("../materials/hull.mtl"), HasSubstr("it names"));
   request.folders = {world.path()};
   EXPECT_EQ(read("../materials/hull.mtl"), "");
-  EXPECT_EQ(read("/home/somebody/else/hull.mtl"), "");  // as an exporter elsewhere wrote it
+  EXPECT_EQ(read("/home/somebody/else/hull.mtl"), "");  // as an exporter on another machine writes it
 }
 
 TEST(MeshFile, NamesOnlyRegularFiles) {
@@ -334,8 +334,7 @@ TEST(MeshFile, RefusesATruncatedBinaryStl) {
               HasSubstr("cut.stl: the file is cut short"));
 }
 
-// The plugins crash, loop or stop half way on some of these. Whatever they do, it ends as an error or a valid
-// mesh.
+// The plugins crash, loop or stop half way on some of these. The result must be an error or a valid mesh.
 TEST(MeshFile, SurvivesDamagedFiles) {
   const test::TempFolder folder;
   int refused = 0;

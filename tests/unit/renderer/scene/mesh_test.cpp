@@ -13,7 +13,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-/// A right triangle of area 1/2 in the plane z = 0, and room for bad company.
+/// A right triangle of area 1/2 in the plane z = 0.
 TriangleMesh one_triangle() {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};

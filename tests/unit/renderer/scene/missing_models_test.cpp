@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What has no echo does not stop a world, and what is missing takes only itself along.
+// Models without an echo do not stop a world, and a missing file removes only its own shape or model.
 #include <string>
 #include <utility>
 
@@ -90,7 +90,7 @@ TEST_F(WithoutModels, SkippingReachesIntoModelsInModels) {
   EXPECT_EQ(world.triangle_count(), 12U);
 }
 
-// The include that is not there has a pose, and a crate stands by it: at (10, 2, 0) + (0, 0, 1).
+// The missing include has a pose, and a crate is placed relative to it: at (10, 2, 0) + (0, 0, 1).
 TEST_F(WithoutModels, WhatStandsByASkippedIncludeHasItsPlace) {
   const World world = load(
       "<include><uri>model://buoy</uri><pose>10 2 0 0 0 0</pose></include>"
@@ -127,7 +127,7 @@ TEST_F(WithoutModels, WhatStandsByAPartOfASkippedIncludeIsSkipped) {
   }
 }
 
-/// As a submodule of git that was not fetched leaves it.
+/// A git submodule that was not fetched leaves such a folder.
 TEST_F(WithoutModels, AFolderWithoutAModelIsNotThere) {
   folder_.write("models/buoy/README", "");
   const World world =

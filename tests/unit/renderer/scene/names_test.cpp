@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that hold "::", places that complaints name, prefixes of XML, and warnings that come once for each
-// kind.
+// Names that hold "::", places in error messages, prefixes of XML, and one warning for each kind.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -60,7 +59,7 @@ TEST(FlattenedNames, AreOneName) {
   EXPECT_EQ(part_place(world, 0), glm::dvec3(7, 1, 0));
 }
 
-// The model "a::b" holds "c", and "a" holds "b::d" and "x::y", which is nested in a name of its own.
+// The model "a::b" holds "c". The model "a" holds "b::d" and the model "x::y".
 TEST(FlattenedNames, MayHoldModels) {
   const World world = load_text(
       "<model name=\"rig\"><model name=\"a::b\"><pose>10 0 0 0 0 0</pose><link name=\"c\"><pose>1 0 0 0 0 "
@@ -75,8 +74,8 @@ TEST(FlattenedNames, MayHoldModels) {
   EXPECT_EQ(part_place(world, 2), glm::dvec3(20, 0, 3));
 }
 
-// The whole name comes before its parts. gz sdf -p writes "arm::__model__" for the frame of a model that it
-// flattens.
+// A whole name takes precedence over its parts. gz sdf -p writes "arm::__model__" for the frame of a model
+// that it flattens.
 TEST(FlattenedNames, ComeBeforeNestedOnes) {
   const World world = load_text(
       "<model name=\"rig\"><frame name=\"arm::__model__\"><pose>4 0 0 0 0 0</pose></frame><link "
@@ -304,7 +303,7 @@ bool is_one_printable_line(const std::string& line) {
 
 const std::string forged = "m&#27;[2J&#10;2026-11-28 12:00:00 [error] forged&#155;31m";
 
-// A name of a body goes into the log, the page and the status.
+// A body's name appears in the log, on the page and in the status.
 TEST(NamesOfAWorld, HoldNoLineOfTheirOwnAndSteerNoTerminal) {
   const World world = load_text("<model name=\"" + forged + "\"><link name=\"l\">" + small_box +
                                 "</link></model>\n<light name=\"" + forged + "\"/>");

@@ -28,7 +28,7 @@ template <typename T>
 std::string big_endian(T value) {
   std::string bytes;
   const auto number = std::bit_cast<std::array<unsigned char, sizeof value>>(value);
-  bytes.assign(number.rbegin(), number.rend());  // of a machine that is little endian
+  bytes.assign(number.rbegin(), number.rend());  // on a little-endian machine
   return bytes;
 }
 

@@ -18,7 +18,7 @@ using test::area_m2;
 using test::bounds;
 using test::volume_m3;
 
-/// Attribute arrays complete, normals unit and on the side of the winding, nothing to repair.
+/// Expects complete attribute arrays, unit normals on the side of the winding, and nothing to repair.
 void expect_sound(const TriangleMesh& mesh) {
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
   ASSERT_EQ(mesh.texcoords.size(), mesh.positions.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds as the public has them (tests/data/public_worlds) load, and their bodies are where the numbers in
-// their files put them. Boxes were worked out by hand from sizes and poses there and in make_meshes.py.
+// Public worlds (tests/data/public_worlds) load, and their bodies are at the places in their files. Boxes are
+// computed by hand from sizes and poses there and in make_meshes.py.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -36,7 +36,7 @@ test::Bounds box_of(const Body& body) {
   return box;
 }
 
-/// The model turns the mesh by a <pose>, as it has to in Gazebo.
+/// The model turns the mesh by a <pose>, as Gazebo requires.
 const auto tells_of_amphora = HasSubstr("<up_axis> Y_UP is not applied, as in Gazebo, to amphora.dae");
 
 class PublicWorlds : public testing::Test {
@@ -63,7 +63,7 @@ class PublicWorlds : public testing::Test {
   }
 };
 
-// The amphora is 1.2 m high and 0.36 m around, in inches with y up in its file.
+// The amphora is 1.2 m high with a radius of 0.36 m, in inches with y up in its file.
 TEST_F(PublicWorlds, GazeboClassicOfUuvSimulator) {
   const World world = load("uuv_classic.world");
   EXPECT_THAT(world.warnings, ElementsAre(tells_of_amphora));
@@ -81,7 +81,7 @@ TEST_F(PublicWorlds, DaveWithFuelIncludesOfWhichOneIsNotThere) {
   expect_box(world, "jar", {6.64, -1.86, -5.75}, {7.36, -1.14, -4.55});
 }
 
-// Blocks of 2 x 2 x 0.6 m, whose sides are 0.02 m apart, in a dock that is turned by 0.3 rad.
+// Blocks of 2 x 2 x 0.6 m with gaps of 0.02 m, in a dock that is turned by 0.3 rad.
 TEST_F(PublicWorlds, VrxWithADockOfBlocksThatHangOnEachOther) {
   const World world = load("vrx_regatta.sdf");
   EXPECT_THAT(world.warnings, IsEmpty());
@@ -120,8 +120,8 @@ TEST_F(PublicWorlds, SdfOneTwelve) {
   expect_box(world, "ellipsoid", {7.5, 1.5, -4.4}, {8.5, 4.5, -3.6});  // a quarter turn
 }
 
-// Turned by 90 degrees as a whole: what is along x in the pier is along y in the world. The jar is 4 m behind
-// the crane, which stands 2 m ahead on a deck 0.5 m up.
+// The whole pier is turned by 90 degrees: its x axis is along y in the world. The jar is 4 m behind the
+// crane, which stands 2 m ahead on a deck 0.5 m up.
 TEST_F(PublicWorlds, NestedAndMergedIncludes) {
   const World world = load("nested_includes.sdf");
   EXPECT_THAT(world.warnings, ElementsAre(tells_of_amphora));
@@ -146,7 +146,7 @@ TEST_F(PublicWorlds, LraUvWithADeepTileThatIsNotThere) {
   expect_box(world, "mooring", {8.75, -2.25, -30}, {9.25, -1.75, -24});
 }
 
-/// Worlds whose models are found by what the environment names, as their readme files ask for.
+/// Worlds whose models are found through environment variables, as their readme files require.
 class FoundByTheEnvironment : public PublicWorlds {
  protected:
   FoundByTheEnvironment() {
@@ -211,8 +211,8 @@ TEST_F(FoundByTheEnvironment, DaveGliderOfFlattenedNames) {
   }
 }
 
-// The quay is 20 m along y and twice 5 m high. The state has moved the anchor, turned it by 90 degrees, and
-// made it 2 m long and half a metre wide.
+// The quay is 20 m along y and, scaled by 2, 10 m high. The state has moved the anchor, turned it by 90
+// degrees, and made it 2 m long and half a metre wide.
 TEST_F(FoundByTheEnvironment, UuvLakeThatGazeboSaved) {
   const World world = load("uuv_lake.world");
   EXPECT_THAT(world.warnings, IsEmpty());

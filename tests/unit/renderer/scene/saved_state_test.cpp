@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds that Gazebo Classic saved: bodies stand where <state> says, as they do after Gazebo has loaded them.
-// Its rules are in renderer/scene/sdf_state.hpp; places and sizes were worked out by hand.
+// Worlds that Gazebo Classic saved: bodies have the poses of <state>, as after Gazebo has loaded them. The
+// rules are in renderer/scene/sdf_state.hpp; places and sizes are computed by hand.
 #include <cmath>
 #include <string>
 
@@ -47,7 +47,7 @@ glm::dvec3 size_of(const World& world, std::size_t part) {
 }
 
 // The file has the cart at (1, 0, 0), with a wheel 0.5 m below. It has rolled to (4, 2, 0) and turned to port
-// by a quarter; the wheel hangs 0.2 m ahead (which is along y now) of where it was.
+// by a quarter; the wheel is 0.2 m ahead (now along y) of its place.
 TEST(SavedWorld, HasModelsAndLinksWhereTheyWereSaved) {
   const World world = loaded_state(
       "<model name='cart'><pose>1 0 0 0 -0 0</pose><link name='body'>" + saved_box +
@@ -66,7 +66,7 @@ TEST(SavedWorld, HasModelsAndLinksWhereTheyWereSaved) {
   EXPECT_THAT(world.left_out, ElementsAre("poses of models for which <state> has others (1): cart"));
 }
 
-// A link that the state does not list moves with its model; so does a nested model. One that it lists is in
+// A link or nested model that the state does not list moves with its model. The pose of a listed one is in
 // the world.
 TEST(SavedWorld, HasNestedModelsWhereTheyWereSaved) {
   const std::string rig =
@@ -95,8 +95,8 @@ TEST(SavedWorld, HasFlattenedLinksWhereTheyWereSaved) {
   expect_place(in_world(world, 0, 0), {2, 3, 4});
 }
 
-// Sizes alone, in the axes of each shape: the radius of a sphere by the greatest factor, that of a cylinder
-// by the greater of x and y. Distances in the model stay.
+// The scale changes sizes only, in the axes of each shape: the radius of a sphere by the greatest factor, the
+// radius of a cylinder by the greater of x and y. Distances in the model stay.
 TEST(SavedWorld, HasShapesInTheirSavedScale) {
   const World world = loaded_state(
       "<model name='m'><link name='l'><pose>5 0 0 0 0 0</pose>" + saved_box +

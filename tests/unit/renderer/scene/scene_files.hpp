@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files for one test, gone after it; and what a mesh measures.
+// Temporary files for one test, and measures of meshes.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +30,7 @@ inline glm::dvec3 corner(const TriangleMesh& mesh, std::size_t index) {
   return glm::dvec3(mesh.positions[mesh.indices[index]]);
 }
 
-/// Twice the area long, by the right-hand rule.
+/// Normal of a triangle by the right-hand rule, twice its area long.
 inline glm::dvec3 area_normal(const TriangleMesh& mesh, std::size_t triangle) {
   const glm::dvec3 a = corner(mesh, 3 * triangle);
   return glm::cross(corner(mesh, 3 * triangle + 1) - a, corner(mesh, 3 * triangle + 2) - a);
@@ -44,7 +44,7 @@ inline double area_m2(const TriangleMesh& mesh) {
   return sum;
 }
 
-/// By the divergence theorem: positive when a closed surface is wound outward.
+/// Volume by the divergence theorem; positive if a closed surface is wound outward.
 inline double volume_m3(const TriangleMesh& mesh) {
   double sum = 0.0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {

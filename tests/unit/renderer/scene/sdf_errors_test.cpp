@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user gets to read when a world is wrong: always the file, the line and the element.
+// Error messages of wrong worlds: each names the file, the line and the element.
 #include <cstdlib>
 #include <filesystem>
 
@@ -151,7 +151,7 @@ const std::vector<Case> cases{
 INSTANTIATE_TEST_SUITE_P(Cases, BadWorld, testing::ValuesIn(cases),
                          [](const testing::TestParamInfo<Case>& test) { return test.param.name; });
 
-/// All that is wrong with a world, a line each.
+/// All errors of a world, a line each.
 std::vector<std::string> all_errors(const std::filesystem::path& file) {
   try {
     load_world(file, {});
@@ -163,7 +163,7 @@ std::vector<std::string> all_errors(const std::filesystem::path& file) {
   return {};
 }
 
-/// A world from somebody else may name any file: those outside of its folders are not even looked for.
+/// A world from somebody else may name any file. sonard does not even look for files outside its folders.
 TEST(BadWorldFile, LeadsOutOfItsFolders) {
   const test::TempFolder folder;
   folder.write("secret/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -185,7 +185,7 @@ TEST(BadWorldFile, LeadsOutOfItsFolders) {
   }
 }
 
-/// A model's manifest names its file, as a world names its own.
+/// A model's manifest names a file too.
 TEST(BadWorldFile, LeadsOutOfItsFoldersByAManifest) {
   const test::TempFolder folder;
   folder.write("secret/model.sdf", "<sdf version=\"1.9\"><model name=\"s\"/></sdf>");

@@ -57,7 +57,7 @@ TEST_F(Harbour, HasItsBodiesAndItsWaterSurface) {
   EXPECT_THAT(world_.warnings, IsEmpty());
 }
 
-// The crane stands at (1 2 3), turned 90 degrees to the left; poses inside it were worked out by hand.
+// The crane stands at (1 2 3), turned 90 degrees to the left; poses inside it are computed by hand.
 TEST_F(Harbour, ResolvesPosesOfLinksAndVisuals) {
   const Body& crane = *world_.find_body("crane_1");
   ASSERT_EQ(crane.parts.size(), 4U);
@@ -154,7 +154,7 @@ TEST(SdfWorld, TakesTheNewestFileOfAManifest) {
             12U);
 }
 
-/// One reading for 1.10 to 1.12, and what of them has no echo is left out.
+/// Versions 1.10 to 1.12 are read alike, without their elements that have no echo.
 TEST(SdfWorld, ReadsNewVersions) {
   for (const char* version : {"1.10", "1.11", "1.12"}) {
     const test::TempFolder folder;
@@ -219,7 +219,7 @@ TEST(SdfWorld, MergesWhatIsIncludedSo) {
   EXPECT_EQ(parts[2].material.name, "steel");
 }
 
-/// The pose of an include is that of the frame that it names, also if the model is merged.
+/// The pose of an include is the pose of the frame that it names, even if the model is merged.
 TEST(SdfWorld, MergesByAPlacementFrame) {
   const test::TempFolder folder;
   folder.write("crane.sdf", "<sdf version=\"1.9\"><model name=\"crane\"><link name=\"l\">" +
@@ -312,7 +312,7 @@ TEST(SdfWorld, TakesTheMaterialOfAnInclude) {
   EXPECT_EQ(world.bodies.at(0).parts.at(0).material.name, "mud");
 }
 
-/// Bodies that look alike share their triangles, so many take little room.
+/// Equal bodies share their triangles, so that many take little memory.
 TEST(SdfWorld, HoldsTenThousandModels) {
   std::string models;
   for (int i = 0; i < 10'000; ++i) {
@@ -352,7 +352,7 @@ TEST(SdfWorld, HasNoMoreTrianglesThanItMay) {
   EXPECT_THAT(error_with_limit(meshes, 7), HasSubstr("w.sdf: the world has more than 7 triangles"));
 }
 
-// 3,000 spheres of 260,608 triangles each, no two alike: to make them would take minutes.
+// 3,000 different spheres of 260,608 triangles each would take minutes to make.
 TEST(SdfWorld, CountsTheTrianglesOfShapesBeforeItMakesThem) {
   std::string spheres;
   for (int i = 0; i < 3000; ++i) {
@@ -479,7 +479,7 @@ TEST(SdfWorld, NamesTheMeshesWhoseUpAxisIsNotApplied) {
   }
 }
 
-// Gazebo draws a shape without a map that it cannot use.
+// Like Gazebo, sonard keeps a shape if it cannot use its map.
 TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
   const test::TempFolder folder;
   std::filesystem::copy_file(shared_worlds / "normal_map.png", folder.path() / "ripples.png");

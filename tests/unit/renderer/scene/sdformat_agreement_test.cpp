@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our reading of SDF against libsdformat's, an implementation of others: names of models, and where each
-// visual is.
+// sonard's reading of SDF against libsdformat, an independent implementation: names of models, and poses of
+// visuals.
 #include <algorithm>
 #include <filesystem>
 #include <string>

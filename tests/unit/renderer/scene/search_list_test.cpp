@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every URI that Gazebo resolves is resolved: bare names, file:// with a relative path, model://, package://,
-// in the folders of the environment. Which folder has what is written by each test; each model has its own
-// number of triangles, so that the wrong one shows: a box has 12, a plane seen from both sides 2.
+// in the folders of the environment. Each test writes its folders. Each model has its own number of
+// triangles, so that a wrong one is found: a box has 12, a triangle seen from both sides 2.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -57,7 +57,7 @@ class SearchList : public testing::Test {
     set_.push_back(variable);
   }
 
-  /// Of a world in the folder "project/worlds".
+  /// Loads a world in the folder "project/worlds".
   World load(const std::string& content, MissingFiles missing = MissingFiles::error) const {
     const auto file = folder_.write(
         "project/worlds/w.sdf", "<sdf version=\"1.9\">\n<world name=\"w\">\n" + content + "\n</world></sdf>");
@@ -108,7 +108,7 @@ TEST_F(SearchList, HoldsWhatGazeboClassicHasDownloaded) {
   EXPECT_EQ(load(include("buoy")).triangle_count(), 12U);
 }
 
-// uuv_simulator has the first form, its folder being in GAZEBO_RESOURCE_PATH; Gazebo's own files have the
+// uuv_simulator uses the first form, with its folder in GAZEBO_RESOURCE_PATH; Gazebo's own files use the
 // others.
 TEST_F(SearchList, HoldsTheMediaOfResources) {
   folder_.write("share/uuv/Media/models/bed.obj", triangle_as_obj);

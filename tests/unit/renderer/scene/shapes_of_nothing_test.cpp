@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes that have no surface, and values that are meant for other sensors: they never stop a world.
+// Shapes without a surface and values for other sensors never stop a world.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 class ShapesOfNothing : public testing::Test {
  protected:
-  /// @param visual what it holds; a ball stands beside it
+  /// @param visual content of the visual; the world also has a ball
   World load(const std::string& visual) const {
     folder_.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     return load_world(
@@ -63,7 +63,7 @@ TEST_F(ShapesOfNothing, AreNoPlates) {
   EXPECT_THAT(world.warnings, IsEmpty());
 }
 
-// It is meant for a laser.
+// <laser_retro> is meant for a laser.
 TEST(LaserRetro, IsNotUsedIfItMeansNothing) {
   const test::TempFolder folder;
   for (const std::string value : {"-1", "bright"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL files, text and binary, with what occurs in public ones. Boxes and counts are worked out by hand.
+// STL files, text and binary, as found in public. Boxes and counts are computed by hand.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -38,7 +38,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// `count` times the triangle of solid(), next to each other along x.
+/// `count` triangles as in solid(), next to each other along x.
 std::string binary(const std::string& header, int count) {
   std::string bytes = header;
   bytes.resize(80, '\0');

@@ -31,7 +31,7 @@ GreyImage rough_picture() {
   return picture;
 }
 
-/// Any level for any tile; sides as their tiles agree on.
+/// Tiles at various levels; each side has the coarser level of its two tiles.
 std::vector<TriangleMesh> meshes_of(const Terrain& terrain, int seed) {
   const auto columns = terrain.columns(), rows = terrain.rows();
   const auto level = [&](int column, int row) {
@@ -65,8 +65,8 @@ bool on_rim(const glm::vec3& a, const glm::vec3& b) {
   return both(a.x, b.x, size_m.x / 2) || both(a.y, b.y, size_m.y / 2);
 }
 
-// A surface has no gap where every edge is shared by two triangles that run along it in opposite directions,
-// to the bit, but for those around it.
+// A surface has no gap if two triangles share each edge, to the bit, and run along it in opposite directions.
+// Edges on the rim have one triangle.
 TEST(Terrain, HasNoGapsBetweenTilesOfAnyLevels) {
   const Terrain terrain(rough_picture(), size_m, false);
   ASSERT_EQ(terrain.tiles().size(), 9U);

@@ -55,7 +55,7 @@ TEST(Tessellation, ShortEnoughTrianglesStayAsTheyAre) {
   EXPECT_EQ(same.indices, bed.indices);
 }
 
-// Every edge is met once in each direction, before and after: nothing gapes, wherever edges were halved.
+// Each edge occurs once in each direction, before and after, so halved edges leave no gap.
 TEST(Tessellation, ClosedSurfaceStaysClosedAndFacesOutwards) {
   TriangleMesh ball;  // an octahedron, stretched so that edges of one triangle differ
   ball.positions = {{9, 0, 0}, {-9, 0, 0}, {0, 2, 0}, {0, -2, 0}, {0, 0, 1}, {0, 0, -1}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ledger itself: its table, its switches, and that configuration and documentation know the same rules.
+// The ledger itself: its table, its switches, and equal rules in configuration and documentation.
 #include "renderer/skip_ledger.hpp"
 
 #include <fstream>

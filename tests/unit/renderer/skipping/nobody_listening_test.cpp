@@ -129,7 +129,7 @@ class NobodyListening : public testing::Test {
     return done();
   }
 
-  /// A ping is asked for and cancelled by a reboot before its turn; then the renderer is free again.
+  /// Requests a ping and cancels it by a reboot before its turn; then frees the renderer.
   void cancel_a_ping() {
     ASSERT_TRUE(run_until([&] { return renderer_->attempts == 1; }));
     command(ping_config);
@@ -140,7 +140,7 @@ class NobodyListening : public testing::Test {
     ASSERT_TRUE(run_until([&] { return other_done_; }));
   }
 
-  /// What a topside sees of the next ping, without the times in its head and tail.
+  /// Lines of the next ping that a topside receives, without head and tail, which hold times.
   std::vector<Bytes> lines_of_next_ping() {
     std::vector<Bytes> lines;
     const auto complete = [&] {
@@ -158,7 +158,7 @@ class NobodyListening : public testing::Test {
     return lines;
   }
 
-  /// With the rule on or off a topside sees the same: the ping that was not cancelled, number 1 from 0.
+  /// With the rule on or off a topside receives only the ping that was not cancelled, number 1 from 0.
   static void expect_second_ping(const std::vector<Bytes>& lines) {
     ASSERT_EQ(lines.size(), 483u);
     for (int line = 0; line < 483; ++line) {

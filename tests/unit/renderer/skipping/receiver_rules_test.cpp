@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules of the receiver: each on against off, same pings, same seeds. What is skipped is counted by hand from
-// the echo below.
+// Rules of the receiver: each on against off, with equal pings and seeds. The expected counts follow from the
+// echo below.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -62,8 +62,7 @@ Outcome two_pings(SkipRule rule, const SkipSwitches& skip, PingRequest request) 
   return outcome;
 }
 
-/// On against off, and against a receiver that skips nothing at all. The rule must have skipped `expected`
-/// times in the second ping.
+/// Compares the rule on with off. The rule must have skipped `expected` times in the second ping.
 void expect_within_bound(SkipRule rule, const PingRequest& request, std::uint64_t expected) {
   ASSERT_EQ(entry_of(rule).bound_unit, entry_of(rule).bound == 1 ? "output code" : "output codes");
   const Outcome on = two_pings(rule, {}, request);
@@ -90,7 +89,7 @@ TEST(ReceiverRules, LinesWithoutEchoGetNoSpeckleInThePaperEither) {
   request.settings.model = Model::paper;
   request.settings.paper.speckle = PaperModel::Speckle::folded_gaussian;
   expect_within_bound(SkipRule::lines_without_echo, request, lines - lines_with_echo);
-  // A floor is heard without an echo too.
+  // A floor is present without an echo too.
   request.settings.paper.speckle_floor = 0.03;
   expect_within_bound(SkipRule::lines_without_echo, request, 0);
 }
@@ -135,7 +134,7 @@ TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
   scanning.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
   // The noise of a single beam is drawn along the range at once.
   expect_within_bound(SkipRule::narrow_aperture, scanning, lines_with_echo);
-  // Twenty beams 6 degrees apart, each one degree wide; of an odd number, so that no vector is full.
+  // 21 beams 5.5 degrees apart, each one degree wide; the odd number leaves one vector that is not full.
   PingRequest sparse = request_of(21, 2.0);
   sparse.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
   expect_within_bound(SkipRule::narrow_aperture, sparse, lines + lines_with_echo);
@@ -152,7 +151,7 @@ TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
   expect_within_bound(SkipRule::long_lines, request, 0);
 }
 
-// nu of 30 at 0.4 m: 20 are exceeded beyond 0.267 m, in the lines 27 to 49 of those with an echo.
+// nu is 30 at 0.4 m and exceeds 20 beyond 0.267 m: in the lines 27 to 49 of those with an echo.
 TEST(ReceiverRules, ManyScatterersAreNotTextured) {
   PingRequest request = request_of(64);
   request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
@@ -162,7 +161,7 @@ TEST(ReceiverRules, ManyScatterersAreNotTextured) {
   EXPECT_EQ(two_pings(SkipRule::many_scatterers, {}, request).skipped, 23u);
   const SkipSwitches off = SkipSwitches{}.turn_off(SkipRule::many_scatterers);
   EXPECT_EQ(two_pings(SkipRule::many_scatterers, off, request).skipped, 0u);
-  // Index of the intensities where the rule holds, of an echo that is the same everywhere.
+  // Scintillation index of an even echo in the lines to which the rule applies.
   WorkerPool workers(2);
   const auto index = [&](const SkipSwitches& skip) {
     Receiver receiver(skip);
@@ -207,7 +206,7 @@ TEST(ReceiverRules, RingDownIsNotFollowedBeyondItsEnd) {
 
 TEST(ReceiverRules, PingsThatAreNotHitAreLeftAlone) {
   PingRequest request = request_of(64);
-  expect_within_bound(SkipRule::no_interference, request, 0);  // there is none to be hit by
+  expect_within_bound(SkipRule::no_interference, request, 0);  // there is no interference
   request.settings.physical.interference.probability = 1e-12;
   expect_within_bound(SkipRule::no_interference, request, lines);
 }

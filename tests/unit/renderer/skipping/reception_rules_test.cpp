@@ -22,8 +22,7 @@ SonarSettings settings_of(std::vector<double> edges_rad) {
   return settings;
 }
 
-/// Nothing in the first lines, then points here and there, then what fills the fan evenly within half a
-/// percent.
+/// Empty lines, then scattered points, then an echo that fills the fan evenly within half a percent.
 EchoImage echo_of(const Aperture& aperture) {
   const int beams = aperture.beam_count();
   EchoImage echo{
@@ -54,7 +53,7 @@ Reception receive(SkipRule rule, const SkipSwitches& skip, const SonarSettings& 
   for (int ping = 0; ping < 2; ++ping) {
     SkipCounts skipped;
     reception.prepare(settings, 1, 0, skip, skipped);
-    // With or without the pattern the same is seen: all of a beam in its middle.
+    // With or without the pattern, the engine samples the same fine beams.
     const SonarSettings fine = PointSpread::sampled(settings);
     const EchoImage seen = echo_of(fine.aperture);
     if (reception.has_pattern()) {
@@ -101,7 +100,7 @@ TEST(ReceptionRules, BeamsFarWiderThanTheArraysStaySeparate) {
   SonarSettings settings = settings_of(equal_angle_edges(3, 60 * degree));
   settings.aperture.receive_beamwidth_rad = 0.1 * degree;
   expect_within_bound(SkipRule::separate_beams, settings, 1);
-  settings.aperture.fine_beams = 3;  // of which the outer ones are not heard
+  settings.aperture.fine_beams = 3;  // the outer ones contribute nothing
   expect_within_bound(SkipRule::separate_beams, settings, 0);
   expect_within_bound(SkipRule::separate_beams, gemini(), 0);
 }
@@ -126,7 +125,7 @@ TEST(ReceptionRules, APulseFarShorterThanALineIsAPoint) {
   settings.physical.pulse = PhysicalModel::Pulse::tone;
   settings.physical.range_cell_m = settings.range.step_m / 51;
   expect_within_bound(SkipRule::short_pulse, settings, 1);
-  // Two cells to a line are not enough: an eighth of a tone and a fifth of a chirp are heard outside.
+  // Two cells to a line are not enough: an eighth of a tone and a fifth of a chirp fall outside.
   settings.physical.range_cell_m = settings.range.step_m / 2;
   expect_within_bound(SkipRule::short_pulse, settings, 0);
   settings.physical.pulse = PhysicalModel::Pulse::chirp;

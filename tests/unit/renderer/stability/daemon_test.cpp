@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// S11, S15, S18 and S20 of docs/physics.md 4.3: what wears out, runs late or gets lost in a daemon that
-// serves for months.
+// S11, S15, S18 and S20 of docs/stability.md: counters, times, warnings, a lost context and a slow renderer
+// in a daemon that serves for months.
 #include <unistd.h>
 #include <algorithm>
 
@@ -37,7 +37,7 @@ PingImage blank_image(const PingJob& job) {
   return image;
 }
 
-// More pings than 16 bits count. The number of a job goes on; what the wire carries of it wraps, at 256.
+// More pings than 16 bits count. A job's number goes on; its number on the wire wraps at 256.
 TEST(LongRun, S11_PingNumbersWrapOnTheWireOnly) {
   constexpr std::uint64_t pings = 70'000;
   gemini::DeviceConfig config = gemini::example_config();
@@ -69,8 +69,8 @@ TEST(LongRun, S11_PingNumbersWrapOnTheWireOnly) {
   EXPECT_GE(heads + 1, jobs);
 }
 
-// 2^31 ms are 25 days, 2^32 ms 50, and 2^32 us an hour and a bit: nothing happens at any of them. Float
-// seconds would by then step in milliseconds.
+// 2^31 ms are 25 days, 2^32 ms 50, and 2^32 us 72 minutes: times stay exact across all of them. By then
+// seconds in float would step in milliseconds.
 TEST(LongRun, S11_TimesBeyondTwoToTheThirtyOneMilliseconds) {
   gemini::DeviceConfig config = gemini::example_config();
   config.status_period = 60s;
@@ -100,8 +100,8 @@ TEST(LongRun, S11_TimesBeyondTwoToTheThirtyOneMilliseconds) {
   }
 }
 
-// A year on the publisher's clock, in nanoseconds and double metres: interpolated as at the start. Then the
-// clock is set back by the year, as when a simulation is reset, and poses follow at once.
+// A year on the publisher's clock, in nanoseconds and double metres: poses are interpolated as at the start.
+// Then the clock is set back by the year, as when a simulation is reset, and poses follow at once.
 TEST(LongRun, S11_PosesAfterAYearAndWithTheClockSetBack) {
   PoseHistory history{PoseConfig{}};
   constexpr std::int64_t year_ns = 365LL * 24 * 3600 * 1'000'000'000;
@@ -132,7 +132,7 @@ TEST(LongRun, S11_PosesAfterAYearAndWithTheClockSetBack) {
 
 using Water = ConfigFolder;
 
-// Absorption outside of what its formula was made for is said once, however many heads there are.
+// Absorption outside the range of its formula causes one warning, with any number of heads.
 TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
   const std::string second_head =
       "  - name: aft\n    type: gemini_720i\n    sonar_id: 514\n"
@@ -163,7 +163,7 @@ class Inbox {
       most_ = std::max(most_, tasks_.size());
     };
   }
-  /// False when nothing has happened for ten seconds.
+  /// @return false if `done` is not true within ten seconds.
   bool run_until(const std::function<bool()>& done) {
     const auto deadline = std::chrono::steady_clock::now() + 10s;
     while (!done() && std::chrono::steady_clock::now() < deadline) {
@@ -191,7 +191,7 @@ class Inbox {
   std::size_t most_ = 0;
 };
 
-/// Renders nothing, and does as it is told.
+/// Runs a script in place of rendering.
 class ScriptedRenderer final : public PingRenderer {
  public:
   using Script = std::function<void(const render::PingRequest&)>;
@@ -216,7 +216,7 @@ class ScriptedRenderer final : public PingRenderer {
 /// A device, a pose history and a render service in virtual time, joined as Head joins them.
 class VirtualDaemon {
  public:
-  static constexpr auto render_time = 1s;  // ten times what the head would like
+  static constexpr auto render_time = 1s;  // ten times the requested ping period
 
   VirtualDaemon(const ScriptedRenderer::Script& script, std::function<void(const std::string&)> on_failure)
       : device_(gemini::example_config(), 0ns), poses_(pose_config()) {
@@ -317,9 +317,8 @@ class VirtualDaemon {
   std::optional<std::pair<TimePoint, std::pair<std::uint64_t, RenderResult>>> answer_;
 };
 
-// The context of the renderer is lost in the middle of pings: the daemon is told once, and nothing is
-// rendered or sent any more (tests/unit/server/daemon/daemon_test.cpp has the process end with its own exit
-// code).
+// If the renderer's context is lost in the middle of pings, the daemon is notified once, and nothing is
+// rendered or sent any more. (tests/unit/server/daemon/daemon_test.cpp tests the exit code of the process.)
 TEST(LongRun, S18_LostContextEndsTheServiceOnce) {
   int failures = 0;
   int rendered = 0;
@@ -350,7 +349,7 @@ TEST(LongRun, S18_LostContextEndsTheServiceOnce) {
   EXPECT_FALSE(answered);
 }
 
-/// Resident memory in bytes; 0 where it says nothing, as sanitizers keep what was freed.
+/// Resident memory, bytes; 0 under sanitizers, which keep freed memory.
 std::size_t resident_bytes() {
 #ifdef SONARD_SANITIZED
   return 0;
@@ -363,8 +362,7 @@ std::size_t resident_bytes() {
 }
 
 // A renderer ten times too slow that also fails every seventh ping, for a day: each ping takes the newest
-// pose there is, nothing waits in line, and memory stays what it was after the first hour to within 12 bytes
-// a ping.
+// pose, no ping queues up, and after the first hour memory grows by at most 12 bytes per ping.
 TEST(LongRun, S20_ADayOfARendererThatIsTooSlow) {
   VirtualDaemon daemon(
       [](const render::PingRequest& request) {

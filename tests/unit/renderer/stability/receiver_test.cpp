@@ -40,7 +40,7 @@ struct Moments {
   double mean = 0, cv = 0;
 };
 
-/// Of the output as a share of full scale.
+/// Moments of the output as a share of full scale.
 Moments moments_of(const PingSamples& samples) {
   const auto count = static_cast<double>(samples.u16.size());
   Moments m;
@@ -141,7 +141,7 @@ TEST(Extremes, S13_NoiseFromNothingToFarAboveFullScale) {
   }
 }
 
-// Motion of any size, or none over no length, leaves speckle Rayleigh.
+// Motion of any size, with any aperture, leaves speckle Rayleigh.
 TEST(Extremes, S13_SpeckleSurvivesEveryMotion) {
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::ou;
