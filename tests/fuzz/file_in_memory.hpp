@@ -15,10 +15,10 @@
 
 namespace sonard::fuzz {
 
-/// In a folder of its own, in memory where the machine has a file system for that.
+/// The file is in its own folder, in memory if the machine has /dev/shm.
 class FileInMemory {
  public:
-  /// @param suffix of its name: readers go by it
+  /// @param suffix of its name, by which readers know the format
   explicit FileInMemory(const std::string& suffix) {
     std::string folder =
         std::string(access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp") + "/sonard-fuzz-XXXXXX";
@@ -30,7 +30,7 @@ class FileInMemory {
   FileInMemory(const FileInMemory&) = delete;
   FileInMemory& operator=(const FileInMemory&) = delete;
 
-  /// Its content from now on.
+  /// Replaces the content.
   void hold(const std::uint8_t* data, std::size_t size) const {
     std::ofstream file(path_, std::ios::binary | std::ios::trunc);
     file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a configuration.
-// Promises: it is read, or every problem has a line of its own that is not too long; nothing else is thrown.
+// Promises: it is read, or each problem is one line of limited length; nothing else is thrown.
 #include <cstddef>
 #include <cstdint>
 #include <string>

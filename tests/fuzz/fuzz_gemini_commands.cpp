@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as one Gemini datagram, in both directions, and as run-length coded data.
-// Promises: no datagram is read beyond its end; what decodes is stable under encode and decode; every error
-// names a field inside the datagram; run-length decoding stays inside the line.
+// Promises: no datagram is read beyond its end; decoded messages are stable under encode and decode; every
+// error names a field inside the datagram; run-length decoding stays inside the line.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -36,7 +36,7 @@ void check_decoded(const Result<Message, WireError>& decoded, std::span<const st
   const Bytes encoded = encode(*decoded);
   const auto again = decode_again(*decoded, encoded);
   require(again.has_value(), "what is encoded can be decoded");
-  // Only MdioCommands may lose something: encode() cuts it to what fits into one datagram.
+  // Only MdioCommands may lose data: encode() cuts them to the size of one datagram.
   require(*again == *decoded || datagram.size() > sonard::gemini::max_datagram_size,
           "encoding loses nothing");
 }

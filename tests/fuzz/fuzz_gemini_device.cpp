@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of datagrams, images, triggers, recorded pings and pauses against a Gemini head.
-// Promises: every datagram that leaves is a message of a head, from this head, small enough not to fragment;
-// the next deadline lies in the future; time goes on whatever comes in.
+// Promises: every datagram sent is a message of this head, small enough not to fragment; the next deadline
+// lies in the future; time goes on with any input.
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -37,7 +37,7 @@ constexpr Ipv4 topsides[] = {0xC0A80205, 0xC0A80206};
 /// Kinds of events. The first three carry bytes: a datagram for each topside, and a recorded ping.
 enum Kind { byte_kinds = 3, feed = 2, trigger = 3, toggle_water = 4, image = 5, image_failed = 6, grant = 7 };
 
-/// By the first byte of an input.
+/// The configuration that the first byte of an input selects.
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.sonar_id = sonar_id;
@@ -49,8 +49,8 @@ DeviceConfig config_of(unsigned flags) {
   return config;
 }
 
-/// A ping of a log: lines, 256 beams or not, steps, sound speed and gain, as far as there are bytes. nullopt
-/// where a replay would not begin with it (server/logs, DeviceKind::why_not_played()).
+/// A ping of a log: lines, 256 beams or one, line length, sound speed and gain, as far as there are bytes.
+/// nullopt if a replay would not begin with it (server/logs, DeviceKind::why_not_played()).
 std::optional<sonard::RecordedPing> recorded(std::span<const std::uint8_t> bytes, TimePoint now) {
   sonard::ByteReader reader(bytes);
   const auto number = [&](double fallback) {
@@ -151,7 +151,7 @@ class Bench {
     if (!job_) {
       return;
     }
-    constexpr int most_lines = 512;  // more take time and no other path
+    constexpr int most_lines = 512;  // more take time and test no other path
     const PingJob job = *job_;
     job_.reset();
     if (!rendered || job.bins() > most_lines) {

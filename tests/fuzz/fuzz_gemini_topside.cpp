@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of datagrams and pauses against the topside's side of the protocol.
-// Promises: every datagram that leaves is a command; an image that is delivered has the size that its head
-// announced; time goes on whatever comes in.
+// Promises: every datagram sent is a command; a delivered image has the size that its head announced; time
+// goes on with any input.
 #include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/topside.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a log. Promises: what is indexed lies in order inside the .dat, and nothing of it is lost; a
-// log that was cut, and not damaged before the cut, can be closed and then holds the same; records that
-// decode are stable under encode and decode; every error lies inside the file.
+// Any bytes as a log. Promises: indexed records lie in order inside the .dat, and no byte is lost; a log that
+// was cut, and not damaged before the cut, can be closed and then holds the same records; records that decode
+// are stable under encode and decode; every error lies inside the file.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -33,7 +33,7 @@ void check_index(const DatIndex& index) {
   require(index.tail_error.has_value() == (index.tail_size > 0), "a tail has its reason");
 }
 
-// Bytes are compared, not values: a number that is none does not equal itself.
+// Compares bytes, not values, because NaN does not equal itself.
 template <class Record>
 void check_decoded(const Result<Record, WireError>& decoded, const RecordEntry& entry,
                    Result<Record, WireError> (*decode)(std::span<const std::uint8_t>)) {
@@ -46,7 +46,7 @@ void check_decoded(const Result<Record, WireError>& decoded, const RecordEntry& 
   require(again.has_value() && encode(*again) == encoded, "encoding loses nothing");
 }
 
-/// Cuts a bare .dat after its last whole record and closes it, as one does after a crash.
+/// Cuts a bare .dat after its last whole record and closes it, as after a crash.
 void check_recovery(std::span<const std::uint8_t> dat, const DatIndex& index) {
   Bytes closed(dat.begin(), dat.begin() + static_cast<std::ptrdiff_t>(index.whole_size));
   closed.insert(closed.end(), dat_terminator.begin(), dat_terminator.end());
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size > 0 && data[0] != 'P') {
     require(index.whole_size + index.tail_size + (index.closed ? 2 : 0) == size,
             "every byte is accounted for");
-    // A damaged image may count the terminator that is appended as its own end.
+    // A damaged image may take the appended terminator for its own end.
     if (const DatIndex whole = index_dat(PiecewiseBytes{file}, OnDamage::stop); whole.damaged.empty()) {
       check_recovery(file, whole);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a datagram of MAVLink frames.
-// Promises: frames lie inside, and no byte counts twice; a known message has its checksum; every message
-// decodes or is too short for version 1.
+// Promises: frames lie inside the datagram, and no byte counts twice; a known message has its checksum; every
+// message decodes or is too short for version 1.
 #include <cstdint>
 #include <span>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an MCAP file.
 // Promises: errors and messages lie inside the file; log times never go back; a message is found again at its
-// place; a file that was recovered is whole and has as many messages as its summary says.
+// place; a recovered file is whole and has as many messages as its summary counts.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 using namespace sonard::mcap;
 using sonard::fuzz::require;
 
-/// @return how many messages there were before the end or an error
+/// @return the number of messages before the end or an error
 std::uint64_t read_all(const Reader& reader, ByteView file) {
   MessageCursor cursor = reader.messages();
   std::uint64_t count = 0;
@@ -45,7 +45,7 @@ void check_recovered(ByteView cut) {
   }
   require(recovery->keep_size <= cut.size(), "what is kept was there");
   if (recovery->end.empty()) {
-    return;  // it has an end of its own making, which may say anything
+    return;  // the file has its own end, with any content
   }
   const ByteView kept = cut.first(static_cast<std::size_t>(recovery->keep_size));
   Bytes file{kept.begin(), kept.end()};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes, lines, faults, recorded lines and pauses against a Micron head.
-// Promises: every frame that leaves is a whole message of a head, from this head; the next deadline lies in
-// the future; no more lines than were asked for; time goes on whatever comes in.
+// Promises: every frame sent is a whole message of this head; the next deadline lies in the future; no more
+// lines than requested; time goes on with any input.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,8 +29,8 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first two carry bytes: type and data of a frame, or a piece of stream as it is; and a
-/// recorded line, as the frame that a log keeps or as what is in that of a head.
+/// Kinds of events. The first two carry bytes. One has type and data of a frame, or a raw piece of stream.
+/// The other has a recorded line, as the frame that a log keeps or as the content of a head's frame.
 enum Kind {
   byte_kinds = 2,
   feed = 1,
@@ -42,7 +42,7 @@ enum Kind {
   grant = 7
 };
 
-/// By the first byte of an input.
+/// The configuration that the first byte of an input selects.
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.plays_back = (flags & 0x01U) != 0;
@@ -89,7 +89,7 @@ class Bench {
   }
 
  private:
-  /// A line that a replay would not begin with is not fed (DeviceKind::why_not_played()).
+  /// Feeds a line, unless a replay would not begin with it (DeviceKind::why_not_played()).
   void feed_line(const Event& event) {
     sonard::RecordedPing ping;
     ping.wire = event.datagram;
@@ -143,7 +143,7 @@ class Bench {
       const PingJob& job = *last_.render;
       require(!job_.has_value(), "one job at a time");
       require(job.bins() >= 1 && job.bins() <= max_bins, "a job can be rendered");
-      constexpr double half_a_turn = std::numbers::pi + 1e-9;  // and what rounding makes of it
+      constexpr double half_a_turn = std::numbers::pi + 1e-9;  // with rounding
       require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
       require(job.transmit_time <= now_, "a job is not ahead of its time");
       require(!config_.plays_back || job.record.has_value(), "a player renders nothing");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a stream of Micron frames, and as one frame in both directions.
-// Promises: the framing function keeps its contract; how a stream is cut changes nothing about its frames;
-// what decodes is stable under encode and decode; every error names a field inside the frame.
+// Promises: the framing function keeps its contract; frames do not depend on how the stream is cut; decoded
+// messages are stable under encode and decode; every error names a field inside the frame.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_decoded(decode_command(frame), frame);
     check_decoded(decode_report(frame), frame);
   }
-  // As one frame, whatever its lengths say. Longer lines than a head has are cut when they are encoded.
+  // As one frame, whatever its length fields. encode() cuts lines that are longer than a head's.
   if (size <= max_bins) {
     check_decoded(decode_command(stream), stream);
     check_decoded(decode_report(stream), stream);

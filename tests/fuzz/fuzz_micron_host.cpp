@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes and pauses against the host's side of a Micron.
-// Promises: every frame that leaves is a command; a line that is delivered has the bins that were asked for;
-// the next deadline lies in the future.
+// Promises: every frame sent is a command; a delivered line has the requested bins; the next deadline lies in
+// the future.
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/host.hpp"
 #include "tests/fuzz/require.hpp"
@@ -15,7 +15,7 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first carries bytes: type and data of a frame, or a piece of stream as it is.
+/// Kinds of events. The first carries bytes: type and data of a frame, or a raw piece of stream.
 enum Kind { byte_kinds = 1, start_8_bit = 1, start_4_bit = 2, stop = 3, gain = 4, reverse = 5 };
 
 constexpr int bins = 8;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of bytes of two clients, images, faults and pauses against an Oculus, and what it sends
-// against the code of a client. Promises: every message that leaves is whole and of the head's own protocol;
-// of two clients one is sent away, the first only after a silence; the next deadline lies in the future;
-// every job can be rendered, and every record played; time goes on whatever comes in.
+// Any sequence of bytes of two clients, images, faults and pauses against an Oculus, and its messages against
+// the code of a client. Promises: every message sent is whole and of the head's own protocol; of two clients
+// one is disconnected, the first only after a silence; the next deadline lies in the future; every job can be
+// rendered, and every record played; time goes on with any input.
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -30,8 +30,8 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first carry bytes, each from a client of its own: the body of a fire, or a piece of
-/// stream as it is.
+/// Kinds of events. The first two carry bytes, each from its own client: the body of a fire, or a raw piece
+/// of stream.
 enum Kind {
   byte_kinds = 2,
   come_or_go = 2,
@@ -46,7 +46,7 @@ Peer peer_of(int kind) {
   return {Device::stream_channel, {0x7F000001, static_cast<std::uint16_t>(1000 + kind)}, 0};
 }
 
-/// By the first byte of an input. Few rows, so that images take little time.
+/// The configuration that the first byte of an input selects. Few rows, so that images take little time.
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.plays_back = (flags & 0x01U) != 0;
@@ -58,7 +58,7 @@ DeviceConfig config_of(unsigned flags) {
   return config;
 }
 
-/// What a recording holds of a ping.
+/// A ping as a recording holds it.
 sonard::RecordedPing recorded() {
   SimpleFire fire;
   PlanConfig config;
@@ -219,7 +219,7 @@ class Bench {
   Device device_{config_, now_};
   Host host_;
   std::optional<Peer> client_;
-  TimePoint came_{};  ///< the client
+  TimePoint came_{};  ///< time at which the client came
   Actions last_;
   std::optional<PingJob> job_;
 };

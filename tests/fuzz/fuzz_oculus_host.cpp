@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any stream against the client's side of an Oculus, in one piece and byte by byte.
-// Promises: what it makes of a stream does not depend on the pieces; what it takes for a ping has all its
-// samples.
+// Promises: messages and pings do not depend on the pieces; every ping has all its samples.
 #include <span>
 
 #include "protocol/oculus/host.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a pcapng file.
-// Promises: what is kept was there, is kept again, and holds as many packets as recover() says.
+// Promises: the kept part was in the file, is kept again, and holds as many packets as recover() counts.
 #include <cstdint>
 
 #include "protocol/pcapng/blocks.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes of three clients, images, faults and pauses against a Ping360.
-// Promises: every frame that leaves is a whole message of a head, for one peer; the next deadline lies in the
-// future; every job can be rendered; time goes on whatever comes in.
+// Promises: every frame sent is a whole message of a head, for one peer; the next deadline lies in the
+// future; every job can be rendered; time goes on with any input.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -30,8 +30,8 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first carry bytes, each from a client of its own: number and payload of a message, or
-/// a piece of stream as it is.
+/// Kinds of events. The first three carry bytes, each from its own client: number and payload of a message,
+/// or a raw piece of stream.
 enum Kind { byte_kinds = 3, client_gone = 3, image = 4, image_failed = 5, feed = 6, grant = 7 };
 
 constexpr int serial_channel = 2;
@@ -41,7 +41,7 @@ Peer peer_of(int kind) {
   return kind == serial_channel ? Peer{serial_channel, {}, 0} : Peer{0, {0x7F000001, number}, 0};
 }
 
-/// By the first byte of an input.
+/// The configuration that the first byte of an input selects.
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.serial_channel = serial_channel;
@@ -129,7 +129,7 @@ class Bench {
   void check_job(const PingJob& job) const {
     require(!job_.has_value(), "one job at a time");
     require(job.bins() >= 1 && job.bins() <= 1200, "a job can be rendered");
-    constexpr double half_a_turn = std::numbers::pi + 1e-9;  // and what rounding makes of it
+    constexpr double half_a_turn = std::numbers::pi + 1e-9;  // with rounding
     require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
     require(job.transmit_time <= now_, "a job is not ahead of its time");
     require(!config_.plays_back || job.record.has_value(), "a player renders nothing");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a stream of Ping360 frames, and as one message in both directions.
-// Promises: the framing function keeps its contract; how a stream is cut changes nothing about its frames;
-// what decodes is stable under encode and decode; every error names a field inside the frame.
+// Promises: the framing function keeps its contract; frames do not depend on how the stream is cut; decoded
+// messages are stable under encode and decode; every error names a field inside the frame.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -69,7 +69,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_decoded(decode_command(frame), frame);
     check_decoded(decode_report(frame), frame);
   }
-  // As one message, whatever its lengths and its checksum say: few mutations hit a checksum.
+  // As one message with valid lengths and checksum, because few mutations hit a checksum.
   if (size >= 2 && size <= max_payload_size) {
     const Bytes frame =
         make_frame(static_cast<std::uint16_t>(data[0] | data[1] << 8), 0, 0, stream.subspan(2));

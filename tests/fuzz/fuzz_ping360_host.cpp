@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes and pauses against the client's side of a Ping360.
-// Promises: every frame that leaves is a command, or empty; a ping that is delivered has the samples that it
-// says; the next deadline lies in the future.
+// Promises: every frame sent is a command, or empty; a delivered ping views no buffer that is gone; the next
+// deadline lies in the future.
 #include "protocol/ping360/codec.hpp"
 #include "protocol/ping360/host.hpp"
 #include "tests/fuzz/require.hpp"
@@ -15,7 +15,7 @@ using sonard::fuzz::Event;
 using sonard::fuzz::require;
 using sonard::fuzz::Script;
 
-/// Kinds of events. The first carries bytes: number and payload of a message, or a piece of stream as it is.
+/// Kinds of events. The first carries bytes: number and payload of a message, or a raw piece of stream.
 enum Kind { byte_kinds = 1, start_turning = 1, start_scan = 2, stop = 3 };
 
 class Bench {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a stream of pose messages, and as one datagram.
-// Promises: frames lie inside and say their own length; what decodes has values that mean something, and is
-// the same when it is encoded and decoded again.
+// Promises: frames lie inside the bytes and hold their own length; decoded values are finite and bounded, and
+// stable under encode and decode.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

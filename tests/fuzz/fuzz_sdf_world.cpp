@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a world in SDF. Models and meshes that it names are not there.
-// Promises: a world with finite triangles, or an error with words; nothing else is thrown.
+// Any bytes as a world in SDF. Models and meshes that it names do not exist.
+// Promises: a world with finite triangles, or an error with a text; nothing else is thrown.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

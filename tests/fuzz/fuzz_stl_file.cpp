@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an STL file.
-// Promises: an error is a std::runtime_error, and all indices are those of positions.
+// Promises: an error is a std::runtime_error, and all indices refer to positions.
 #include <cstdint>
 #include <stdexcept>
 

@@ -7,7 +7,7 @@
 
 namespace sonard::fuzz {
 
-/// Ends the program, which libFuzzer takes for a finding and keeps the input.
+/// Aborts the program if `holds` is false; libFuzzer then reports a finding and keeps the input.
 inline void require(bool holds, const char* promise) {
   if (!holds) {
     std::fprintf(stderr, "broken promise: %s\n", promise);

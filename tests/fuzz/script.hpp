@@ -14,12 +14,12 @@ namespace sonard::fuzz {
 
 /// One event: bits 2..0 of its first byte are `kind`; the second byte is the time since the last event,
 /// squared, in units of 0.1 ms, so that both the time between two lines and a long silence are within reach.
-/// Events of a kind below `datagram_kinds` go on with a u16 length and a datagram, which the end of the input
-/// may cut short.
+/// Events of a kind below `datagram_kinds` continue with a u16 length and a datagram, which the end of the
+/// input may cut short.
 struct Event {
   int kind = 0;
-  /// Bit 7 of the first byte: the datagram goes out as it is. Otherwise the program first makes it one that
-  /// the other end listens to, so that few mutations are wasted on what it would drop.
+  /// Bit 7 of the first byte: the datagram is sent unchanged. Otherwise the program first makes it acceptable
+  /// to the other end, so that few mutations are dropped.
   bool as_is = false;
   std::chrono::nanoseconds delay{};
   std::vector<std::uint8_t> datagram;  ///< a copy of exactly its length: sanitizers see a read beyond it
