@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beams are independent: each is computed whole by one thread, so the result does not depend on their number.
+// Computes each beam on one thread. Beams are independent, so the result does not depend on the number of
+// threads.
 #pragma once
 
 #include <functional>

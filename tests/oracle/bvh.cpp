@@ -13,7 +13,7 @@ namespace sonard::oracle {
 namespace {
 constexpr std::size_t leaf_size = 4;
 constexpr std::size_t split_bins = 16;
-constexpr std::size_t deepest = 256;  // halving by count at the latest keeps far from it
+constexpr std::size_t deepest = 256;  // stack size of find(); trees stay far below it
 constexpr double never = std::numeric_limits<double>::infinity();
 }  // namespace
 
@@ -32,7 +32,7 @@ double Bvh::Box::half_area() const {
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-/// Builds nodes depth first; permutes `order` so that every leaf is a run of it.
+/// Builds nodes depth first. Permutes `order` so that each leaf is a contiguous part of it.
 struct Bvh::Builder {
   const std::vector<Box>& boxes;
   std::vector<std::uint32_t>& order;
@@ -64,7 +64,7 @@ struct Bvh::Builder {
     build(middle, end);
   }
 
-  /// Orders [begin, end) along `axis` around the cheapest of a few equally spaced cuts. @return the cut
+  /// Orders [begin, end) along `axis` around the cheapest of some equally spaced cuts. @return the cut
   std::size_t split(std::size_t begin, std::size_t end, int axis, const Box& centres) {
     const double low = centres.low[axis];
     const double scale = static_cast<double>(split_bins) / (centres.high[axis] - low);
@@ -80,7 +80,7 @@ struct Bvh::Builder {
         return static_cast<std::size_t>(middle - order.begin());
       }
     }
-    return begin + (end - begin) / 2;  // all centres in one place
+    return begin + (end - begin) / 2;  // all centres coincide
   }
 
   template <class Iterator, class BinOf>
@@ -130,7 +130,7 @@ Bvh::Bvh(const Facets& facets) : facets_(facets) {
   }
 }
 
-/// @return the range at which the ray enters the box, or infinity when it misses it or enters beyond `limit`
+/// @return the range at which the ray enters the box; infinity if it misses the box or enters beyond `limit`
 double Bvh::enter(const Box& box, const glm::dvec3& inverse_direction, double limit) {
   const glm::dvec3 a = box.low * inverse_direction;
   const glm::dvec3 b = box.high * inverse_direction;
@@ -138,7 +138,7 @@ double Bvh::enter(const Box& box, const glm::dvec3& inverse_direction, double li
   const glm::dvec3 far = glm::max(a, b);
   const double in = std::max(0.0, std::max(near.x, std::max(near.y, near.z)));
   const double out = std::min(far.x, std::min(far.y, far.z));
-  constexpr double slack = 1e-12;  // triangles may touch the box; rounding must not cut them off
+  constexpr double slack = 1e-12;  // tolerates rounding if a triangle touches the box
   return in * (1 - slack) <= out * (1 + slack) && in * (1 - slack) <= limit ? in : never;
 }
 
@@ -164,7 +164,7 @@ Bvh::Found Bvh::find(const glm::dvec3& direction) const {
   if (nodes_.empty()) {
     return nearest;
   }
-  constexpr double tiny = 1e-200;  // a zero would make 0 * infinity of boxes through the origin
+  constexpr double tiny = 1e-200;  // a zero would give 0 * infinity for boxes through the origin
   const auto invert = [](double x) { return 1 / (std::abs(x) > tiny ? x : std::copysign(tiny, x)); };
   const glm::dvec3 inverse(invert(direction.x), invert(direction.y), invert(direction.z));
   std::array<std::uint32_t, deepest> waiting;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle's own ray tracer over triangles, double precision, rays from the sonar only.
+// The oracle's own ray tracer for triangles: double precision, rays from the sonar only.
 #pragma once
 
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace sonard::oracle {
 
-/// Bounding volume hierarchy, split by the surface area heuristic. As all rays start at the origin, a ray
-/// meets triangle ABC when it lies on one side of the three planes through the origin and its edges:
-/// d.(A x B), d.(B x C), d.(C x A) have one sign. A x B and B x A are negatives of each other to the last
-/// bit, so two triangles at one edge treat it alike and no ray slips between them.
-/// Keeps a reference to the facets. Of two facets at the same range the one with the lower index is hit.
+/// Bounding volume hierarchy, split by the surface area heuristic. All rays start at the origin, so a ray
+/// meets triangle ABC if it lies on one side of the three planes through the origin and its edges: d.(A x B),
+/// d.(B x C), d.(C x A) have one sign. A x B and B x A are negatives of each other to the last bit. So two
+/// triangles treat a common edge alike, and no ray passes between them. Keeps a reference to the facets. Of
+/// two facets at the same range, the one with the lower index is hit.
 class Bvh : public Surface {
  public:
   explicit Bvh(const Facets& facets);
 
   SurfaceHit nearest(const glm::dvec3& direction) const override;
 
-  /// Index of the facet hit first and the range, or -1.
+  /// Index of the first facet hit (-1: no hit), and the range.
   struct Found {
     std::int64_t facet = -1;
     double range_m = std::numeric_limits<double>::infinity();
@@ -36,7 +36,8 @@ class Bvh : public Surface {
     void add(const Box& box);
     double half_area() const;
   };
-  /// Leaf: `count` triangles from `first`. Inner: children at the next node and at `first`.
+  /// A leaf has `count` triangles from `first`. The children of an inner node are the next node and node
+  /// `first`.
   struct Node {
     Box box;
     std::uint32_t first = 0;
@@ -45,7 +46,7 @@ class Bvh : public Surface {
   };
   struct Triangle {
     glm::dvec3 edge_ab, edge_bc, edge_ca;  // normals of the planes through the origin and the edges
-    double volume;                         // A.(B x C); over the sum of the three products: the range
+    double volume;  // A.(B x C); divided by the sum of the three products, it is the range
     std::uint32_t facet;
   };
   struct Builder;

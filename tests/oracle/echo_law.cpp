@@ -19,8 +19,9 @@ EchoLaw::EchoLaw(const render::SonarSettings& settings)
       sigmoid_centre_(settings.paper.sigmoid_centre),
       attenuation_per_m_(settings.paper.attenuation_per_m) {
   if (settings.aperture.elevation != render::Aperture::Elevation::top_hat) {
-    // The sine at which the one-way power is one half stands at 0.443 of the first zero; the pattern is
-    // followed to 1.25 times the -3 dB full width, on either side.
+    // The one-way power is one half at a sine of 0.443 times the first zero. The pattern extends to 1.25
+    // times the
+    // -3 dB full width on each side.
     pattern_scale_ = 0.443 * std::numbers::pi / std::sin(elevation_limit_rad_);
     elevation_limit_rad_ *= 2.5;
     two_way_ = settings.aperture.elevation == render::Aperture::Elevation::sinc_two_way;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the oracle integrates: the echo of a surface seen from the origin of the sonar frame, per steradian.
+// The integrand of the oracle: the echo of a surface seen from the origin of the sonar frame, per steradian.
 // docs/physics.md 2.1 equation (1), 2.4 Lambert and facets, 2.5 elevation pattern, 1.1 mode `paper`. Written
-// from the formulas; no code is shared with the renderer, only its plain data types are read.
+// from the formulas: it shares no code with the renderer, only its plain data types.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace sonard::oracle {
 
-/// How a surface answers; see render::AcousticMaterial.
+/// Acoustic properties of a surface; see render::AcousticMaterial.
 struct Material {
   double lambert_mu = 1.0;
   double reflectance = 1.0;
@@ -18,21 +18,21 @@ struct Material {
   double rms_slope = 0.2;
 };
 
-/// The integrand of one ping. Spreading and absorption are taken at the range of every point, not at the
-/// centre of its range line: inside a line they differ by up to (2 / r + 0.46 alpha) * step / 2, relative,
-/// which a line that is only partly filled shows in full and an evenly filled one not at all.
+/// The integrand of one ping. Spreading and absorption depend on the range of each point, not on the centre
+/// of its range line. Within a line they differ by up to (2 / r + 0.46 alpha) * step / 2, relative. In a
+/// partly filled line this difference shows in full, in an evenly filled one it cancels.
 class EchoLaw {
  public:
-  /// @throws std::invalid_argument when the settings have no beams, no lines or no elevation.
+  /// @throws std::invalid_argument if the settings have no beams, no lines or no elevation
   explicit EchoLaw(const render::SonarSettings& settings);
 
-  /// Echo per steradian of a surface at `range_m`, seen at `cos_incidence` (its sign does not matter).
+  /// Echo per steradian of a surface at `range_m`, seen at `cos_incidence` of either sign.
   double echo(const Material& material, double cos_incidence, double range_m, double sin_elevation) const;
 
   /// Relative weight of a direction. Mode `paper` divides by its integral over the range line.
   double pattern(double sin_elevation) const;
 
-  /// Mode `paper`: the value of a line is the mean of its echo, not the sum.
+  /// Mode `paper`: the value of a line is the mean of its echo instead of the sum.
   bool is_mean() const { return mean_; }
   bool two_sided() const { return two_sided_; }
 
@@ -43,7 +43,7 @@ class EchoLaw {
   double max_range_m() const { return lines_ * step_m_; }
   double elevation_limit_rad() const { return elevation_limit_rad_; }
 
-  /// The same ping with spreading and absorption taken at the centre of each line, as the renderer does.
+  /// A copy with spreading and absorption at the centre of each line, as in the renderer.
   EchoLaw with_loss_at_line_centre() const;
 
  private:

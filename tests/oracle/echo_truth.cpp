@@ -9,7 +9,7 @@ namespace sonard::oracle {
 
 namespace {
 
-/// Pools `deviation(i)` / truth.echo[i] over the bins that matter.
+/// Combines `deviation(i)` / truth.echo[i] over the bins of RelativeError.
 template <class Deviation>
 RelativeError pooled(const EchoTruth& truth, Deviation deviation) {
   RelativeError result;

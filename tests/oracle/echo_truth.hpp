@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an integrator of the oracle hands back: an image and how far it may be off.
+// The result of an integrator of the oracle: an image and its estimated error.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ namespace sonard::oracle {
 struct EchoTruth {
   int beams = 0;
   int lines = 0;
-  /// [beam * lines + line]. Mode `physical`: sum of mu cos(phi) dOmega r^-2 10^(-alpha r / 5) times the
-  /// elevation pattern, steradians per square metre; mode `paper`: the mean in [0, 1].
+  /// [beam * lines + line]. Mode `physical`: sum of s_b / cos(phi) dOmega r^-2 10^(-alpha r / 5) times the
+  /// elevation pattern, steradians per square metre; mode `paper`: the mean, in [0, 1].
   std::vector<double> echo;
   std::vector<double> error;  ///< absolute, >= 0, one per value
-  std::uint64_t rays = 0;     ///< rays or slices traced
+  std::uint64_t rays = 0;     ///< number of rays or slices
 
   double at(int beam, int line) const { return echo[index(beam, line)]; }
   double error_at(int beam, int line) const { return error[index(beam, line)]; }
@@ -26,16 +26,16 @@ struct EchoTruth {
   }
 };
 
-/// Relative error, over bins that matter (docs/physics.md 3.3 and 3.4).
+/// Relative error over the bins above a threshold (docs/physics.md 3.3 and 3.4).
 struct RelativeError {
-  double rms = 0.0;  ///< pooled over all bins above 1e-2 of their beam's maximum
+  double rms = 0.0;  ///< over all bins above 1e-2 of their beam's maximum
   double max = 0.0;  ///< largest over all bins above 1e-4 of their beam's maximum
 };
 
 /// `truth.error` relative to `truth.echo`.
 RelativeError estimated_error(const EchoTruth& truth);
 
-/// |a - b| relative to b; both have the same size.
+/// |a - b| relative to b. Both must have the same size.
 RelativeError difference(const EchoTruth& a, const EchoTruth& b);
 
 }  // namespace sonard::oracle

@@ -15,7 +15,7 @@ const std::vector<VisiblePiece>& Envelope::visible(const std::vector<Sightline>&
     pieces_.push_back({sightlines[i].t_begin, sightlines[i].t_end, i});
     run_ends_.push_back(pieces_.size());
   }
-  // Runs are envelopes of ever more segments: neighbours are merged until one is left.
+  // Runs are envelopes. Neighbouring runs are merged until one is left.
   while (run_ends_.size() > 1) {
     merged_.clear();
     merged_ends_.clear();
@@ -32,7 +32,8 @@ const std::vector<VisiblePiece>& Envelope::visible(const std::vector<Sightline>&
   return pieces_;
 }
 
-/// Merges the envelopes [begin_a, end_a) and [end_a, end_b) of `pieces_` onto the end of `merged_`.
+/// Merges the envelopes [begin_a, end_a) and [end_a, end_b) of `pieces_`, and appends the result to
+/// `merged_`.
 void Envelope::merge(std::size_t begin_a, std::size_t end_a, std::size_t end_b) {
   constexpr double never = std::numeric_limits<double>::infinity();
   const std::size_t run_begin = merged_.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of many line segments in a half-plane is seen from its origin, exactly.
+// Finds exactly which of many line segments in a half-plane are visible from its origin.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace sonard::oracle {
 
-/// A segment in a vertical half-plane through the sonar, in the coordinates in which sight is linear: tangent
-/// of the elevation t = z / rho, and closeness w = 1 / rho. A straight segment in (rho, z) is straight here,
-/// and of two surfaces at the same t the one with the larger w is seen.
+/// A segment in a vertical half-plane through the sonar. In these coordinates lines of sight are simple:
+/// tangent of the elevation t = z / rho, and closeness w = 1 / rho. Straight segments in (rho, z) are
+/// straight here too. Of two surfaces at the same t, the one with the larger w is visible.
 struct Sightline {
   double t_begin, t_end;  ///< t_begin < t_end
   double w_begin, w_slope;
@@ -18,17 +18,17 @@ struct Sightline {
   double closeness(double t) const { return w_begin + w_slope * (t - t_begin); }
 };
 
-/// Part of a segment that is seen.
+/// The visible part of a segment.
 struct VisiblePiece {
   double t_begin, t_end;
   std::uint32_t sightline;  ///< index
 };
 
-/// Computes upper envelopes; keeps its buffers between calls. One thread uses one.
+/// Computes upper envelopes and keeps its buffers between calls. Use one per thread.
 class Envelope {
  public:
-  /// What is seen, ordered by t, without overlap. Of coinciding segments the one with the lower index is
-  /// seen. The result is valid until the next call.
+  /// Returns the visible parts, ordered by t, without overlap. Of coinciding segments, the one with the lower
+  /// index is visible. The result is valid until the next call.
   const std::vector<VisiblePiece>& visible(const std::vector<Sightline>& sightlines);
 
  private:

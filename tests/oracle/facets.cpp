@@ -18,7 +18,7 @@ double nearest_possible_m(const std::array<glm::dvec3, 3>& corners) {
   return glm::length(glm::max(glm::max(low, -high), glm::dvec3(0)));
 }
 
-/// Above or below the fan is a cone, and convex: a triangle whose corners are inside is inside.
+/// The regions above and below the fan are convex cones, so a triangle is inside if its corners are.
 bool outside_elevation(const std::array<glm::dvec3, 3>& corners, double tan_limit) {
   const auto all = [&](double side) {
     return std::all_of(corners.begin(), corners.end(), [&](const glm::dvec3& p) {
@@ -33,14 +33,14 @@ glm::dvec3 unit_or_zero(const glm::dvec3& v) {
   return length > 0 ? v / length : glm::dvec3(0);
 }
 
-/// Shares of the corners at a point of the triangle.
+/// Barycentric weights of the corners at a point of the triangle.
 glm::dvec3 barycentric(const Facet& facet, const glm::dvec3& point) {
   const glm::dvec3 a = facet.corners[0] - point;
   const glm::dvec3 b = facet.corners[1] - point;
   const glm::dvec3 c = facet.corners[2] - point;
   const glm::dvec3 areas(glm::dot(glm::cross(b, c), facet.normal), glm::dot(glm::cross(c, a), facet.normal),
                          glm::dot(glm::cross(a, b), facet.normal));
-  const glm::dvec3 inside = glm::max(areas, glm::dvec3(0));  // rounding at the rim
+  const glm::dvec3 inside = glm::max(areas, glm::dvec3(0));  // rounding at the edges
   const double sum = inside.x + inside.y + inside.z;
   return sum > 0 ? inside / sum : glm::dvec3(1.0 / 3);
 }
@@ -128,7 +128,7 @@ double Facets::detail_m(const Facet& facet) const {
   if (part.shading != Shading::normal_map) {
     return std::numeric_limits<double>::infinity();
   }
-  // How far one can go along the shortest altitude of the triangle before the longest texel side is crossed.
+  // The inverse of an upper bound of the gradient of the texel coordinates, in texels per metre.
   const auto v = vertices_of(*part.mesh, facet);
   const glm::dvec2 size(part.normal_map->width_px, part.normal_map->height_px);
   const glm::dvec2 e1 =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A world as the sonar sees it: triangles in the sonar's frame, in double precision.
+// A world as triangles in the sonar's frame, in double precision.
 #pragma once
 
 #include <array>
@@ -18,20 +18,20 @@
 
 namespace sonard::oracle {
 
-/// One triangle, metres, sonar frame. Triangles that share a vertex of a mesh hold bit-identical corners.
+/// One triangle, metres, sonar frame. Triangles with a common vertex in a mesh have bit-identical corners.
 struct Facet {
   std::array<glm::dvec3, 3> corners;
-  glm::dvec3 normal;  ///< unit, geometric; (0, 0, 0) when the triangle has no area
+  glm::dvec3 normal;  ///< unit, geometric; (0, 0, 0) if the triangle has no area
   std::uint32_t part = 0;
   std::uint32_t mesh_triangle = 0;
 };
 
-/// Every triangle of a world that the ping can meet, with what is needed to shade it. Immutable, so any
-/// number of threads may read it.
+/// All triangles of a world that the ping can meet, with their shading data. Immutable, so any number of
+/// threads may read it.
 class Facets {
  public:
-  /// Moves all geometry to the sonar in double precision. Triangles wholly beyond the range or wholly above
-  /// or below the fan are left out, and back faces when `law` is one-sided.
+  /// Transforms all geometry to the sonar frame in double precision. Leaves out triangles wholly beyond the
+  /// range or wholly above or below the fan, and back faces if `law` is one-sided.
   Facets(const render::World& world, const render::Pose& T_world_sonar, const EchoLaw& law);
 
   const std::vector<Facet>& all() const { return facets_; }
@@ -39,10 +39,11 @@ class Facets {
 
   /// Whether the shading normal varies over the facet.
   bool is_shaded(const Facet& facet) const { return parts_[facet.part].shading != Shading::geometric; }
-  /// Length over which the shading normal may vary freely: a texel of the normal map. Infinite without one.
+  /// Length on which the shading normal may vary arbitrarily: a texel of the normal map. Infinite without a
+  /// normal map.
   double detail_m(const Facet& facet) const;
-  /// Unit normal that the echo law sees at `point` of the facet: geometric, interpolated between the vertices
-  /// or bent by a normal map (bilinear between texels, repeated).
+  /// Unit normal for the echo law at `point` of the facet: geometric, interpolated between the vertices, or
+  /// from a normal map (bilinear between texels, repeated).
   glm::dvec3 shading_normal(const Facet& facet, const glm::dvec3& point) const;
 
  private:

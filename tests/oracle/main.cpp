@@ -37,7 +37,8 @@ RelativeError larger(const RelativeError& a, const RelativeError& b) {
   return {std::max(a.rms, b.rms), std::max(a.max, b.max)};
 }
 
-/// The first beam is in the middle of the first stride, so that neither edge of the fan is left out for good.
+/// Every `stride`-th beam, from the middle of the first stride, so that both edges of the fan are treated
+/// alike.
 std::vector<int> every(int stride, int beams) {
   std::vector<int> chosen;
   for (int beam = stride / 2; beam < beams; beam += stride) {
@@ -46,7 +47,7 @@ std::vector<int> every(int stride, int beams) {
   return chosen.empty() ? std::vector<int>{0} : chosen;
 }
 
-/// The beams of `chosen` alone.
+/// A copy in which only the beams of `chosen` are not 0.
 EchoTruth only(const EchoTruth& truth, const std::vector<int>& chosen) {
   EchoTruth result = truth;
   result.echo.assign(truth.echo.size(), 0.0);
@@ -71,7 +72,8 @@ Reference render(const std::string& name, const RenderCommand& command) {
   const Facets facets(scene.world, scene.T_world_sonar, law);
   const EchoTruth truth = integrate_slices(facets, law, command.slices);
 
-  // Another division of every beam: no slice is cut twice, and what one run missed the other may see.
+  // The second run divides each beam differently, so that no slice is repeated. It may find what the first
+  // run missed.
   SliceOptions second = command.slices;
   second.first_intervals = 3 * second.first_intervals / 2 + 1;
   const EchoTruth again = integrate_slices(facets, law, second);

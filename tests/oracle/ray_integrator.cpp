@@ -15,7 +15,7 @@ namespace sonard::oracle {
 
 namespace {
 
-/// One ray and what it hit.
+/// One ray and its hit.
 struct Probe {
   double psi, theta;
   glm::dvec3 direction;
@@ -25,7 +25,7 @@ struct Probe {
 /// Corners: 0 (psi, theta) low low, 1 high low, 2 low high, 3 high high.
 using Corners = std::array<Probe, 4>;
 
-/// How the ranges of a cell on a plane are spread: the convolution of two boxes (docs/physics.md 2.3).
+/// Distribution of the ranges of a cell on a plane: the convolution of two boxes (docs/physics.md 2.3).
 class Trapezoid {
  public:
   Trapezoid(double centre, double a, double b)
@@ -119,7 +119,7 @@ class BeamGrid {
     add_cell({centre, east, north, corners[3]}, depth + 1);
   }
 
-  /// Whether the plane at the centre foretells what the corners see.
+  /// Whether the plane at the centre predicts the hits of the corners.
   bool is_even(const Probe& centre, const Corners& corners) const {
     const double distance = centre.hit.range_m * glm::dot(centre.hit.normal, centre.direction);
     const double cosine = std::abs(glm::dot(centre.hit.shading_normal, centre.direction));
@@ -135,7 +135,7 @@ class BeamGrid {
     });
   }
 
-  /// The cell as a piece of the plane at its centre.
+  /// Adds the cell as a part of the plane at its centre.
   void add(const Probe& centre, const Corners& corners) {
     if (!centre.hit.is_hit()) {
       return;
@@ -147,14 +147,14 @@ class BeamGrid {
     const double cosine = glm::dot(centre.hit.shading_normal, centre.direction);
     const double echo = solid_angle * law_.echo(centre.hit.material, cosine, r, centre.direction.z);
     const double weight = solid_angle * law_.pattern(centre.direction.z);
-    // r = D / (n.d): its derivatives follow the direction's.
+    // The derivatives of r = D / (n.d) follow from the direction's.
     const glm::dvec3 d_psi(-centre.direction.y, centre.direction.x, 0);
     const glm::dvec3 d_theta(-std::sin(centre.theta) * std::cos(centre.psi),
                              -std::sin(centre.theta) * std::sin(centre.psi), std::cos(centre.theta));
     const double facing = glm::dot(centre.hit.normal, centre.direction);
     const double a = std::abs(r * glm::dot(centre.hit.normal, d_psi) / facing) * width;
     const double b = std::abs(r * glm::dot(centre.hit.normal, d_theta) / facing) * height;
-    const double widest = 2 * law_.max_range_m();  // seen edge-on: the plane is not what the cell shows
+    const double widest = 2 * law_.max_range_m();  // limit for edge-on planes, which do not describe the cell
     if (!options_.footprint || !(a + b > 0)) {
       spread(Trapezoid(r, 0, 0), echo, weight);
     } else {

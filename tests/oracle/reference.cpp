@@ -111,7 +111,7 @@ Reference read_reference(const std::filesystem::path& folder, const std::string&
   const std::string json = read_file(folder / (scene + ".json"));
   Reference reference;
   try {
-    const YAML::Node node = YAML::Load(json);  // JSON is YAML
+    const YAML::Node node = YAML::Load(json);  // YAML includes JSON
     if (node["image_sha256"].as<std::string>() != sha256(image)) {
       throw std::runtime_error("the image is not the one the .json belongs to");
     }

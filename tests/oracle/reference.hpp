@@ -11,35 +11,34 @@
 
 namespace sonard::oracle {
 
-/// A stored image and how far it may be off.
+/// A stored image and its errors.
 struct Reference {
   std::string scene;
-  std::string scene_sha256;  ///< scene_hash() of what was rendered
+  std::string scene_sha256;  ///< scene_hash() of the rendered scene
   std::uint64_t slices = 0;
-  /// Relative; see RelativeError for the bins they count. The larger of the integrator's own estimate and of
-  /// the difference to a second run on another division of the beams.
+  /// Relative error over the bins of RelativeError. The larger of the integrator's own estimate and the
+  /// difference to a second run with another division of the beams.
   RelativeError error;
-  /// Difference to rays and footprints on every `ray_check_stride`-th beam, and the error that the rays claim
-  /// for themselves; all 0 when not made.
+  /// Difference to rays with footprints on every `ray_check_stride`-th beam, and the rays' own estimate of
+  /// their error; all 0 if not computed.
   int ray_check_stride = 0;
   RelativeError ray_check;
   RelativeError ray_error;
-  /// Difference to the same echo with spreading taken at the centre of each range line, as the renderer does.
+  /// Difference to an echo with spreading at the centre of each range line, as in the renderer.
   RelativeError line_centre;
-  std::string command;  ///< what makes this file
+  std::string command;  ///< command that creates this file
 
   int beams = 0;
   int lines = 0;
   std::vector<float> echo;  ///< [beam * lines + line]; see EchoTruth::echo
 };
 
-/// Writes the image as .npy (format 1.0, '<f4', C order, shape (beams, lines)) and the rest beside it as
-/// .json with the SHA-256 of the .npy.
-/// @throws std::runtime_error when a file cannot be written.
+/// Writes the image as .npy (format 1.0, '<f4', C order, shape (beams, lines)), and beside it a .json with
+/// the other values and the SHA-256 of the .npy.
+/// @throws std::runtime_error if a file cannot be written
 void write_reference(const std::filesystem::path& folder, const Reference& reference);
 
-/// @throws std::runtime_error when a file is missing, is no such file, or the image is not the one the .json
-/// belongs to.
+/// @throws std::runtime_error if a file is missing or invalid, or the image does not belong to the .json
 Reference read_reference(const std::filesystem::path& folder, const std::string& scene);
 
 }  // namespace sonard::oracle

@@ -10,7 +10,7 @@ namespace sonard::oracle {
 
 namespace {
 
-/// Feeds numbers to the hash, rounded to a step.
+/// Adds numbers to the hash, rounded to a step.
 class Fingerprint {
  public:
   void count(std::size_t n) { exact(static_cast<double>(n)); }
@@ -30,7 +30,7 @@ class Fingerprint {
 
   void pose(const render::Pose& T) {
     coarse(T.position_m.x), coarse(T.position_m.y), coarse(T.position_m.z);
-    const double sign = T.orientation.w < 0 ? -1.0 : 1.0;  // q and -q are one rotation
+    const double sign = T.orientation.w < 0 ? -1.0 : 1.0;  // q and -q are the same rotation
     fine(sign * T.orientation.w), fine(sign * T.orientation.x);
     fine(sign * T.orientation.y), fine(sign * T.orientation.z);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fingerprint of everything that goes into a reference image.
+// A fingerprint of all inputs of a reference image.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@
 namespace sonard::oracle {
 
 /// SHA-256 (hexadecimal) over geometry, poses, materials, aperture, range lines and model. Lengths and
-/// coordinates count to 1e-6, rotations and angles to 1e-9, so that the last bit of another machine's sine
-/// makes no difference. Names, sampling and receiver do not count: the mean echo does not depend on them.
+/// coordinates are rounded to 1e-6, rotations and angles to 1e-9, because sines differ in the last bit
+/// between machines. Names, sampling and receiver are left out, because the mean echo does not depend on
+/// them.
 std::string scene_hash(const render::World& world, const render::Pose& T_world_sonar,
                        const render::SonarSettings& settings);
 

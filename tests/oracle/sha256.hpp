@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256 (FIPS 180-4), to tell whether a stored reference belongs to what a test renders.
+// SHA-256 (FIPS 180-4), to check whether a stored reference belongs to a test's scene.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace sonard::oracle {
 class Sha256 {
  public:
   void add(std::span<const std::byte> bytes);
-  /// 64 hexadecimal digits, lower case. Ends the message: nothing may be added afterwards.
+  /// 64 hexadecimal digits, lower case. Ends the message: do not add anything afterwards.
   std::string hex_digest();
 
  private:

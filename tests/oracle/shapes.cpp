@@ -81,7 +81,7 @@ class Sphere : public Surface {
   Material material_;
 };
 
-/// A shape that is easiest to meet in its own frame.
+/// A shape that intersects rays in its own frame.
 class PlacedShape : public Surface {
  public:
   PlacedShape(const render::Pose& T_sonar_shape, const Material& material)
@@ -96,7 +96,8 @@ class PlacedShape : public Surface {
   }
 
  protected:
-  /// @return the first range > 0 at which the ray meets the shape, with its normal there, or infinity
+  /// @return the first range > 0 at which the ray meets the shape, with its normal there; infinity if it
+  /// misses
   virtual double meet(const glm::dvec3& origin, const glm::dvec3& direction, glm::dvec3& normal) const = 0;
 
  private:
@@ -121,7 +122,7 @@ class Cylinder : public PlacedShape {
     const double half_chord = std::sqrt((radius_ * radius_ - glm::dot(foot, foot)) / a);
     for (const double t : {along - half_chord, along + half_chord}) {
       const glm::dvec3 p = origin + t * direction;
-      if (t > 0 && t < nearest && std::abs(p.z) <= half_) {  // false where there is no chord: t is NaN
+      if (t > 0 && t < nearest && std::abs(p.z) <= half_) {  // false without a chord: t is NaN
         nearest = t;
         normal = {p.x / radius_, p.y / radius_, 0};
       }

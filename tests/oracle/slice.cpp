@@ -12,14 +12,15 @@ namespace sonard::oracle {
 
 namespace {
 
-/// A point of the half-plane: distance from the sonar's z axis and height.
+/// A point of the half-plane: distance from the sonar's z axis, and height.
 struct SlicePoint {
   double rho, z;
 };
 
-constexpr double touching_m = 1e-9;  // nearer than this to the z axis a surface is cut off
+constexpr double touching_m = 1e-9;  // surfaces nearer to the z axis are cut off
 
-/// Cuts off where `inside`, an affine function of the point, is negative. @return false when nothing is left.
+/// Cuts off the part with negative `inside`, an affine function of the point. @return false if nothing is
+/// left
 template <class Inside>
 bool clip(SlicePoint& p, SlicePoint& q, Inside inside) {
   const double at_p = inside(p);
@@ -34,7 +35,7 @@ bool clip(SlicePoint& p, SlicePoint& q, Inside inside) {
   return true;
 }
 
-/// The part inside the fan. Done here and not on tangents, which grow beyond all bounds outside it.
+/// Clips to the fan. Done before tangents are computed, because outside the fan they grow without bound.
 bool clip_to_fan(SlicePoint& p, SlicePoint& q, double tan_limit) {
   return clip(p, q, [&](const SlicePoint& x) { return x.rho - touching_m; }) &&
          clip(p, q, [&](const SlicePoint& x) { return tan_limit * x.rho - x.z; }) &&
@@ -44,19 +45,20 @@ bool clip_to_fan(SlicePoint& p, SlicePoint& q, double tan_limit) {
 // Gauss-Legendre with three nodes on [-1, 1].
 constexpr std::array<double, 3> node = {-0.774596669241483377, 0.0, 0.774596669241483377};
 constexpr std::array<double, 3> node_weight = {5.0 / 9, 8.0 / 9, 5.0 / 9};
-constexpr double panel_angle = 0.03;    // with it the three nodes err by 1e-10 on r^-6, the steepest law
-constexpr int panels_per_facet = 8;     // of a facet whose normal is interpolated
-constexpr double most_panels = 1e5;     // for textures that have no detail worth the name
+constexpr double panel_angle = 0.03;    // the three nodes err by 1e-10 for r^-6, the steepest law
+constexpr int panels_per_facet = 8;     // for a facet with interpolated normals
+constexpr double most_panels = 1e5;     // limit for textures with extremely fine detail
 constexpr double panels_per_texel = 2;  // a bilinear texture has a kink at each texel
 
 }  // namespace
 
-/// A visible cut as a line in the half-plane: foot point at distance D from the sonar, and s along it.
+/// The line of a visible cut in the half-plane: foot point at distance D from the sonar, and s along the
+/// line.
 struct Slicer::Cut {
   const Facet* facet;
   double distance_m;       // D
   SlicePoint foot, along;  // foot point; unit vector along the line
-  double panel_m;          // longest panel that shading allows
+  double panel_m;          // longest panel for the shading
   double azimuth_cos, azimuth_sin;
 
   SlicePoint at(double s) const { return {foot.rho + s * along.rho, foot.z + s * along.z}; }
@@ -77,7 +79,7 @@ void Slicer::add(double psi_rad, std::span<const std::uint32_t> candidates, Line
   }
 }
 
-/// Adds the segment in which the facet meets the half-plane, if it does.
+/// Adds the segment of the facet in the half-plane, if they intersect.
 void Slicer::cut(std::uint32_t index) {
   const Facet& facet = facets_.all()[index];
   std::array<double, 3> side{};
@@ -91,7 +93,8 @@ void Slicer::cut(std::uint32_t index) {
     if ((side[i] < 0) == (side[j] < 0)) {
       continue;
     }
-    // Always from the negative to the positive corner: both triangles at this edge find the same bits.
+    // Always from the negative to the positive corner, so that both triangles at this edge compute the same
+    // bits.
     const std::size_t from = side[i] < 0 ? i : j;
     const std::size_t to = side[i] < 0 ? j : i;
     const double share = side[from] / (side[from] - side[to]);
@@ -108,7 +111,7 @@ void Slicer::cut(std::uint32_t index) {
     std::swap(line.w_begin, w_end);
   }
   if (!(line.t_end > line.t_begin)) {
-    return;  // seen edge-on
+    return;  // edge-on
   }
   line.w_slope = (w_end - line.w_begin) / (line.t_end - line.t_begin);
   sightlines_.push_back(line);
@@ -121,7 +124,7 @@ void Slicer::add_piece(const VisiblePiece& piece, LineSums& sums) const {
   if (!(w_begin > 0) || !(w_end > 0)) {
     return;
   }
-  // In (t, w) the cut is w = w_begin + w_slope (t - t_begin); with t = z / rho and w = 1 / rho that is the
+  // In (t, w) the cut is w = w_begin + w_slope (t - t_begin). With t = z / rho and w = 1 / rho, this is the
   // line (w_begin - w_slope t_begin) rho + w_slope z = 1.
   const double normal_rho = line.w_begin - line.w_slope * line.t_begin;
   const double length = std::hypot(normal_rho, line.w_slope);
@@ -132,7 +135,7 @@ void Slicer::add_piece(const VisiblePiece& piece, LineSums& sums) const {
   cut.facet = &facets_.all()[line.facet];
   cut.distance_m = 1 / length;
   cut.foot = {normal_rho / length * cut.distance_m, line.w_slope / length * cut.distance_m};
-  cut.along = {-line.w_slope / length, normal_rho / length};  // t grows with s
+  cut.along = {-line.w_slope / length, normal_rho / length};  // t increases with s
   cut.azimuth_cos = cos_psi_;
   cut.azimuth_sin = sin_psi_;
   const auto position = [&](double t, double w) { return (1 / w) * cut.along.rho + (t / w) * cut.along.z; };
@@ -149,7 +152,7 @@ void Slicer::add_piece(const VisiblePiece& piece, LineSums& sums) const {
   }
 }
 
-/// The part with |s| in [from, to) on one side of the foot point, where the range grows with |s|.
+/// Adds the part with |s| in [from, to) on one side of the foot point, where the range increases with |s|.
 void Slicer::add_branch(const Cut& cut, double side, double from, double to, LineSums& sums) const {
   const double step = law_.step_m();
   const double d = cut.distance_m;
@@ -166,7 +169,7 @@ void Slicer::add_branch(const Cut& cut, double side, double from, double to, Lin
   }
 }
 
-/// The part between s = from and s = to, wholly inside one line.
+/// Adds the part between s = from and s = to, which lies in one range line.
 /// dOmega = cos(theta) dtheta dpsi, and along the cut dtheta = D ds / r^2.
 void Slicer::add_panel(const Cut& cut, double from, double to, std::size_t line, LineSums& sums) const {
   const double length = std::abs(to - from);

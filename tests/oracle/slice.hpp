@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The echo of one vertical half-plane through the sonar: visibility exact, elevation integrated piece by
-// piece.
+// The echo of one vertical half-plane through the sonar: exact visibility, piecewise integration in
+// elevation.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace sonard::oracle {
 
-/// Echo of one slice, or a sum of slices, per range line.
+/// Echo per range line, of one slice or the sum of several.
 struct LineSums {
   std::vector<double> echo;    ///< per radian of azimuth
   std::vector<double> weight;  ///< mode `paper`: pattern times solid angle per radian; else empty
@@ -23,16 +23,16 @@ struct LineSums {
         weight(law.is_mean() ? static_cast<std::size_t>(law.lines()) : 0, 0.0) {}
 };
 
-/// Cuts the facets at one azimuth, finds what is seen of the cuts and integrates it over elevation. The cuts
-/// are straight, their visible parts are found exactly (Envelope), and along each the range is a hyperbola
-/// whose crossings of the line edges are known in closed form: there is no sampling in elevation or range,
-/// and no footprint. Keeps buffers; one thread uses one.
+/// Cuts the facets at one azimuth, finds the visible parts of the cuts and integrates them over elevation.
+/// Cuts are straight, and their visible parts are exact (Envelope). Along each part the range is a hyperbola
+/// that crosses the line edges at points in closed form. So there is no sampling in elevation or range, and
+/// no footprint. Keeps buffers: use one per thread.
 class Slicer {
  public:
   Slicer(const Facets& facets, const EchoLaw& law);
 
-  /// Adds the echo per radian at azimuth `psi_rad` to `sums`. Only `candidates` (indices of facets) are
-  /// looked at; those that do not meet the half-plane do no harm.
+  /// Adds the echo per radian at azimuth `psi_rad` to `sums`. Only `candidates` (indices of facets) are used;
+  /// they may include facets that do not meet the half-plane.
   void add(double psi_rad, std::span<const std::uint32_t> candidates, LineSums& sums);
 
  private:

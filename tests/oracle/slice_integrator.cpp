@@ -20,7 +20,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double nominal_beam_rad = pi / 360;
 
-/// Azimuths a facet covers: [from, to], from in [-pi, pi], to - from <= 2 pi.
+/// Azimuths that a facet covers: [from, to], from in [-pi, pi], to - from <= 2 pi.
 struct AzimuthSpan {
   double from, to;
 
@@ -30,7 +30,7 @@ struct AzimuthSpan {
   }
 };
 
-/// Safe to either side: a facet that touches the z axis covers all azimuths.
+/// The span may be too large, never too small: a facet that touches the z axis covers all azimuths.
 AzimuthSpan span_of(const Facet& facet) {
   std::array<double, 3> psi{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -41,7 +41,7 @@ AzimuthSpan span_of(const Facet& facet) {
     psi[i] = std::atan2(p.y, p.x);
   }
   std::sort(psi.begin(), psi.end());
-  // The widest gap between neighbours is what the facet does not cover, unless it holds the z axis.
+  // The facet does not cover the widest gap between neighbouring corners, unless it contains the z axis.
   const std::array<double, 3> gap = {psi[1] - psi[0], psi[2] - psi[1], psi[0] + 2 * pi - psi[2]};
   constexpr double rounding = 1e-9;
   if (gap[2] >= pi - rounding) {
@@ -56,7 +56,7 @@ AzimuthSpan span_of(const Facet& facet) {
   return {-pi, pi};
 }
 
-/// Sorts, and leaves out what is as good as its neighbour.
+/// Sorts, and drops values that nearly equal their neighbour.
 void sort_apart(std::vector<double>& azimuths) {
   constexpr double same_rad = 1e-11;
   std::sort(azimuths.begin(), azimuths.end());
@@ -65,7 +65,7 @@ void sort_apart(std::vector<double>& azimuths) {
       azimuths.end());
 }
 
-// Kronrod's rule with 7 nodes on [-1, 1], extending Gauss's with 3.
+// Kronrod's rule with 7 nodes on [-1, 1], an extension of Gauss's rule with 3 nodes.
 struct Node {
   double at, kronrod, gauss;
 };
@@ -77,12 +77,12 @@ constexpr std::array<Node, 7> rule = {{{-0.960491268708020283, 0.104656226026467
                                        {0.774596669241483377, 0.268488089868333441, 5.0 / 9},
                                        {0.960491268708020283, 0.104656226026467265, 0.0}}};
 
-/// Part of a beam and what its slices gave.
+/// A part of a beam and the result of its slices.
 struct Interval {
   double from, to;
   std::vector<std::uint32_t> candidates;
   LineSums sums;
-  LineSums error;        // of each of the sums, absolute
+  LineSums error;        // absolute error of each sum
   double badness = 0.0;  // largest error relative to the beam's value
 };
 
@@ -111,7 +111,7 @@ class BeamIntegrator {
         total_(law),
         error_(total_.echo) {}
 
-  /// Beam from `low` to `high`; writes law.lines() values and errors. @return slices cut
+  /// Integrates the beam from `low` to `high`. Writes law.lines() values and errors. @return number of slices
   std::uint64_t integrate(double low, double high, double* echo, double* error) {
     start(low, high);
     while (!done() && slices_ + 2 * rule.size() <= static_cast<std::size_t>(options_.max_slices_per_beam)) {
@@ -138,7 +138,7 @@ class BeamIntegrator {
     }
   }
 
-  /// Where the beam is divided before anything is known of it; rising.
+  /// Initial division of the beam, in ascending order.
   std::vector<double> first_edges(double low, double high,
                                   const std::vector<std::uint32_t>& candidates) const {
     const double nominal_beams = std::max(1.0, std::ceil((high - low) / nominal_beam_rad - 1e-6));
@@ -197,7 +197,7 @@ class BeamIntegrator {
     return interval;
   }
 
-  /// Adds (sign 1) or takes away (sign -1) an interval. These running totals only steer the refinement.
+  /// Adds (sign 1) or subtracts (sign -1) an interval. These running totals only control the refinement.
   void apply(const Interval& interval, double sign) {
     accumulate(total_.echo, sign, interval.sums.echo);
     accumulate(error_, sign, interval.error.echo);
@@ -280,7 +280,7 @@ class BeamIntegrator {
   const SliceOptions& options_;
   Slicer slicer_;
   std::vector<Interval> intervals_;
-  std::priority_queue<std::pair<double, std::size_t>> queue_;  // badness, index of interval
+  std::priority_queue<std::pair<double, std::size_t>> queue_;  // badness, index of the interval
   LineSums total_;
   std::vector<double> error_;
   std::size_t slices_ = 0;

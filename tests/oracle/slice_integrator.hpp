@@ -9,25 +9,24 @@
 
 namespace sonard::oracle {
 
-/// When to stop. Refinement ends when both bounds hold, or at the largest number of slices.
+/// Stopping rules. Refinement ends if both bounds hold, or at the largest number of slices.
 struct SliceOptions {
-  double error_rms = 1e-4;         ///< of each beam; as RelativeError::rms
-  double error_max = 2e-3;         ///< of each beam; as RelativeError::max
-  int max_slices_per_beam = 8192;  ///< the error reached is reported either way
-  int first_intervals = 16;        ///< of each beam, of half a degree; more of a wider one
-  /// A beam is also divided at the azimuth of every corner of a facet, where its echo has kinks and jumps, if
-  /// it holds no more corners than this. Then no facet can hide between two slices.
+  double error_rms = 1e-4;         ///< for each beam; as RelativeError::rms
+  double error_max = 2e-3;         ///< for each beam; as RelativeError::max
+  int max_slices_per_beam = 8192;  ///< in all cases, the error reached is reported
+  int first_intervals = 16;        ///< per half degree of a beam
+  /// A beam with at most this many corners of facets is also divided at each corner's azimuth, where its echo
+  /// has kinks and jumps. Then no facet can hide between two slices.
   int max_corners = 0;
   unsigned threads = 0;      ///< 0: one per core
   std::vector<int> beams{};  ///< only these are rendered, the others are 0; empty: all
 };
 
-/// Renders by slices. In each beam the azimuth is divided into intervals, each integrated by a Kronrod rule
-/// of 7 slices whose distance from the Gauss rule of 3 of them is the interval's error; the worst interval
-/// is halved until the bounds are met. The error of a bin is the sum over its intervals: for the bins of a
-/// mesh, whose echo has kinks and jumps but no noise in azimuth, that is well above the error made (tests
-/// hold it against closed forms).
-/// The result is the same bits for any number of threads.
+/// Renders by slices. Each beam is divided into intervals of azimuth, each integrated by a Kronrod rule with
+/// 7 slices. The error of an interval is its difference from the Gauss rule with 3 of these slices. The worst
+/// interval is halved until the bounds hold. The error of a bin is the sum over its intervals. For meshes,
+/// whose echo has kinks and jumps but no noise in azimuth, this estimate is well above the true error (tests
+/// compare with closed forms). The result is identical to the bit for any number of threads.
 EchoTruth integrate_slices(const Facets& facets, const EchoLaw& law, const SliceOptions& options = {});
 
 }  // namespace sonard::oracle

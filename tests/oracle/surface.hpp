@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a ray of the oracle can hit.
+// Surfaces for the rays of the oracle.
 #pragma once
 
 #include <limits>
@@ -12,15 +12,15 @@ namespace sonard::oracle {
 
 /// The first surface along a ray from the origin of the sonar frame.
 struct SurfaceHit {
-  double range_m = std::numeric_limits<double>::infinity();  ///< infinite: nothing is hit
+  double range_m = std::numeric_limits<double>::infinity();  ///< infinite: no hit
   glm::dvec3 normal{0.0};                                    ///< unit, of the surface itself; either side
-  glm::dvec3 shading_normal{0.0};                            ///< unit, what the echo law sees
+  glm::dvec3 shading_normal{0.0};                            ///< unit, for the echo law
   Material material;
 
   bool is_hit() const { return range_m < std::numeric_limits<double>::infinity(); }
 };
 
-/// Immutable; any number of threads may ask.
+/// Immutable; safe to use from any number of threads.
 class Surface {
  public:
   Surface() = default;
