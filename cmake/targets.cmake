@@ -17,8 +17,8 @@ if(SONARD_SIMD)
   target_compile_definitions(sonard_flags INTERFACE SONARD_SIMD_ONLY="${SONARD_SIMD}")
 endif()
 if(CMAKE_UNITY_BUILD)
-  # In unity builds, GCC takes a source that another source includes for a header, and names local to one source for
-  # globals of all. clang's -Wshadow cannot exclude such names.
+  # In unity builds, GCC treats a source that another one includes as a header, and names local to one source as globals
+  # of all. clang's -Wshadow cannot exclude such names.
   target_compile_options(sonard_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage -Wshadow=local>)
 else()
   target_compile_options(sonard_flags INTERFACE -Wshadow)

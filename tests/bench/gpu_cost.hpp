@@ -80,7 +80,7 @@ inline constexpr double drawing_bytes_per_pixel =
 inline constexpr double binning_bytes_per_pixel =
     45;  // read by bins, by the bins of every second sample, and by rows
 inline constexpr double summing_bytes_per_bin = 40;  // per pass: two sums read and reset, and the image
-inline constexpr double pixel_words = 6;             // 32-bit words, written one by one: those bytes
+inline constexpr double pixel_words = 6;  // 32-bit words, written one by one: drawing_bytes_per_pixel
 inline constexpr double draw_call_us = 0.7;
 inline constexpr double view_us = 0.5;
 inline constexpr double pass_us = 120;  // a dozen dispatches, clears and copies, one after the other

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pose in Unity's axes as a message for sonard (protocol/pose/pose.proto), without protobuf or the engine.
+// Converts a pose in Unity's axes to a message for sonard (protocol/pose/pose.proto), without protobuf or the engine.
 // SonardPublisher.cs uses it.
 //
-// Unity is left-handed: x right, y up, z forward, metres. The world's z is taken for north, so x is east.
+// Unity is left-handed: x right, y up, z forward, metres. The world's z is sent as north, so x is east.
 using System;
 using System.IO;
 using System.Text;
@@ -21,18 +21,18 @@ namespace Sonard
         public Rotation(double w, double x, double y, double z) { W = w; X = x; Y = y; Z = z; }
     }
 
-    // Into sonard's axes: world x east, y north, z up; on board x forward, y to port, z up. Arguments are Unity's numbers.
+    // Converts Unity's numbers to sonard's axes: world x east, y north, z up; vehicle x forward, y to port, z up.
     public static class FromUnity
     {
         public static Vector Position(double x, double y, double z) { return new Vector(x, z, y); }
 
-        // From the vehicle's own axes (Transform.InverseTransformDirection), m/s.
+        // In the vehicle's axes (Transform.InverseTransformDirection), m/s.
         public static Vector Velocity(double x, double y, double z) { return new Vector(z, -x, y); }
 
-        // From the vehicle's own axes, rad/s. The sense of a rotation is mirrored, so its signs are the other way round.
+        // In the vehicle's axes, rad/s. Mirroring also reverses rotations, so the signs are opposite to Velocity().
         public static Vector TurnRate(double x, double y, double z) { return new Vector(-z, x, -y); }
 
-        // The rotation in mirrored axes, (w, -x, -z, -y), after a quarter turn on board: Unity's forward is y in these.
+        // The rotation in mirrored axes, (w, -x, -z, -y), times a quarter turn, because Unity's forward axis is y there.
         public static Rotation Orientation(double x, double y, double z, double w)
         {
             double h = Math.Sqrt(0.5);
@@ -40,7 +40,7 @@ namespace Sonard
         }
     }
 
-    // The message, in protobuf's encoding. Little-endian machines, as all that Unity runs on.
+    // The message, in protobuf's encoding. Requires a little-endian machine; Unity runs on no other.
     public class PoseMessage
     {
         readonly MemoryStream bytes = new MemoryStream();
@@ -56,7 +56,7 @@ namespace Sonard
             Part(4, twist);
         }
 
-        // Something else that moves, by the name of its model in sonard's world.
+        // Another moving object, by the name of its model in sonard's world.
         public void AddBody(string name, Vector position, Rotation orientation)
         {
             PoseMessage body = new PoseMessage();

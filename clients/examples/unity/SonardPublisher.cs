@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A component for the vehicle: sends its pose to sonard after every step of the physics (50 a second by default).
+// A component for the vehicle that sends its pose to sonard after each step of the physics (50 per second by default).
 // Copy it and SonardPose.cs into the Assets folder and drop it on the vehicle's game object.
 using System.Net.Sockets;
 using Sonard;
@@ -9,7 +9,7 @@ public class SonardPublisher : MonoBehaviour
 {
     public string host = "127.0.0.1";
     public int port = 14600;
-    public Transform[] bodies = new Transform[0]; // other things that move, named as in sonard's world
+    public Transform[] bodies = new Transform[0]; // other moving objects, named as in sonard's world
 
     UdpClient udp;
     Rigidbody body;
@@ -46,7 +46,7 @@ public class SonardPublisher : MonoBehaviour
         }
         catch (SocketException)
         {
-            // Nobody listens there yet; the next message is newer.
+            // Nothing listens there yet; the next message is newer.
         }
     }
 

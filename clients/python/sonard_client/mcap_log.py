@@ -133,7 +133,7 @@ def _end(data: Any, at: int) -> Optional[int]:
 
 
 def _sizes_agree(data: Any, at: int) -> bool:
-    """Whether the sizes inside the record are those of a chunk, for any type byte."""
+    """Whether the record has the inner sizes of a chunk, for any type byte."""
     end = _end(data, at)
     if end is None or end < at + 49:
         return False

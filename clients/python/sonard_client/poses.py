@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Encodes and sends poses for sonard as messages of protocol/pose/pose.proto, without a protobuf library.
 
-Field numbers are those of pose.proto. The limits are sonard's, which rejects values beyond them.
+pose.proto defines the field numbers. sonard rejects values beyond the limits below.
 """
 
 from __future__ import annotations
