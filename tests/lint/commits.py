@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects of commits: the room, and what."""
+"""Subjects of commits have the form 'room: what'."""
 
 import re
 import subprocess
@@ -9,7 +9,7 @@ LONGEST = 72
 
 
 def subject_complaint(subject):
-    """What is wrong with a subject, or None."""
+    """A complaint about a subject; None if it is valid."""
     if len(subject) > LONGEST:
         return f"has {len(subject)} characters, {LONGEST} is the most"
     if not SUBJECT.match(subject):
@@ -18,7 +18,7 @@ def subject_complaint(subject):
 
 
 def default_base(tree):
-    """The last tag; before the first one, the commit that brought this check."""
+    """The last tag; without a tag, the commit that added this check."""
     try:
         return tree.git("describe", "--tags", "--abbrev=0").strip()
     except subprocess.CalledProcessError:

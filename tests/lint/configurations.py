@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configurations against their JSON Schema, by a validator that is not ours."""
+"""Configurations against their JSON Schema, with an independent validator."""
 
 import json
 import re
@@ -10,11 +10,11 @@ import yaml
 from tree import matches
 
 SCHEMA = "configs/schema/sonard.schema.json"
-DEMOS = "configs/demo/list.yaml"  # what `sonard demo` starts, no configuration
+DEMOS = "configs/demo/list.yaml"  # the list of `sonard demo`, not a configuration
 
 
 class Loader(yaml.SafeLoader):
-    """YAML as the daemon reads it: `on` and `off` are words, and only true and false are truth values."""
+    """YAML as the daemon reads it: `on` and `off` are words, and only true and false are booleans."""
 
 
 Loader.yaml_implicit_resolvers = {

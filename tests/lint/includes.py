@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What includes of the product say of its folders: no circles, and arrows that point one way."""
+"""Includes of the product: its folders have no circles, and their arrows point one way."""
 
 import collections
 import os
@@ -10,7 +10,7 @@ from tree import CPP, ROOMS
 INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<([^>]+)>)')
 
 def devices():
-    """Those of cmake/devices.cmake."""
+    """The devices in cmake/devices.cmake."""
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "cmake", "devices.cmake")
     with open(path, encoding="utf-8") as file:
         return re.search(r"set\(SONARD_DEVICES([^)]*)\)", file.read()).group(1).split()
@@ -18,21 +18,21 @@ def devices():
 
 DEVICES = devices()
 
-# Which folders the files of a folder may include. The longest prefix that fits decides; a folder may include itself and
-# what lies in it.
+# Folders that the files of a folder may include. The longest matching prefix decides; a folder may include itself and
+# its subfolders.
 MAY_INCLUDE = {
     "common": (),
     "protocol": ("protocol",),
-    # Devices do not know each other; a log format of their users they may know.
+    # Devices do not depend on each other, but may use a log format of their users.
     **{f"protocol/{device}": ("protocol/common", "protocol/glf") for device in DEVICES},
     "renderer": ("renderer", "common/text"),
-    # Clients draw pictures, too, and nothing else of the renderer.
+    # Clients also draw pictures; they use no other part of the renderer.
     "renderer/picture": (),
     "server": ("server", "renderer", "protocol", "common"),
     "clients": ("clients", "protocol", "renderer/picture", "common"),
 }
 
-# Libraries of others that a folder keeps out of.
+# External libraries that a folder must not include.
 MAY_NOT_INCLUDE = {
     "protocol": ("boost/", "spdlog/", "yaml-cpp/", "osg", "opencv", "GL/", "EGL/", "embree", "sys/socket.h"),
     "renderer": ("boost/", "spdlog/", "yaml-cpp/", "google/protobuf/", "sys/socket.h"),
@@ -46,13 +46,13 @@ def within(folder, parent):
 
 
 def rule(table, folder):
-    """The entry of the longest prefix that fits, and that prefix."""
+    """The longest matching prefix, or None, and its entry, or ()."""
     prefix = max((prefix for prefix in table if within(folder, prefix)), key=len, default=None)
     return prefix, table.get(prefix, ())
 
 
 def read_includes(tree):
-    """(file, line, folder or None, header) of each include of the product; a folder for headers of our own."""
+    """(file, line, folder, header) of each include of the product; the folder is None for external headers."""
     for path in tree.files:
         if not path.endswith(CPP) or path.split("/")[0] not in ROOMS:
             continue
@@ -122,7 +122,7 @@ def shortest_circle(pairs):
 
 
 def cycle_complaints(found):
-    """Circles of folders, the shortest first; each is opened at its thinnest arrow before the next is looked for."""
+    """Circles of folders, the shortest first. The arrow with the fewest includes is removed before the next search."""
     left = dict(found)
     while circle := shortest_circle(left):
         text = "these folders include each other in a circle:"
@@ -138,8 +138,8 @@ SOURCES = re.compile(r"(sonard_library|sonard_program|add_executable|target_sour
 
 
 def library_complaints(tree):
-    """Folders whose sources are not those of one library, or of programs. A loop of CMake over SONARD_DEVICES has the
-    variable `device`, which stands for each of them."""
+    """Folders whose sources are not all in one library or in programs. The variable `device` of a CMake loop over
+    SONARD_DEVICES stands for each device."""
     folders = collections.defaultdict(set)
     for path in tree.files:
         if path.endswith(".cpp") and path.split("/")[0] in ROOMS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links of the Markdown files: what they name is there, headings too, and every page of docs/ can be reached from README.md."""
+"""Links of the Markdown files: their files and headings exist, and links from README.md lead to every page of docs/."""
 
 import pathlib
 import posixpath
@@ -13,7 +13,7 @@ HEADING = re.compile(r"^#{1,6} +(.*?) *$", re.MULTILINE)
 
 
 def slug(heading):
-    """The anchor that GitHub makes of a heading."""
+    """The anchor that GitHub makes from a heading."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").strip().lower()
     return re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
 
@@ -27,7 +27,7 @@ def anchors(text):
 
 
 def links(text):
-    """Targets of the links, with their lines."""
+    """(line, target) of each link."""
     prose = FENCE.sub(lambda found: "\n" * found.group().count("\n"), text)
     prose = CODE.sub("``", prose)
     for found in LINK.finditer(prose):

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that need no build. `./test lint` runs them all; names of checks run those alone.
+"""Checks that need no build. `./test lint` runs them all; names select single checks.
 
-Debian's interpreter is named above because it sees the packages of docker/packages.txt.
+The first line names Debian's interpreter because that one finds the packages of docker/packages.txt.
 """
 
 import argparse
@@ -30,7 +30,7 @@ def own(name):
 
 
 def make_checks(tree, base):
-    """{name: function that yields complaints}. With a base, the C++ files that are formatted are those that changed."""
+    """{name: function that yields complaints}. With a base, the check `format` reads only changed C++ files."""
     changed = tree.changed_since(base or "HEAD")
     return {
         "format": lambda: tools.format_complaints(tree, changed if base else tree.files),
@@ -52,7 +52,7 @@ def make_checks(tree, base):
 
 
 def run_checks(checks):
-    """Prints the complaints and one line for each check; true when there is no complaint."""
+    """Prints the complaints and one line for each check; returns true if there is no complaint."""
     summary = []
     for name, check in checks.items():
         started = time.monotonic()

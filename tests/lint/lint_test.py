@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the checks of lint find, and what they let pass, in small trees made for it."""
+"""Findings of the lint checks, and cases that pass, in small trees made for each test."""
 
 import os
 import pathlib
@@ -34,7 +34,7 @@ class LintTest(unittest.TestCase):
         subprocess.run(["git", *IDENTITY, *arguments], cwd=self.root, check=True, capture_output=True)
 
     def write(self, texts):
-        """The tree with these files, {path: text}, in it."""
+        """The tree with these files added, {path: text}."""
         for name, text in texts.items():
             path = self.root / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -105,7 +105,7 @@ class Libraries(LintTest):
 
 class Layers(LintTest):
     def refused(self, includes_of):
-        """Which of the pairs (path, include) are refused."""
+        """The pairs (path, include) that are refused."""
         found = []
         for path, include in includes_of:
             tree = self.write({path: f"#include {include}\n"})

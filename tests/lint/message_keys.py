@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Keys of the configuration that messages name: each must be one that the loader accepts.
+"""Keys of the configuration that messages name: the loader must accept each of them.
 
-A key is taken from the string literals of C++ sources: words that dots join ("sampling.preset"), and words with an
+Keys are found in the string literals of C++ sources: words joined by dots ("sampling.preset"), and words with an
 underscore before a colon ("hides_vehicle: true"). A message may leave out the front of a key ("physical.gain_db").
 """
 
@@ -10,7 +10,7 @@ import re
 
 SCHEMA = "configs/schema/sonard.schema.json"
 SOURCES = re.compile(r"^(?:server|renderer|clients)/.*\.[ch]pp$")
-# Words with dots that are no keys, though a part of them is the name of one.
+# Words with dots that are not keys, although a part of them is the name of one.
 OTHER_WORDS = {"fs.file", "model.config", "model.sdf", "sonard.log"}
 
 _LITERALS = re.compile(r'(?:"(?:[^"\\\n]|\\.)*"\s*)+')
@@ -30,7 +30,7 @@ def texts_of(source):
 
 
 def schema_paths(schema):
-    """{path: schema} of all keys, "heads.acoustics.seed" for one of a head; the schemas of several heads are a list."""
+    """{path: [schema, ...]} of all keys, such as "heads.acoustics.seed". A key of several kinds has several schemas."""
     paths = {}
 
     def walk(node, path):
@@ -46,7 +46,7 @@ def schema_paths(schema):
 
 
 def named_in(text, names):
-    """(key, value or None) of each key that a text names. `names` are those of single keys."""
+    """(key, value or None) of each key that a text names. `names` are the last words of all keys."""
     for match in _DOTTED.finditer(text):
         key = match.group(1)
         parts = re.sub(r"\[[^\]]*\]", "", key).split(".")
@@ -69,12 +69,12 @@ def named_keys(sources, schema):
 
 
 def matching_paths(key, paths):
-    """Those that the key is, or the end of."""
+    """The paths that are the key or end with it."""
     return [path for path in paths if path == key or path.endswith("." + key)]
 
 
 def accepts(node, value):
-    """Whether a value in a message suits the key, by its schema. Any text suits a text."""
+    """True if a value in a message suits the key by its schema. Any text suits a string."""
     for option in node.get("anyOf", [node]):
         if "enum" in option and value in option["enum"]:
             return True

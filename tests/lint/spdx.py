@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The line that names the licence, in every source file."""
+"""Every source file has a line that names the licence."""
 
 from tree import CPP, DATA, matches
 
 MARK = "SPDX-License-Identifier:"
 LICENCE = "Apache-2.0"
-LICENCE_OF_DISSECTORS = "Apache-2.0 OR GPL-2.0-or-later"  # as Wireshark's programming interface asks for
+LICENCE_OF_DISSECTORS = "Apache-2.0 OR GPL-2.0-or-later"  # Wireshark's programming interface requires this
 SLASHES = (*CPP, ".proto", ".cs", ".js")
 
-# Written by clients/wireshark's program, whose output a test compares.
+# A program of clients/wireshark writes these files; a test compares them.
 GENERATED = ("clients/wireshark/*_fields.lua",)
 
 
 def comment(tree, path):
-    """What begins a comment in a source file; empty for what is no source."""
+    """The mark that begins a comment in a source file; empty for other files."""
     if matches(path, (*DATA, *GENERATED)):
         return ""
     if path.endswith(SLASHES):
@@ -26,7 +26,7 @@ def comment(tree, path):
 
 
 def missing(tree):
-    """(path, line to add) of each source without it."""
+    """(path, line to add) of each source without the line."""
     for path in tree.files:
         mark = comment(tree, path)
         if not mark:

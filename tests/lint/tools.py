@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that are programs of others: clang-format, shellcheck, codespell, mkdocs, doxygen, clang-tidy."""
+"""Checks by external programs: clang-format, shellcheck, codespell, mkdocs, doxygen, clang-tidy."""
 
 import concurrent.futures
 import json
@@ -15,7 +15,7 @@ SPELLED = (*CPP, ".md", ".py", ".txt", ".cmake", ".yaml", ".yml", ".lua", ".cs",
 
 
 def run(tree, command, files, batch=40):
-    """Runs the command on the files, some at a time, on all cores; its complaints are its output where it fails."""
+    """Runs the command on batches of the files, on all cores; yields its output if it fails."""
     groups = [files[start:start + batch] for start in range(0, len(files), batch)]
 
     def one(group):
@@ -38,13 +38,13 @@ def shell_complaints(tree):
 
 def spelling_complaints(tree, ignored):
     texts = [path for path in tree.texts() if path.endswith(SPELLED) or tree.interpreter(path)]
-    # Pieces of words make up its patterns.
+    # Its patterns contain parts of words.
     texts = [path for path in texts if path != "tests/lint/words.yaml"]
     yield from run(tree, ["codespell", "--ignore-words", ignored], texts, batch=1000)
 
 
 def site_complaints(tree):
-    """The pages of docs/ as a site: strictly, and every page in its contents."""
+    """The pages of docs/ build strictly as a site, and every page is in its contents."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(["mkdocs", "build", "--strict", "--config-file", "packaging/site/mkdocs.yml", "--site-dir", folder],
                               cwd=tree.root, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -53,7 +53,7 @@ def site_complaints(tree):
 
 
 def reference_complaints(tree):
-    """The reference of the protocol libraries, whose settings make a warning an error."""
+    """The reference of the protocol libraries builds; its settings make a warning an error."""
     settings = (tree.root / "packaging/reference/Doxyfile").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(["doxygen", "-"], cwd=tree.root, input=f"{settings}\nOUTPUT_DIRECTORY = {folder}\n", stdout=subprocess.PIPE,
@@ -63,7 +63,7 @@ def reference_complaints(tree):
 
 
 def singles(entry):
-    """The commands for each of the sources that one compilation includes, or the one command itself."""
+    """The commands for each source that a unity build includes, or the one command itself."""
     if "/Unity/unity_" not in entry["file"]:
         return [entry]
     try:
@@ -75,8 +75,8 @@ def singles(entry):
 
 
 def compile_commands(tree):
-    """The commands of the clang build, if there is one, or of the release build, without precompiled headers: those of
-    one compiler are nothing to the other. Empty where nothing is built."""
+    """The commands of the clang build, or of the release or dev build, without precompiled headers, which only their
+    own compiler can read. Empty if there is no build."""
     for preset in ("checked", "release", "dev"):
         path = tree.root / "build" / preset / "compile_commands.json"
         if path.is_file():

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files that are checked: those of the working tree that git does not ignore, and those that differ from a commit."""
+"""The files to check: files of the working tree that git does not ignore, and files that differ from a commit."""
 
 import fnmatch
 import pathlib
 import subprocess
 
 CPP = (".cpp", ".hpp", ".h")
-# Rooms of the product, in which includes have rules.
+# Rooms of the product; rules for includes apply in them.
 ROOMS = ("common", "protocol", "renderer", "server", "clients")
-# What others wrote, or what programs wrote: bytes, pictures, worlds, locked versions.
+# Files from other projects or from programs: bytes, pictures, worlds, locked versions.
 DATA = ("tests/data/*", "tests/fuzz/corpus/*", "configs/worlds/meshes/*", "*/package-lock.json", "LICENSE")
 
 
@@ -25,14 +25,14 @@ class Tree:
         return subprocess.run(["git", *arguments], cwd=self.root, check=True, capture_output=True, text=True).stdout
 
     def changed_since(self, base):
-        """Files that differ from the point where this branch left base, committed or not."""
+        """Files that differ from the merge base with `base`, committed or not."""
         point = self.git("merge-base", base, "HEAD").strip()
         changed = self.git("diff", "--name-only", "-z", "--diff-filter=d", point).split("\0")
         changed += self.git("ls-files", "-z", "--others", "--exclude-standard").split("\0")
         return [path for path in self.files if path in set(changed)]
 
     def text(self, path):
-        """The text of a file, or None where it is none."""
+        """The text of a file; None if it is not UTF-8."""
         if path not in self._texts:
             try:
                 self._texts[path] = (self.root / path).read_text(encoding="utf-8")
@@ -45,7 +45,7 @@ class Tree:
         return [path for path in self.files if not matches(path, DATA) and self.text(path) is not None]
 
     def interpreter(self, path):
-        """What runs a script, 'python3' or 'bash', from its first line; empty for other files."""
+        """The program that runs a script, such as 'python3' or 'bash', from its name or first line; else empty."""
         if path.endswith((".py", ".sh")):
             return "python3" if path.endswith(".py") else "bash"
         with (self.root / path).open("rb") as file:
@@ -56,5 +56,5 @@ class Tree:
 
 
 def matches(path, patterns):
-    """Whether any of the patterns fits. A star also stands for slashes."""
+    """True if any of the patterns matches. A star also matches slashes."""
     return any(fnmatch.fnmatchcase(path, pattern) for pattern in patterns)

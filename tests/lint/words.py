@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Words that gave way to better ones (words.yaml)."""
+"""Deprecated words and their replacements (words.yaml)."""
 
 import re
 
@@ -18,7 +18,7 @@ def read_rows(text):
 
 
 def uses_of(tree, row, own):
-    """Places at which a row's word stands. Paths count as text."""
+    """Places at which a row's word occurs. Paths count as text."""
     pattern = re.compile(row["word"])
     for path in tree.texts():
         if path in ("CHANGELOG.md", own) or matches(path, row.get("allowed", ())):
@@ -34,7 +34,7 @@ def uses_of(tree, row, own):
 
 
 def word_complaints(tree, rows, own):
-    """Uses of words that are gone, and other numbers of uses than rows say are left. `own` is the file of the rows."""
+    """Uses of deprecated words, and numbers of uses that differ from a row's `left`. `own` is the file of the rows."""
     for row in rows:
         uses = list(uses_of(tree, row, own))
         left = row.get("left", 0)
@@ -47,7 +47,7 @@ def word_complaints(tree, rows, own):
 
 
 def lower_counts(tree, rows, own):
-    """Writes down in the file of the rows what is left where that is less."""
+    """Lowers `left` in the file of the rows to the number of uses; yields the words whose row changed."""
     text = tree.text(own)
     for row in rows:
         left = len(list(uses_of(tree, row, own)))
