@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Prints a checksum of every image that `sonard render` makes of the scenes of configs/, on both engines.
+"""Prints a checksum of each image that `sonard render` makes from the scenes of configs/, on both engines.
 
-A change that means to leave images alone prints the same before and after, on one machine:
+If a change must not alter images, compare the output before and after it, on one machine:
 
     tests/images/image_checksums.py build/release/bin/sonard > before.txt
     ... build the change ...
