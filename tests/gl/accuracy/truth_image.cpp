@@ -14,7 +14,8 @@ namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
 
-/// Adds the two azimuths at which the cosine of the angle from `centre` is `cosine`; NaN if there are none.
+/// Adds the two azimuths at which the cosine of the angle from `centre` is `cosine`; NaN if there is no such
+/// azimuth.
 void add_cosine(double cosine, double centre, std::vector<double>& kinks) {
   const double aside = std::acos(cosine);
   kinks.push_back(centre - aside);

@@ -34,7 +34,7 @@ double distribution(double x, double wide, double narrow) {
 Footprint footprint(const render::SurfaceSample& sample, double x, double y, double dx, double dy,
                     double width, double height, double side_slope, double lines_per_m) {
   // The plane n.p = 1 of the sample: along the ray (x, y, 1) the inverse of the depth is n.q, and range =
-  // depth |q|, so its gradient follows from that of the range.
+  // depth |q|, so its gradient follows from the range's gradient.
   const double norm = std::sqrt(1 + x * x + y * y);
   const double inverse = norm / static_cast<double>(sample.range_m);
   const double gx = inverse * (x / (norm * norm) - static_cast<double>(sample.range_dx / sample.range_m));

@@ -85,7 +85,7 @@ TEST_P(Refraction, LowestRayMeetsTheBedWhereItsParabolaDoes) {
   }
 }
 
-// Rays bend in the world's vertical, whatever the tilt of the sonar.
+// Rays bend in the world's vertical at any tilt of the sonar.
 TEST_P(Refraction, WorldsVerticalCountsAndNotTheSonars) {
   for (const double pitch : {2.0, 6.0}) {
     SonarRenderer renderer(bed(), bent());

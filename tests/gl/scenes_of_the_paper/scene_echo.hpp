@@ -30,7 +30,7 @@ class SceneEcho {
   double at(int beam, int line) const;
   /// Sum of the lines that begin in [from_m, to_m).
   double energy(int beam, double from_m, double to_m) const;
-  /// Middle of the first line from `from_m` on with more than `threshold`; infinity if there is none.
+  /// Middle of the first line from `from_m` on with more than `threshold`; infinity if there is no such line.
   double first_range_m(int beam, double from_m, double threshold) const;
   /// Middle of the strongest line that begins in [from_m, to_m).
   double strongest_range_m(int beam, double from_m, double to_m) const;

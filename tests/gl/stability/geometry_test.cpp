@@ -72,7 +72,7 @@ TEST_P(Geometry, S4_ZeroOrMissingNormalsBecomeGeometricOnes) {
     const EchoImage image =
         SonarRenderer(harbour_with_ball(repaired), options()).render_echo(quiet_request());
     EXPECT_TRUE(is_sane(image));
-    // 64 facets around: their normals depart from those of the ball by up to 2.8 degrees.
+    // 64 facets around: their normals differ from the ball's by up to 2.8 degrees.
     EXPECT_NEAR(sum(image) / sum(clean), 1.0, 5e-3);
   }
 }

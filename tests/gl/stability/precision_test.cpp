@@ -98,7 +98,7 @@ TEST_P(Precision, S3_GrazingIncidence) {
     ASSERT_TRUE(is_sane(image)) << gamma_deg;
     EXPECT_LT(sum(image), before) << gamma_deg;
     before = sum(image);
-    if (gamma_deg > 5e-5) {  // weaker echoes are less than a unit of the sums, 2^-40 of what a beam can hold
+    if (gamma_deg > 5e-5) {  // weaker echoes are less than a unit of the sums, 2^-40 of a beam's maximum
       EXPECT_NEAR(sum(image) / (full_mu * gamma * gamma * 5 / 256 * degree), 1.0, 0.02) << gamma_deg;
     }
   }
