@@ -81,7 +81,7 @@ TEST(PulseCorrelation, SquaresOfItsWeightsAddUpToOne) {
 }
 
 // A box three lines long: [1 1 1]. One of two and a half, in the middle of a line: [3/4 1 3/4]. Under a Hann
-// window the main lobe is twice as wide, 1/2 where a bare chirp is 0.
+// window the main lobe is twice as wide, 1/2 where the lobe of a bare chirp is 0.
 TEST(PulseCorrelation, EveryPulseHasItsShape) {
   const PulseCorrelation three(PhysicalModel::Pulse::tone, 3 * step_m, step_m);
   EXPECT_EQ(three.reach(), 1);

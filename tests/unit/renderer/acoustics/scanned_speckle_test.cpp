@@ -85,7 +85,7 @@ TEST(ScannedSpeckle, AmplitudesStayRayleigh) {
   EXPECT_NEAR(square / n / 1e-4, 2, 0.15);
 }
 
-// The vehicle turns to port while the head turns to starboard: the beam points where it pointed.
+// The vehicle turns to port while the head turns to starboard: the beam keeps its bearing in the world.
 TEST(ScannedSpeckle, TurnsOfTheVehicleAboutTheAxisAreTurnsOfTheHead) {
   for (const glm::dvec3& axis : {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::dvec3(0.6, 0, -0.8)}) {
     const Pose mounted{{1, 2, 3}, glm::angleAxis(0.7, axis)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single objects in the water: their density, their places, and none behind the first echo.
+// Single objects in the water: their density and places; the first echo hides objects behind it.
 #include "renderer/acoustics/water_clutter.hpp"
 #include "tests/support/degree.hpp"
 

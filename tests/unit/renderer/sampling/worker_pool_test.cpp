@@ -44,7 +44,7 @@ TEST(WorkerPool, WakesFromAnyState) {
   }
 }
 
-// All threads of a run see what the run before wrote.
+// All threads of a run see the writes of the run before.
 TEST(WorkerPool, RunsSeeWhatEarlierOnesWrote) {
   WorkerPool pool(4);
   std::vector<int> values(257, 0);

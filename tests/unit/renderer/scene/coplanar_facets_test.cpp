@@ -542,7 +542,7 @@ TEST(CoplanarFacets, NothingIsMadeOfNothing) {
   EXPECT_EQ(places_of_facets(merge_coplanar_facets(points)), places_of_facets(points));
 }
 
-// The planes compared are those of one facet each. Corners 30 m away are rounded by 1e-6 m. Over the plate
+// Each plane compared is the plane of one facet. Corners 30 m away are rounded by 1e-6 m. Over the plate
 // this tilts the plane of one cell by 1e-6 m for every cell, and by no more than `flat_m` for 16 of them.
 TEST(CoplanarFacets, PlatesInAnyAttitudeMergeToAFewTriangles) {
   for (const int cells : {2, 4, 8, 16, 32, 64}) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr glm::dvec3 size_m(60.0, 58.0, 8.0);
 
-/// 3 x 3 tiles, those of the last row and column smaller and of odd sides. Nowhere smooth.
+/// 3 x 3 tiles; the last row and column are smaller and have odd sides. Nowhere smooth.
 GreyImage rough_picture() {
   GreyImage picture{300, 290, {}};
   std::uint32_t random = 1;

@@ -153,7 +153,7 @@ TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
       << "a number that is given outright is nobody's extrapolation";
 }
 
-/// The I/O thread: runs what the render thread has posted.
+/// The I/O thread: runs the tasks that the render thread has posted.
 class Inbox {
  public:
   Post post() {
@@ -229,7 +229,7 @@ class VirtualDaemon {
     command(gemini::ping_of(32, gemini::RunMode::continuous, 100ms));
   }
 
-  /// The vehicle moves with 1 m/s along x, so that x tells the time of a pose; ten poses a second.
+  /// The vehicle moves with 1 m/s along x, so that x is the time of a pose in seconds; ten poses a second.
   void run_until(TimePoint end) {
     while (now_ < end && !failed) {
       now_ += 100ms;

@@ -159,7 +159,7 @@ TEST(Extremes, S13_SpeckleSurvivesEveryMotion) {
   }
 }
 
-// TVG at range 0 would be minus infinity dB: a line's gain is that of its middle.
+// TVG at range 0 would be minus infinity dB: a line takes the gain of its middle.
 TEST(Extremes, S17_TvgIsFiniteFromTheFirstMicrometreOn) {
   PhysicalModel model;
   for (const double step_m : {1e-6, 0.01, 1e4}) {
@@ -178,7 +178,7 @@ TEST(Extremes, S17_TvgIsFiniteFromTheFirstMicrometreOn) {
   }
 }
 
-// An echo far above full scale fills every code of both formats and wraps in none.
+// An echo far above full scale gives the highest code in both formats and does not wrap around.
 TEST(Extremes, S17_SaturationEverywhereDoesNotWrap) {
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
