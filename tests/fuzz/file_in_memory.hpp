@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file whose content changes with each input, for readers that want a path.
+// A file whose content changes with each input, for readers that need a path.
 #pragma once
 
 #include <unistd.h>

@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_decoded(decode_command(frame), frame);
     check_decoded(decode_report(frame), frame);
   }
-  // As one frame, whatever its length fields. encode() cuts lines that are longer than a head's.
+  // As one frame, with any length fields. encode() cuts lines that are longer than a head's.
   if (size <= max_bins) {
     check_decoded(decode_command(stream), stream);
     check_decoded(decode_report(stream), stream);
