@@ -76,8 +76,8 @@ TEST_P(ScannedScenes, WallsOfTheTank) {
 
 TEST(ScannedScenesOnRay, PillarOfTheTankHidesTheWall) {
   const SceneEcho scene("tank", scanned_on_cpu);
-  // Radius 0.3 m about (5, 1.3) from the sonar: nearest at hypot(5, 1.3) - 0.3, half as wide as
-  // 2 asin(0.3 / 5.166), 3.3 degrees.
+  // Radius 0.3 m about (5, 1.3) from the sonar: nearest at hypot(5, 1.3) - 0.3, half of its width is
+  // asin(0.3 / 5.166) = 3.3 degrees.
   const double bearing = std::atan2(1.3, 5.0);
   const int line = scene.beam_at(bearing);
   EXPECT_NEAR(scene.first_range_m(line, 0, 1e-3 * scene.strongest(line, 0, 12)), std::hypot(5, 1.3) - 0.3,
