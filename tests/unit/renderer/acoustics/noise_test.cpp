@@ -55,7 +55,7 @@ TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
   EXPECT_NEAR(hit / pings, 0.07, 4 * std::sqrt(0.07 / pings));
   EXPECT_NEAR(first / hit, 500, 4 * 289 / std::sqrt(hit));
   EXPECT_NEAR(raise_db / hit, 6.5, 4 * 2.6 / std::sqrt(hit));
-  // Of 50 m: 0.1 by choice, and of the others those that begin within their length of the end, a share of
+  // Of 50 m: 0.1 by choice, and of the others the bursts that begin within their length of the end:
   // 4 m * 3 / (4 ln 2) / 50 m = 0.0866.
   EXPECT_NEAR(to_the_end / hit, 0.1 + 0.9 * 0.0866, 4 * 0.39 / std::sqrt(hit));
   // Half of the bursts of 4 m that end by themselves, and those to the end, if there is room.

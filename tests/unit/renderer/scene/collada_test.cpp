@@ -385,7 +385,7 @@ TEST_F(Collada, AppliesTransformsOfNodes) {
   EXPECT_NEAR(measures_of(load(document)).volume_m3, 1.0, 1e-5);
 }
 
-/// Gazebo applies translation, rotation and scale in its own order; a matrix replaces them.
+/// Gazebo composes them as translation, rotation, scale, in any order of the file; a matrix replaces them.
 TEST_F(Collada, OrdersTransformsAsGazebo) {
   const auto box_of_node = [&](const std::string& transforms) {
     Document document;

@@ -404,7 +404,7 @@ TEST(CoplanarFacets, BendsAreKept) {
 }
 
 /// Expects that no facet is turned at its corners against the arc of bent_sheet() by more than allowed. A
-/// facet and those it replaces lie within flat_rad of the plane of one facet, and the arc turns by half a
+/// facet and the facets it replaces lie within flat_rad of one facet's plane, and the arc turns by half a
 /// step within each. The rest is rounding.
 void expect_along_arc(const TriangleMesh& merged, double strip_m, double step_rad) {
   for (const Facet& facet : facets_of(merged)) {

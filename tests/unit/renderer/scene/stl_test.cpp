@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL files, text and binary, as found in public. Boxes and counts are computed by hand.
+// STL files, text and binary, with variants of public files. Boxes and counts are computed by hand.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>

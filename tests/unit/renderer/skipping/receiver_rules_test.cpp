@@ -151,7 +151,7 @@ TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
   expect_within_bound(SkipRule::long_lines, request, 0);
 }
 
-// nu is 30 at 0.4 m and exceeds 20 beyond 0.267 m: in the lines 27 to 49 of those with an echo.
+// nu is 30 at 0.4 m and exceeds 20 beyond 0.267 m: in the lines with an echo, from 27 to 49.
 TEST(ReceiverRules, ManyScatterersAreNotTextured) {
   PingRequest request = request_of(64);
   request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
