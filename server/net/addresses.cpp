@@ -15,7 +15,8 @@ using boost::system::error_code;
 
 namespace {
 
-/// What stands before the first `mark`; `text` keeps what follows it. Everything when there is none.
+/// Splits at the first `mark`: returns the text before it, and `text` keeps the text after it. Without a
+/// `mark`, returns everything.
 std::string_view take_until(std::string_view& text, char mark) {
   const std::size_t at = text.find(mark);
   const std::string_view head = text.substr(0, at);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // IPv4 addresses as text: "127.0.0.2", "127.0.0.0/8", "127.0.0.1:14600", "00:12:34:00:02:01".
-// Strict: no spaces, no names, nothing left over.
+// Strict: no spaces, no names, no trailing text.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace sonard::server {
 
-/// Block of addresses, "127.0.0.0/8".
+/// A block of addresses, "127.0.0.0/8".
 struct Cidr {
   Ipv4 network = 0;        ///< host bits are zero
   int prefix_length = 32;  ///< 0..32
@@ -23,25 +23,25 @@ struct Cidr {
   bool operator==(const Cidr&) const = default;
 };
 
-/// Whom a socket listens to. A datagram or connection from elsewhere is counted and dropped.
+/// Addresses that a socket accepts. Datagrams and connections from other addresses are counted and dropped.
 using AllowList = std::vector<Cidr>;
 
-/// True when one of the blocks contains the address; an empty list allows no one.
+/// True if one of the blocks contains the address; false for an empty list.
 bool allows(const AllowList& list, Ipv4 address);
 
 std::optional<Ipv4> parse_ipv4(std::string_view text);
-/// "address/length" with zero host bits, or an address alone, which is a block of one.
+/// "address/length" with zero host bits, or a single address, which is a block of one.
 std::optional<Cidr> parse_cidr(std::string_view text);
 /// "address:port".
 std::optional<Endpoint> parse_endpoint(std::string_view text);
-/// Six octets of two hexadecimal digits, parted by colons.
+/// Six octets of two hexadecimal digits, separated by colons.
 std::optional<std::array<std::uint8_t, 6>> parse_mac(std::string_view text);
 
 std::string cidr_text(const Cidr& block);
 
-/// The mask of a prefix length 0..32.
+/// The mask of a prefix length in 0..32.
 Ipv4 netmask_of(int prefix_length);
-/// Number of leading ones; nullopt when the mask has a hole.
+/// Number of leading ones; nullopt if the mask has a hole.
 std::optional<int> prefix_length_of(Ipv4 netmask);
 
 inline bool is_loopback(Ipv4 address) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A datagram between a head and the other end, with both ends named.
+// A datagram between a head and a client, with both addresses.
 #pragma once
 
 #include "protocol/common/endpoint.hpp"
@@ -8,8 +8,8 @@
 namespace sonard::server {
 
 struct Datagram {
-  Endpoint remote;  ///< where it goes to or came from
-  /// Our address: the one it was sent to, or the one it shall come from. 0: the kernel chooses by its routes.
+  Endpoint remote;  ///< destination or source
+  /// Our address: its destination, or the source to use. 0: the kernel chooses by its routes.
   Ipv4 local = 0;
   SharedBytes bytes;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One timer that always waits for the next thing that is due.
+// One timer that always waits for the next deadline.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@
 
 namespace sonard::server {
 
-/// Belongs to the I/O thread. `due` is called there when the deadline has come; it must bear that its owner
-/// is gone (a weak pointer), for a call may already be queued when the timer is cancelled or destroyed.
+/// Belongs to the I/O thread, where `due` is called at the deadline. `due` must be valid if its owner is gone
+/// (use a weak pointer), because a call may already be queued when the timer is cancelled or destroyed.
 class DeadlineTimer {
  public:
   explicit DeadlineTimer(boost::asio::io_context& io) : timer_(io) {}
 
-  /// Set again before anything is waited for, and once `due` has been called. nullopt: nothing is due.
+  /// Sets the next deadline and callback; no effect if the deadline is the same. nullopt: no deadline.
   void set(const std::optional<TimePoint>& deadline, std::function<void()> due) {
     if (deadline == deadline_) {
       return;
@@ -35,7 +35,7 @@ class DeadlineTimer {
       });
     }
   }
-  /// To be called first by what `due` calls: the deadline has passed.
+  /// The callback must call this first: the deadline has passed.
   void passed() { deadline_.reset(); }
   void cancel() {
     deadline_.reset();

@@ -9,10 +9,10 @@
 namespace sonard::server {
 namespace {
 
-// A datagram held back for reordering leaves after this long if no other comes to overtake it.
+// Limit for holding back a datagram for reordering, if no other one overtakes it.
 constexpr TimePoint hold_limit = std::chrono::milliseconds{10};
 
-// SplitMix64 (Steele, Lea, Flood 2014): every state is good, so any seed is.
+// SplitMix64 (Steele, Lea, Flood 2014): every state is valid, so any seed is.
 std::uint64_t next_random(std::uint64_t& state) {
   state += 0x9E3779B97F4A7C15u;
   std::uint64_t mixed = state;
@@ -54,7 +54,7 @@ double FaultyLink::draw() {
 }
 
 void FaultyLink::push(TimePoint now, Datagram datagram) {
-  // All are drawn before any is used: the fate of later datagrams must not depend on this one's.
+  // All numbers are drawn first: the faults of later datagrams must not depend on this one's.
   const bool lose = draw() < faults_.loss;
   const bool duplicate = draw() < faults_.duplicate;
   const bool reorder = draw() < faults_.reorder;

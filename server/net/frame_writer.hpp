@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole frames into a stream whose other end may be slow.
+// Writes whole frames to a stream whose reader may be slow.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,11 @@ namespace sonard::server {
 
 enum class FrameFate : std::uint8_t {
   sent,
-  no_room,    ///< dropped: the reader has not taken what it was sent before
+  no_room,    ///< dropped: the reader has not read earlier data
   no_reader,  ///< dropped: the other end is gone
 };
 
-/// @return whether it was sent
+/// @return true if it was sent
 inline bool count_frame(FrameFate fate, std::size_t bytes, SerialPortCounters& counters) {
   counters.bytes_out += fate == FrameFate::sent ? bytes : 0;
   counters.frames_dropped += fate == FrameFate::no_room ? 1 : 0;
@@ -29,15 +29,15 @@ inline bool count_frame(FrameFate fate, std::size_t bytes, SerialPortCounters& c
   return fate == FrameFate::sent;
 }
 
-/// Stream is a non-blocking tcp::socket or posix::stream_descriptor that outlives the writer. Errors of the
-/// stream are left to the reader of the stream: they end the session there.
+/// Stream is a non-blocking tcp::socket or posix::stream_descriptor that outlives the writer. Errors are left
+/// to the reader of the stream, which ends the session.
 template <typename Stream>
 class FrameWriter {
  public:
   explicit FrameWriter(Stream& stream) : stream_(stream) {}
 
-  /// One write. When the stream takes only a part, the rest is kept until it takes that too.
-  /// @param owner of this writer and the stream, kept alive until then
+  /// Writes once. If the stream takes only a part, the rest is kept and written later.
+  /// @param owner of this writer and the stream, kept alive until the rest is written
   FrameFate send(std::span<const std::uint8_t> frame, const std::shared_ptr<void>& owner) {
     if (!rest_.empty()) {
       return FrameFate::no_room;
@@ -52,7 +52,7 @@ class FrameWriter {
     return FrameFate::sent;
   }
 
-  /// Forgets the rest of a frame whose reader is gone.
+  /// Drops the rest of a frame whose reader is gone.
   void clear() { rest_.clear(); }
 
  private:

@@ -37,7 +37,7 @@ std::vector<std::string> interface_names() {
 bool is_up(const std::string& interface) {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
-    return true;  // not known
+    return true;  // unknown
   }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
   for (const ifaddrs* item = list; item != nullptr; item = item->ifa_next) {
@@ -48,7 +48,7 @@ bool is_up(const std::string& interface) {
   return false;
 }
 
-/// Whether an interface could be called so. Digits and dots alone are an address, if a wrong one.
+/// True if an interface could have this name. Only digits and dots are an address, even if an invalid one.
 bool may_be_a_name(std::string_view text) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; };
   return text.size() < IFNAMSIZ && std::ranges::all_of(text, fits) &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The IPv4 addresses of this machine, to tell a user about a head that no client could talk to.
+// The IPv4 addresses of this machine, for warnings about heads that no client can reach.
 #pragma once
 
 #include <optional>
@@ -18,46 +18,47 @@ struct InterfaceAddress {
   Ipv4 netmask = 0;
 };
 
-/// Addresses of all interfaces that are up. Empty when the OS does not tell.
+/// Addresses of all interfaces that are up. Empty if the OS does not list them.
 std::vector<InterfaceAddress> interface_addresses();
 
-/// The entry this address belongs to: the one that is this address, or, as all of 127.0.0.0/8 is local, the
-/// loopback entry whose network it is in. nullopt: not an address of this machine.
+/// The entry to which this address belongs: the entry with this address, or the loopback entry whose network
+/// contains it (all of 127.0.0.0/8 is local). nullopt: not an address of this machine.
 std::optional<InterfaceAddress> owner_of(Ipv4 address, const std::vector<InterfaceAddress>& interfaces);
 
-/// An address of this machine as a configuration gives it.
+/// An address of this machine, as configured.
 struct OwnAddress {
   Ipv4 address = 0;
   Ipv4 netmask = 0;
-  std::string interface {};  ///< by whose name it was given; empty: as numbers
-  /// Why the interface has none, in words: "eth0 has no IPv4 address (yet)"; empty: it has.
+  std::string interface {};  ///< the interface that gave it; empty: given as numbers
+  /// Why the interface has no address, in words: "eth0 has no IPv4 address (yet)"; empty: it has one.
   std::string trouble{};
 };
 
-/// "10.61.19.200", or the name of an interface, "eth0": the first of its addresses. A name that no interface
-/// has, and one of an interface without an address, may be that of one which is not plugged in yet: they have
-/// a `trouble`. nullopt: neither an address nor a name.
+/// Parses "10.61.19.200", or the name of an interface, "eth0": the first of its addresses. An unknown name,
+/// or an interface without an address, may be plugged in later, so the result has a `trouble`. nullopt:
+/// neither an address nor a name.
 std::optional<OwnAddress> parse_own_address(std::string_view text);
-/// "255.255.255.0", or the name of an interface: the mask of the first of its addresses. Likewise.
+/// Parses "255.255.255.0", or the name of an interface: the mask of the first of its addresses. As
+/// parse_own_address().
 std::optional<OwnAddress> parse_own_netmask(std::string_view text);
 
-/// The address that a head takes which is named by its interface and has an address: nullopt as long as the
-/// interface has that, or none at all; else the first of it.
-/// @param interface empty: the head is not named by one
+/// The new address of a head that is named by its interface: the first address of the interface. nullopt if
+/// the interface still has `address`, or has no address.
+/// @param interface empty: the head is not named by an interface
 std::optional<InterfaceAddress> followed(const std::string& interface, Ipv4 address,
                                          const std::vector<InterfaceAddress>& now);
 
-/// Tells addresses that this machine had from those that it never had.
+/// Distinguishes addresses that this machine had from addresses that it never had.
 class OwnAddresses {
  public:
   struct News {
     std::vector<Ipv4> gone, back;
   };
-  /// @param own that are served; 0 is all of them, which never goes
-  /// @param now interface_addresses(); empty: not known, and nothing changes
+  /// @param own served addresses; 0 is all addresses, and is never gone
+  /// @param now interface_addresses(); empty: unknown, no change
   News look(const std::vector<Ipv4>& own, const std::vector<InterfaceAddress>& now);
 
-  /// Those served that were here and are not.
+  /// Served addresses that existed and are gone.
   const std::set<Ipv4>& gone() const { return gone_; }
 
  private:

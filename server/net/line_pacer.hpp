@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One direction of a serial line: what is put in comes out when its last byte would have arrived.
+// One direction of a serial line: an item comes out when its last byte would have arrived.
 #pragma once
 
 #include <algorithm>
@@ -14,21 +14,20 @@
 
 namespace sonard::server {
 
-/// Items keep their order and come out whole. A byte takes ten bits, one of them the start bit and one the
-/// stop bit (8 data bits, no parity, 1 stop bit), and begins when the one before it has
-/// ended, so an item of n bytes on an idle line comes out n * 10 / baud seconds after it went in: 22 bytes at
-/// 115200 baud take 1.9 ms. Without a speed it comes out at once.
+/// Items keep their order and come out whole. A byte takes ten bits (start bit, 8 data bits, no parity, stop
+/// bit), and begins when the one before it has ended. So an item of n bytes on an idle line comes out after n
+/// * 10 / baud seconds: 22 bytes at 115200 baud take 1.9 ms. Without a speed it comes out at once.
 ///
-/// Pure: time goes in, items come out. Time must not go backwards.
+/// Pure: time is an argument, and must not go backwards.
 template <typename Item>
 class LinePacer {
  public:
   /// @param baud bits per second; 0: infinitely fast
-  /// @param most_bytes that may be on their way at any time; what would exceed them is refused
+  /// @param most_bytes limit of the bytes in transit; items beyond it are refused
   LinePacer(int baud, std::size_t most_bytes) : baud_(baud), most_bytes_(most_bytes) {}
 
-  /// @param size of the item on the line; 0 for an event between bytes
-  /// @return false when the item was refused
+  /// @param size of the item on the line, in bytes; 0 for an event between bytes
+  /// @return false if the item was refused
   bool push(TimePoint now, Item item, std::size_t size) {
     if (size > most_bytes_ - bytes_) {
       return false;
@@ -39,7 +38,7 @@ class LinePacer {
     return true;
   }
 
-  /// The next item that has arrived by now.
+  /// The next item that has arrived by `now`.
   std::optional<Item> pop_due(TimePoint now) {
     if (queue_.empty() || queue_.front().due > now) {
       return std::nullopt;
@@ -54,7 +53,7 @@ class LinePacer {
     return queue_.empty() ? std::nullopt : std::optional{queue_.front().due};
   }
 
-  /// Drops what is on its way; the line is idle.
+  /// Drops all items in transit; the line is then idle.
   void clear() {
     queue_.clear();
     bytes_ = 0;
@@ -75,7 +74,7 @@ class LinePacer {
       return TimePoint{0};
     }
     const std::int64_t bits = static_cast<std::int64_t>(size) * 10;
-    return TimePoint{(bits * std::nano::den + baud_ - 1) / baud_};  // never early
+    return TimePoint{(bits * std::nano::den + baud_ - 1) / baud_};  // rounded up: never early
   }
 
   int baud_;

@@ -51,7 +51,7 @@ std::string unlock_slave(int master) {
   return path.data();
 }
 
-/// Raw mode without echo, and nothing left to read. What clients have written stays.
+/// Sets raw mode without echo, and drops unread input. Data that clients have written stays.
 void reset_slave(const std::string& path) {
   const int slave = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (slave < 0) {
@@ -68,10 +68,10 @@ void reset_slave(const std::string& path) {
   }
 }
 
-/// Where a symbolic link leads to when that is a slave; empty for everything else.
+/// Target of a symbolic link if it is a slave, else empty.
 std::string linked_slave(const fs::path& link) {
   std::error_code error;
-  const std::string target = fs::read_symlink(link, error);  // fails for what is no link
+  const std::string target = fs::read_symlink(link, error);  // fails if it is not a link
   return !error && target.starts_with(slave_folder) ? target : std::string();
 }
 
@@ -126,17 +126,17 @@ void PtyPort::Impl::open() {
   error_code error;
   master.non_blocking(true, error);
   path = unlock_slave(master.native_handle());
-  reset_slave(path);  // only a slave that was open once counts as closed
+  reset_slave(path);  // only a slave that was opened once counts as closed
   if (!config.link.empty()) {
     make_link(config.link, path);
   }
 }
 
-/// Waits for a client to open the slave.
+/// Polls until a client opens the slave.
 void PtyPort::Impl::check_client() {
   pollfd state{master.native_handle(), POLLIN, 0};
   poll(&state, 1, /*timeout=*/0);
-  // A client that has written and closed again since the last check counts too.
+  // A client that wrote and closed since the last check counts too.
   if ((state.revents & POLLHUP) == 0 || (state.revents & POLLIN) != 0) {
     occupied = true;
     ++counters.connections;
@@ -163,7 +163,7 @@ void PtyPort::Impl::wait_readable() {
 void PtyPort::Impl::on_readable() {
   error_code error;
   const std::size_t length = master.read_some(asio::buffer(buffer), error);
-  if (error && error != asio::error::would_block) {  // EIO: the slave is closed, and all it sent is read
+  if (error && error != asio::error::would_block) {  // EIO: the slave is closed, and all its data is read
     leave();
     return;
   }
@@ -185,7 +185,7 @@ void PtyPort::Impl::leave() {
   log.info("serial {}: closed", description());
   try {
     reset_slave(path);
-  } catch (const std::runtime_error& error) {  // the next client may find what this one did not read
+  } catch (const std::runtime_error& error) {  // the next client may read data that this one did not
     log.warn("serial {}: {}", description(), error.what());
   }
   if (events.ended) {

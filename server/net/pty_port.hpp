@@ -14,18 +14,17 @@ class io_context;
 
 namespace sonard::server {
 
-/// The slave is in raw mode, without echo, each time a client finds it closed, whatever the one before had
-/// set; what that one left unread is gone. Clients may open it several at a time; as on a real tty each byte
-/// then goes to one of them, and they have left when the last has closed it.
+/// The slave is in raw mode, without echo, each time a client finds it closed, whatever settings the last
+/// client made; unread data of the last client is dropped. Several clients may open it at a time: as on a
+/// real tty, each byte then goes to one of them, and they count as gone when the last one closes it.
 ///
-/// The kernel tells when the slave is closed, but not when it is opened: that is looked for every
-/// `look_again` while nobody is there, and until it is noticed a client gets nothing. What it has written by
-/// then is not lost. Likewise, a client that opens the slave in the moment between another's close and its
-/// being noticed goes on where that one was.
+/// The kernel reports when the slave is closed, but not when it is opened. So while it is closed, it is
+/// polled every `look_again`. Until the port notices a client, the client receives nothing, but its data is
+/// not lost. A client that opens the slave between another's close and its detection continues that client's
+/// session.
 ///
-/// The link is made in the constructor and removed by stop(), unless something else stands there by then. A
-/// link to a slave that is already there is taken for one left behind by a crash, and replaced; anything else
-/// is not.
+/// The constructor makes the link, and stop() removes it unless it has been replaced. An existing link to a
+/// slave counts as left by a crash and is replaced. Any other existing file is not.
 class PtyPort final : public SerialPort {
  public:
   static constexpr std::chrono::milliseconds look_again{20};

@@ -22,7 +22,7 @@ namespace asio = boost::asio;
 
 using Frame = std::vector<std::uint8_t>;
 
-/// A read of a client, or its departure.
+/// Bytes read from a client, or its departure.
 struct Incoming {
   std::string peer;
   std::vector<std::uint8_t> bytes;  ///< empty: the client has left
@@ -35,7 +35,7 @@ std::optional<TimePoint> earlier(const std::optional<TimePoint>& one, const std:
 }  // namespace
 
 struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
-  /// The address that has the line.
+  /// The address that holds the line (lock_to_first).
   struct Holder {
     Ipv4 address = 0;
     TimePoint newest_bytes{};
@@ -59,7 +59,7 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   std::vector<std::unique_ptr<TcpPort>> tcp;
   std::vector<std::unique_ptr<UdpPort>> udp;
   std::vector<std::unique_ptr<PtyPort>> pty;
-  std::vector<SerialPort*> ports;  // all of the above
+  std::vector<SerialPort*> ports;  // pointers to all of the above
   LinePacer<Frame> to_clients;
   LinePacer<Incoming> from_clients;
   DeadlineTimer timer;
@@ -69,7 +69,7 @@ struct SerialLink::Impl : std::enable_shared_from_this<SerialLink::Impl> {
   decltype(SerialPortEvents::ended) ended;
   bool running = false;
   bool pumping = false;
-  SerialLinkCounters counters;  // those of the ports are added when asked for
+  SerialLinkCounters counters;  // without the ports' counters, which counters() adds
 };
 
 SerialLink::Impl::Impl(asio::io_context& io, const SerialLinkConfig& config, const Clock& used_clock)
@@ -167,15 +167,15 @@ void SerialLink::Impl::take(Incoming incoming) {
     return;
   }
   if (!connected()) {
-    // What was sent to clients that have left must not reach the next one.
+    // Frames for clients that have left must not reach the next client.
     counters.frames_unheard += to_clients.waiting();
     to_clients.clear();
   }
   pump();
 }
 
-// Does all that is due now and sleeps until the next thing is. A callback may send, which the loop sees to
-// after it, or end the link.
+// Processes everything that is due and sleeps until the next deadline. A callback may send, which the loop
+// handles afterwards, or stop the link.
 void SerialLink::Impl::pump() {
   if (pumping) {
     return;

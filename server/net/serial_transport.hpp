@@ -7,7 +7,7 @@
 
 namespace sonard::server {
 
-/// Every message goes to everybody who is connected, whatever Peer it names: on such a line all receive all.
+/// Every message goes to all connected clients, whatever Peer it names.
 class SerialTransport final : public Transport {
  public:
   /// @throws SocketError

@@ -67,7 +67,7 @@ std::vector<std::string> SeveralTransports::descriptions() const {
 std::string SeveralTransports::faults() const {
   for (const std::unique_ptr<Transport>& transport : transports_) {
     if (std::string faults = transport->faults(); !faults.empty()) {
-      return faults;  // one section of the configuration for all
+      return faults;  // the same section of the configuration sets all
     }
   }
   return "";

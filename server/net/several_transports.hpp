@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head that is reached in several ways at once.
+// A head that is reached through several transports at once.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace sonard::server {
 
-/// Channel i of the device (Peer::channel) is the i-th transport. What goes to everybody goes out on all of
+/// Channel i of the device (Peer::channel) is the i-th transport. Messages to everybody go out on all of
 /// them.
 class SeveralTransports final : public Transport {
  public:
@@ -24,7 +24,7 @@ class SeveralTransports final : public Transport {
   bool blocked() const override;
   std::vector<std::string> descriptions() const override;
   std::string faults() const override;
-  /// Sums, over the channels, of what has one name.
+  /// Sums of equal counters over the channels.
   std::vector<Counter> counts() const override;
 
  private:

@@ -21,11 +21,11 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::seconds accept_retry{1};
-// A silent peer is asked after half a minute and given up half a minute later.
+// A silent peer is probed after half a minute and given up half a minute later.
 constexpr int keepalive_idle_s = 30;
 constexpr int keepalive_interval_s = 10;
 constexpr int keepalive_probes = 3;
-// For as long the kernel repeats what a peer does not acknowledge; else it does so for a quarter of an hour.
+// How long the kernel retransmits unacknowledged data; the default is a quarter of an hour.
 constexpr int unacknowledged_ms = 30'000;
 
 template <int Name>
@@ -55,8 +55,7 @@ void TcpListener::open() {
   };
   acceptor_.open(tcp::v4(), error);
   check("open");
-  // Connections of an earlier run that linger in TIME_WAIT must not block a restart. A live listener still
-  // does.
+  // Connections of an earlier run in TIME_WAIT must not block a restart. A live listener still does.
   acceptor_.set_option(tcp::acceptor::reuse_address{true}, error);
   check("set SO_REUSEADDR of");
   acceptor_.bind({boost::asio::ip::address_v4{local_.address}, local_.port}, error);
@@ -95,7 +94,7 @@ void TcpListener::on_accepted(const error_code& error, tcp::socket socket) {
     accept();
     return;
   }
-  // Out of file descriptors, most likely: asking again at once would only spin.
+  // Probably out of file descriptors: retrying at once would only spin.
   log_.error("{}: accept: {}", description(), error.message());
   retry_.expires_after(accept_retry);
   retry_.async_wait([self = shared_from_this()](const error_code& cancelled) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TCP port on which whoever is allowed to may connect.
+// A TCP port that accepts allowed clients.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,16 @@
 
 namespace sonard::server {
 
-/// A client whose machine or network is gone without a word is given up: a silent one within a minute, one
-/// that something is sent to within half a minute.
+/// A client whose machine or network has vanished is closed: a silent one within a minute, one with
+/// unacknowledged data within half a minute.
 ///
-/// Belongs to the I/O thread. Shared with the handlers that are queued for it, which find it closed once it
-/// is.
+/// Belongs to the I/O thread. Shared with its queued handlers, which find it closed after close().
 class TcpListener : public std::enable_shared_from_this<TcpListener> {
  public:
-  /// A client that is allowed; its socket closes where it is not kept.
+  /// Receives an allowed client; its socket closes if it is not kept.
   using Accepted = std::function<void(boost::asio::ip::tcp::socket socket, const Endpoint& peer)>;
 
-  /// `name` begins each line of the log: "pose stream tcp".
+  /// `name` begins each log line: "pose stream tcp".
   TcpListener(boost::asio::io_context& io, std::string name, const Endpoint& bind, AllowList allow)
       : name_(std::move(name)), local_(bind), allow_(std::move(allow)), acceptor_(io), retry_(io) {}
 
@@ -35,10 +34,10 @@ class TcpListener : public std::enable_shared_from_this<TcpListener> {
   void start(Accepted accepted);
   void close();
 
-  /// Counts a client whose socket is not kept; the log names the first, second, fourth, ... one.
+  /// Counts a client whose socket is not kept; for each reason, the 1st, 2nd, 4th, ... is logged.
   void refuse(const Endpoint& peer, const char* reason);
   std::uint64_t refused() const { return refused_; }
-  /// Where it listens; what it is to be bound to, until it is open.
+  /// The listening address; before open(), the configured one.
   const Endpoint& local() const { return local_; }
   /// "pose stream tcp 127.0.0.1:14601"
   std::string description() const { return name_ + " " + endpoint_text(local_); }

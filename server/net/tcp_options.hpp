@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all connections of clients have in common. (TcpListener finds those whose peer has vanished.)
+// Socket options of all client connections. (TcpListener detects vanished peers.)
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
 
 namespace sonard::server {
 
-/// Nothing waits for more, nothing blocks.
-/// @param send_buffer_bytes what a client that pauses finds when it goes on is old by up to so much
+/// Sends at once, never blocks.
+/// @param send_buffer_bytes limits how much old data a client reads after a pause
 inline void set_client_options(boost::asio::ip::tcp::socket& socket, int send_buffer_bytes) {
   using boost::asio::ip::tcp;
   boost::system::error_code ignored;  // the peer may be gone already

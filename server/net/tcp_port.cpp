@@ -21,8 +21,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-// What a client that pauses finds when it goes on is old by up to so much; the line itself would hold
-// nothing.
+// Limits how much old data a client reads after a pause; a real line would buffer nothing.
 constexpr int send_buffer_bytes = 16 << 10;
 
 }  // namespace
@@ -47,7 +46,7 @@ struct TcpPort::Impl : std::enable_shared_from_this<TcpPort::Impl> {
   PeerLog log;
 };
 
-/// One client. The set of its port owns it, and so does each pending handler.
+/// A client. The port's set and each pending handler own it.
 class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::shared_ptr<Impl> port, tcp::socket socket, const Endpoint& peer)
@@ -72,7 +71,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
     }
   }
 
-  /// When it last sent something; when it came, if it has not.
+  /// Time of the last bytes from it, or of its connection.
   TimePoint newest_bytes() const { return newest_bytes_; }
 
   /// Pending handlers find the socket closed.
@@ -81,7 +80,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
     socket_.close(ignored);
   }
 
-  /// Closes it and tells the link.
+  /// Closes it and reports it to the link.
   void leave(std::string_view why) {
     const auto self = shared_from_this();
     close();
@@ -128,7 +127,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
   std::array<std::uint8_t, serial_read_bytes> buffer_{};
 };
 
-/// False where all speak.
+/// Returns false if no client has been silent for most_silence.
 bool TcpPort::Impl::make_room() {
   if (sessions.size() < most_clients) {
     return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line as raw bytes over TCP, the way serial device servers give it.
+// A serial line as raw bytes over TCP, like serial device servers.
 #pragma once
 
 #include <chrono>
@@ -14,17 +14,17 @@ class io_context;
 
 namespace sonard::server {
 
-/// Bytes pass both ways unchanged; there are no RFC 2217 or telnet escapes.
-/// Segments mean nothing: a command may come in any pieces. A client that ends its sending direction has
-/// left. One that vanished without a word gives its place back (TcpListener). One that says nothing stays,
-/// for it may only listen, until there are most_clients: then the next takes the place of the one that is
-/// silent longest, and for most_silence at least.
+/// Bytes pass unchanged in both directions; there are no RFC 2217 or telnet escapes. Segments have no
+/// meaning: a command may come in any pieces. A client that ends its sending direction has left. A vanished
+/// client is closed (TcpListener). A silent client stays, because it may only listen. If there are
+/// most_clients, the next client replaces the one that has been silent longest, if that is at least
+/// most_silence.
 ///
-/// Shutdown: stop() closes acceptor and connections. Handlers that are still queued find them closed; they
-/// share ownership of the inner state, so the port may be destroyed before they run.
+/// Shutdown: stop() closes acceptor and connections. Queued handlers find them closed; they share ownership
+/// of the inner state, so the port may be destroyed before they run.
 class TcpPort final : public SerialPort {
  public:
-  /// Further clients are closed at once, and counted as refused.
+  /// Further clients replace a silent client, or are closed at once and counted as refused.
   static constexpr std::size_t most_clients = 16;
   static constexpr std::chrono::seconds most_silence{30};
 

@@ -58,7 +58,7 @@ struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
   std::uint64_t lost = 0;
 };
 
-/// One client. The list of its transport owns it, and so does each pending handler.
+/// A client. The transport's list and each pending handler own it.
 class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(std::shared_ptr<Impl> transport, tcp::socket socket, const Endpoint& remote)
@@ -137,7 +137,7 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
                       });
   }
 
-  // An error of the stream is left to its reader, who ends the session.
+  // Errors of the stream are left to its reader, which ends the session.
   void on_written(const error_code& error, std::size_t length) {
     transport_->bytes_out += length;
     if (error) {
@@ -162,7 +162,7 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
   tcp::socket socket_;
   WireEnds ends_;
   std::deque<SharedBytes> waiting_;  ///< the first is being sent
-  std::size_t waiting_bytes_ = 0;    ///< of those behind it
+  std::size_t waiting_bytes_ = 0;    ///< of the messages after the first
   TimePoint write_begun_at_{};       ///< of the first
   std::array<std::uint8_t, read_bytes> buffer_{};
 };
@@ -176,7 +176,7 @@ void TcpTransport::Impl::listen() {
 }
 
 void TcpTransport::Impl::close_stalled() {
-  const auto present = sessions;  // each is taken off the list
+  const auto present = sessions;  // a copy, because left() changes the list
   for (const auto& session : present) {
     if (session->is_stalled()) {
       session->close();
@@ -195,7 +195,7 @@ void TcpTransport::Impl::admit(tcp::socket socket, const Endpoint& remote) {
   ++connections;
   const auto session = std::make_shared<Session>(shared_from_this(), std::move(socket), remote);
   sessions.push_back(session);
-  // Behind what has happened already: who has left makes room for who comes.
+  // Posted, so that departures are reported before arrivals.
   asio::post(io, [self = shared_from_this(), session] {
     if (session->is_open()) {
       if (self->events.came) {
@@ -247,7 +247,7 @@ void TcpTransport::rebind(const Endpoint& bind) {
   const auto moved = std::make_shared<TcpListener>(impl_->io, "tcp", bind, impl_->allow);
   moved->open();
   std::exchange(impl_->listener, moved)->close();
-  const auto sessions = impl_->sessions;  // each is taken off the list
+  const auto sessions = impl_->sessions;  // a copy, because left() changes the list
   for (const auto& session : sessions) {
     session->close();
     impl_->left(session);
@@ -274,7 +274,7 @@ void TcpTransport::send(std::vector<Outgoing> messages) {
   }
 }
 
-// Its departure is told when the caller is done.
+// Reports the departure after the caller has returned.
 void TcpTransport::disconnect(const Peer& client) {
   const auto session = impl_->find(client);
   if (!session) {

@@ -21,27 +21,27 @@ namespace sonard::server {
 
 struct TcpTransportConfig {
   Endpoint bind;
-  AllowList allow;  ///< who may connect
+  AllowList allow;  ///< permitted clients
 };
 
-/// Each client is a stream of its own, from ClientCame to ClientGone; a client that ends its sending
-/// direction has left. Messages go to the Peer that they name. What goes to everybody is a broadcast, and not
-/// for streams.
+/// Each client is a separate stream, from ClientCame to ClientGone. A client that ends its sending direction
+/// has left. Messages go to the Peer that they name. Messages to everybody are broadcasts and are not sent on
+/// streams.
 ///
-/// A client that reads too slowly misses whole messages: while one waits for it, only short ones wait behind
-/// that, and the others are dropped. A message that has begun is always sent to its end. A client that did
-/// not take a message for most_stall is closed when another one comes: a device that serves one client at a
-/// time would be lost to it.
+/// A client that reads too slowly misses whole messages: while a message is being sent, only short ones are
+/// queued, and others are dropped. A started message is always sent completely. When a new client connects,
+/// clients that have not taken a message for most_stall are closed, because a device that serves one client
+/// at a time would otherwise be blocked.
 class TcpTransport final : public Transport {
  public:
-  /// Further clients are closed at once, and counted as refused.
+  /// Further clients are closed at once and counted as refused.
   static constexpr std::size_t most_clients = 16;
-  /// Short messages, and how many bytes of them may wait.
+  /// Limit of short messages, and of their queued bytes.
   static constexpr std::size_t short_message_bytes = 4096;
   static constexpr std::size_t most_waiting_bytes = 65536;
   static constexpr std::chrono::seconds most_stall{30};
 
-  /// @param clock outlives this
+  /// @param clock must outlive this object
   /// @throws SocketError
   TcpTransport(boost::asio::io_context& io, const TcpTransportConfig& config, const Clock& clock);
   ~TcpTransport() override;
@@ -53,7 +53,7 @@ class TcpTransport final : public Transport {
   std::vector<std::string> descriptions() const override;
   std::vector<Counter> counts() const override;
 
-  /// Moves the listener; clients are disconnected. @throws SocketError, and stays where it is
+  /// Moves the listener; disconnects clients. @throws SocketError, and keeps the old address
   void rebind(const Endpoint& bind);
   Endpoint local_endpoint() const;
 

@@ -27,9 +27,9 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 
 constexpr std::size_t batch_size = 64;         // datagrams per system call
-constexpr int receive_rounds_per_wake = 4;     // then others get their turn on the I/O thread
-constexpr int receive_buffer_bytes = 4 << 20;  // the kernel gives at most net.core.rmem_max
-// Small on purpose: on a slow link datagrams then wait in the head, which knows of it, and not in the kernel.
+constexpr int receive_rounds_per_wake = 4;     // then other handlers get their turn on the I/O thread
+constexpr int receive_buffer_bytes = 4 << 20;  // limited by net.core.rmem_max
+// Small on purpose: on a slow link, datagrams then wait in the head, which can count them, not in the kernel.
 constexpr int datagram_send_buffer_bytes = 256 << 10;
 
 constexpr std::size_t receive_control_bytes =
@@ -109,7 +109,7 @@ struct SendBatch {
 
   void prepare(std::size_t i, const Datagram& datagram) {
     to[i] = to_sockaddr(datagram.remote);
-    // The system call does not write through the pointer, but iovec serves reading and writing alike.
+    // The system call does not write through this pointer; iovec has no const variant.
     vectors[i] = {const_cast<std::uint8_t*>(datagram.bytes.data()), datagram.bytes.size()};
     headers[i] = {};
     msghdr& header = headers[i].msg_hdr;
@@ -178,7 +178,7 @@ void UdpEndpoint::Impl::open(const Endpoint& bind, Sharing sharing) {
   }
   const int fd = socket.native_handle();
   set_option(fd, SOL_SOCKET, SO_BROADCAST, 1, "SO_BROADCAST");
-  // Where it is not known, in some sandboxes and emulators, what the kernel drops is not counted.
+  // Optional: without it, in some sandboxes and emulators, datagrams dropped by the kernel are not counted.
   const int on = 1;
   setsockopt(fd, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
   set_option(fd, IPPROTO_IP, IP_PKTINFO, 1, "IP_PKTINFO");
@@ -242,12 +242,12 @@ void UdpEndpoint::Impl::on_readable() {
   }
 }
 
-// One system call. Returns false when nothing was left to read.
+// One system call. Returns false if there is nothing left to read.
 bool UdpEndpoint::Impl::receive_batch() {
   incoming.prepare();
   const int count = recvmmsg(socket.native_handle(), incoming.headers.data(), batch_size, MSG_DONTWAIT,
                              /*timeout=*/nullptr);
-  // Errors other than "empty" are left-overs of earlier sends (ICMP); the next call reads on.
+  // Errors other than "empty" come from earlier sends (ICMP); the next call continues reading.
   for (int i = 0; i < count && socket.is_open(); ++i) {
     deliver(static_cast<std::size_t>(i));
   }
@@ -308,7 +308,7 @@ void UdpEndpoint::Impl::flush() {
 
 void UdpEndpoint::Impl::wait_writable() {
   waiting_to_write = true;
-  // Asio re-arms its epoll registration with this call, so a socket that drained meanwhile is not missed.
+  // Asio re-arms its epoll registration here, so a socket that drained meanwhile is not missed.
   socket.async_wait(udp::socket::wait_write,
                     [self = shared_from_this()](const boost::system::error_code& error) {
                       self->waiting_to_write = false;
@@ -322,7 +322,7 @@ void UdpEndpoint::Impl::wait_writable() {
                     });
 }
 
-// One system call. Returns false when the socket is full.
+// One system call. Returns false if the socket is full.
 bool UdpEndpoint::Impl::send_batch() {
   const std::size_t count = std::min(queue.size(), batch_size);
   for (std::size_t i = 0; i < count; ++i) {
@@ -348,8 +348,7 @@ bool UdpEndpoint::Impl::send_batch() {
   return true;
 }
 
-// The datagram at the front can never go: no route, no such source address, forbidden. Waiting would not
-// help.
+// The datagram at the front can never be sent: no route, no such source address, forbidden.
 void UdpEndpoint::Impl::drop_front(int error) {
   ++counters.send_failed;
   if (reported_errors.insert(error).second) {

@@ -10,9 +10,9 @@
 
 namespace sonard::server {
 
-/// Each frame goes out as one datagram, to the peer that sent last, from
-/// the address at which that peer sent to us. A peer has left when another sends. UDP tells of no other
-/// departure: the last peer counts as connected for good.
+/// Sends each frame as one datagram to the peer that sent last, from the address to which that peer sent. A
+/// peer has left when another sends. UDP reports no other departure: the last peer counts as connected for
+/// ever.
 class UdpPort final : public SerialPort {
  public:
   /// @throws SocketError

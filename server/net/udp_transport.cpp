@@ -61,10 +61,10 @@ UdpTransport::Impl::Impl(asio::io_context& used_io, const Clock& used_clock,
       config(used_config),
       socket(std::make_unique<UdpEndpoint>(io, config.bind)),
       to_client(config.link.to_client, config.link.seed),
-      from_client(config.link.from_client, ~config.link.seed),  // the two directions draw apart
+      from_client(config.link.from_client, ~config.link.seed),  // independent of to_client
       timer(io) {}
 
-// Handlers hold the transport weakly: one that is still queued when it is gone does nothing.
+// Handlers hold the transport weakly: a queued handler does nothing once the transport is gone.
 void UdpTransport::Impl::listen() {
   UdpEndpoint::Sent sent;
   if (events.passed) {
@@ -108,8 +108,8 @@ void UdpTransport::Impl::tell_unauthorised(Ipv4 address) {
   }
 }
 
-// Passes on what the faults of the link have held back until now, and sleeps until there is more.
-// A message that is sent in answer to one of these leaves after the last of them.
+// Passes on the datagrams that the link's faults have delayed until now, and sleeps until the next. Messages
+// in response to one of them are sent after the last of them.
 void UdpTransport::Impl::pass_due() {
   if (std::exchange(passing, true)) {
     return;

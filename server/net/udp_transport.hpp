@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head on one UDP socket, with the faults that its link may have.
+// A head on one UDP socket, with the configured faults of its link.
 #pragma once
 
 #include <memory>
@@ -19,12 +19,13 @@ namespace sonard::server {
 
 struct UdpTransportConfig {
   Endpoint bind;
-  AllowList allow;  ///< whose datagrams are taken; what goes to everybody is not affected
+  AllowList allow;  ///< permitted clients; does not affect messages to everybody
   LinkConfig link;
 };
 
-/// Replies go to the Peer that a device names, from the address of ours that it names. Both directions pass a
-/// FaultyLink, also on loopback, before they are recorded (to clients) or after (from clients).
+/// Replies go to the Peer that a device names, from our address that it names. Both directions pass a
+/// FaultyLink, also on loopback. Datagrams to clients are recorded after it, datagrams from clients before
+/// it.
 class UdpTransport final : public Transport {
  public:
   /// @throws SocketError
@@ -39,11 +40,11 @@ class UdpTransport final : public Transport {
   std::string faults() const override;
   std::vector<Counter> counts() const override;
 
-  /// Where messages to everybody go, and the address of ours that they come from; 0: the kernel chooses.
+  /// Destinations of messages to everybody, and their source address; 0: the kernel chooses.
   void set_everybody(std::vector<Endpoint> hosts, Ipv4 from);
-  /// The address that a recording shows for a socket that is bound to all of them.
+  /// Our address in a recording if the socket is bound to all addresses.
   void set_own_address(Ipv4 address);
-  /// Moves the socket. @throws SocketError, and stays where it is
+  /// Moves the socket. @throws SocketError, and keeps the old address
   void rebind(const Endpoint& bind);
   Endpoint local_endpoint() const;
 

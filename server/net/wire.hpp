@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passed between a head and its clients, for those who record it.
+// Bytes that passed between a head and its clients, for a recording.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace sonard::server {
 
 enum class WireTransport : std::uint8_t { udp, tcp, pty };
 
-/// The two ends of a wire. Those of a pseudo terminal have no addresses.
+/// The two ends of a wire. A pseudo terminal has no addresses.
 struct WireEnds {
   WireTransport transport = WireTransport::udp;
   Endpoint client;
@@ -27,7 +27,7 @@ struct WirePiece {
   SharedBytes bytes;
 };
 
-/// Datagrams, or pieces of a stream, as they passed the socket in one go.
+/// Datagrams, or pieces of a stream, that passed the socket in one call.
 struct WirePassed {
   bool to_client = false;
   WireTransport transport = WireTransport::udp;
