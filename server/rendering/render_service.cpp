@@ -145,8 +145,7 @@ void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
 }
 
 bool RenderService::withdraw(int stream) {
-  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: its callback owns objects of other
-                                         // classes
+  std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: its callback owns other objects
   const std::lock_guard lock(impl_->mutex);
   const auto entry = std::find_if(
       impl_->queue.begin(), impl_->queue.end(),
