@@ -12,8 +12,7 @@ namespace sonard::server {
 
 struct DemoOptions {
   std::string name;                          ///< one of demo_names(); empty: the first
-  std::filesystem::path out;                 ///< folder of pictures and the programs' output; empty: none are
-                                             ///< written
+  std::filesystem::path out;                 ///< folder of pictures and program output; empty: none
   std::optional<std::chrono::seconds> time;  ///< nullopt: until SIGINT or SIGTERM
 };
 
