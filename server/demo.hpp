@@ -12,7 +12,7 @@ namespace sonard::server {
 
 struct DemoOptions {
   std::string name;                          ///< one of demo_names(); empty: the first
-  std::filesystem::path out;                 ///< folder of pictures and program output; empty: none
+  std::filesystem::path out;                 ///< folder of pictures and program output; empty: not written
   std::optional<std::chrono::seconds> time;  ///< nullopt: until SIGINT or SIGTERM
 };
 

@@ -310,7 +310,7 @@ std::optional<pose::Velocity> MavlinkPoses::twist_of(const mavlink::Odometry& od
   pose::Velocity twist{vec3(odometry.vx, odometry.vy, odometry.vz),
                        vec3(odometry.rollspeed, odometry.pitchspeed, odometry.yawspeed)};
   if (!is_speed(twist.linear_mps) || !is_speed(twist.angular_radps)) {
-    return std::nullopt;  // NaN: the vehicle does not know its speed
+    return std::nullopt;  // NaN: the vehicle has no speed estimate
   }
   const MavFrame axes = odometry.child_frame_id;
   if (axes == MavFrame::body_frd || axes == MavFrame::body_ned) {

@@ -56,7 +56,7 @@ class MavlinkPoses {
   std::optional<pose::PoseSample> take(const mavlink::Message& message, TimePoint arrival);
 
   const MavlinkPoseCounters& counters() const { return counters_; }
-  /// True if the newest position is of a vehicle that knows only its depth.
+  /// True if the newest position has only a depth, because the vehicle has no fix.
   bool knows_depth_alone() const { return depth_alone_; }
 
   static constexpr std::int64_t longest_gap_ns = 500'000'000;
