@@ -72,7 +72,7 @@ foreach(release "gz;15;12" "gz;14;11" "gz;13;10" "gz;12;9" "ignition;11;8")
 endforeach()
 if(NOT TARGET sonard_gazebo)
   message(STATUS "Without Gazebo Transport (libignition-transport-dev and libignition-msgs-dev, or libgz-): "
-                 "poses.ignition is refused; sonard takes poses in every other way")
+                 "poses.gazebo is refused; sonard takes poses in every other way")
 endif()
 
 if(SONARD_TESTS)

@@ -73,7 +73,7 @@ inline constexpr std::array skip_rules{
         SkipRule::hidden_faces, "hidden_faces",
         "the face turns its inner side to the sonar, which is outside of the box of its closed surface, or "
         "above its bed; rays are straight",
-        "triangles", 1e-3},
+        "triangles", 2e-2},
     SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "nothing is seen in the beam", "beams", 0},
     SkipRuleEntry{SkipRule::geometric_normals, "geometric_normals",
                   "the part has no vertex normals, or all are within 1e-4 rad of their facet's", "parts",
@@ -93,7 +93,7 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{
         SkipRule::facet_kernel, "facet_kernel",
         "the material has no facets, or they echo less than 0.1 % of its Lambert part at that incidence",
-        "segments", 1e-3},
+        "segments", 2e-3},
     SkipRuleEntry{
         SkipRule::multipath, "multipath",
         "nothing in range mirrors more than -15 dB, R^2 exp(-P^2), at the least grazing angle it is "

@@ -380,9 +380,9 @@ void Check::check_poses() {
     sources.push_back(fmt::format("MAVLink UDP {} (system {})", endpoint_text(poses.mavlink->bind),
                                   poses.mavlink->system_id));
   }
-  if (poses.ignition) {
+  if (poses.gazebo) {
     sources.push_back(
-        fmt::format("ignition {} entity '{}'", poses.ignition->topic, poses.ignition->vehicle.name));
+        fmt::format("gazebo {} entity '{}'", poses.gazebo->topic, poses.gazebo->vehicle.name));
   }
   if (trajectory_) {
     sources.push_back(fmt::format(

@@ -115,7 +115,7 @@ void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
 }
 
 bool any_is_live(const PoseConfig& poses) {
-  return poses.udp || poses.tcp || poses.mavlink || poses.ignition;
+  return poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
 }
 
 }  // namespace

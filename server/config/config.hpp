@@ -90,7 +90,7 @@ struct SimulatorEntity {
 };
 
 /// A topic of Gazebo (Ignition or gz transport) with poses (docs/simulators/gazebo.md).
-struct IgnitionPoseInput {
+struct GazeboPoseInput {
   struct Body {
     SimulatorEntity entity;
     std::string body;  ///< of our world
@@ -123,7 +123,7 @@ struct PoseConfig {
   std::optional<TcpPoseInput> tcp;
   std::optional<MavlinkPoseInput> mavlink;
   std::optional<TrajectoryInput> trajectory;
-  std::optional<IgnitionPoseInput> ignition;
+  std::optional<GazeboPoseInput> gazebo;
   /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
   std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
   StalePolicy stale_policy = StalePolicy::hold;

@@ -20,7 +20,7 @@ struct SourcePosition {
 
 struct ConfigProblem {
   SourcePosition at;
-  std::string key;          ///< "heads[0].link.to_surface.loss"; empty for what concerns no key
+  std::string key;          ///< "heads[0].link.to_client.loss"; empty for what concerns no key
   std::string message;      ///< "... (expected ...)"
   bool of_network = false;  ///< an interface of this machine lacks what the key wants, and may have it later
 };

@@ -236,14 +236,14 @@ void read_parents(YamlSection& section, bool relative, SimulatorEntity& entity, 
   }
 }
 
-void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
+void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
   enum class Frame { world, relative };
   Frame frame = Frame::world;
   section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
-  section.text("topic", ignition.topic, "topic with `Pose_V` or `Pose` messages");
-  section.text("partition", ignition.partition, "partition of the Gazebo transport");
+  section.text("topic", gazebo.topic, "topic with `Pose_V` or `Pose` messages");
+  section.text("partition", gazebo.partition, "partition of the Gazebo transport");
   section.default_is("partition", "value of `IGN_PARTITION`");
-  read_own_address(section, "address", ignition.address,
+  read_own_address(section, "address", gazebo.address,
                    "address of this machine on the network to Gazebo, instead of `IGN_IP` or `GZ_IP`. With a "
                    "loopback address, only Gazebo on this machine can publish poses. With any other address, "
                    "every machine on that network can publish poses");
@@ -251,10 +251,10 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
                  "reference frame of the poses: `world`, or `relative` to `parents`");
   const bool relative = frame == Frame::relative;
-  section.text("vehicle", ignition.vehicle.name,
+  section.text("vehicle", gazebo.vehicle.name,
                "entity that carries the sonars; **required** if no model of the world is the vehicle");
   section.default_is("vehicle", "`world.vehicle_model`; with `relative` it has no parents");
-  read_parents(section, relative, ignition.vehicle,
+  read_parents(section, relative, gazebo.vehicle,
                "entities that the pose of `vehicle` is relative to, the outermost first; [] for a model "
                "directly in the world");
   section.default_is("parents", "**required** with `relative` and `vehicle`");
@@ -271,11 +271,11 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
   }
   section.section(
       "mount", "pose of the vehicle frame on the entity; only with `vehicle`", [&](YamlSection& inner) {
-        read_pose(inner, ignition.T_entity_vehicle, "origin of the vehicle frame in the axes of the entity",
+        read_pose(inner, gazebo.T_entity_vehicle, "origin of the vehicle frame in the axes of the entity",
                   "rotation, as in `poses.initial`");
       });
   section.sections("bodies", "simulator entities that move bodies of the world", [&](YamlSection& inner) {
-    IgnitionPoseInput::Body& body = ignition.bodies.emplace_back();
+    GazeboPoseInput::Body& body = gazebo.bodies.emplace_back();
     inner.require("entity", "the name of an entity of the simulator");
     inner.text("entity", body.entity.name, "name of the entity in the simulator");
     read_parents(inner, relative, body.entity,
@@ -288,8 +288,8 @@ void read_ignition(YamlSection& section, IgnitionPoseInput& ignition) {
 
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.introduce(
-      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `ignition` and `trajectory` is required. "
-      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `ignition`.");
+      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `gazebo` and `trajectory` is required. "
+      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`.");
   section.section(
       "initial",
       "pose until the first pose arrives. Without it, the heads answer clients but do not ping before the "
@@ -320,8 +320,9 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   section.section("mavlink",
                   "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
                   [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
-  section.section("ignition", "pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
-                  [&](YamlSection& inner) { read_ignition(inner, poses.ignition.emplace()); });
+  section.renamed("ignition", "gazebo");
+  section.section("gazebo", "pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
+                  [&](YamlSection& inner) { read_gazebo(inner, poses.gazebo.emplace()); });
   section.section("trajectory", "trajectory file, played from the start of the daemon",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0),
@@ -338,18 +339,18 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
       "of the poses, for a simulation that is slow, fast or paused. `lock_step` skips no ping, however slow "
       "the rendering ([poses.md](poses.md#time-of-the-simulation))");
 
-  const bool live = poses.udp || poses.tcp || poses.mavlink || poses.ignition;
+  const bool live = poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
   if (live && poses.trajectory) {
     section.report("trajectory",
                    "the trajectory and a live input would fight over the vehicle (expected one of them)");
   }
   if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
     section.report("initial",
-                   "nothing gives a pose (expected initial, udp, tcp, mavlink, ignition or trajectory)");
+                   "nothing gives a pose (expected initial, udp, tcp, mavlink, gazebo or trajectory)");
   }
   if (!live && !poses.trajectory && poses.clock != PingClock::wall) {
     section.report("clock",
-                   "no source of poses has a clock (expected wall, or udp, tcp, mavlink, ignition or "
+                   "no source of poses has a clock (expected wall, or udp, tcp, mavlink, gazebo or "
                    "trajectory beside it)");
   }
 }

@@ -126,9 +126,11 @@ void read_link_faults(YamlSection& section, LinkConfig& link) {
       "Faults depend only on the seed and the number of the datagram, so the same traffic meets the same "
       "faults.");
   section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max(), "seed of the faults");
-  section.section("to_surface", "faults of datagrams that the head sends",
+  section.renamed("to_surface", "to_client");
+  section.section("to_client", "faults of datagrams that the head sends",
                   [&](YamlSection& inner) { read_faults(inner, link.to_client); });
-  section.section("from_surface", "faults of datagrams that the head receives",
+  section.renamed("from_surface", "from_client");
+  section.section("from_client", "faults of datagrams that the head receives",
                   [&](YamlSection& inner) { read_faults(inner, link.from_client); });
 }
 

@@ -49,7 +49,7 @@ SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::p
 /// @param free_again when the next client may have the head, in words
 void read_lock_to_first(YamlSection& section, bool& lock_to_first, std::string_view free_again);
 
-/// The keys `seed`, `to_surface` and `from_surface`.
+/// The keys `seed`, `to_client` and `from_client`.
 void read_link_faults(YamlSection& section, LinkConfig& link);
 
 }  // namespace sonard::server

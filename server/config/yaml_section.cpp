@@ -291,6 +291,24 @@ void YamlSection::warn_if_given(std::string_view key, std::string_view why) {
   }
 }
 
+void YamlSection::renamed(std::string_view former, std::string_view key) {
+  const auto found = entry_of_.find(former);
+  if (found == entry_of_.end()) {
+    return;
+  }
+  if (has(key)) {
+    report(former,
+           fmt::format("is the former name of '{}', which is given, too (expected one of them)", key));
+    entries_[found->second].read = true;
+    return;
+  }
+  const std::size_t entry = found->second;
+  warn_of(path_of(key), fmt::format("is called '{}' here, its former name; write '{}'", former, key));
+  entry_of_.erase(found);
+  entry_of_.emplace(key, entry);
+  entries_[entry].name = key;
+}
+
 std::string YamlSection::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

@@ -91,6 +91,8 @@ class YamlSection {
   void warn_if_given(std::string_view key, std::string_view why);
   /// A key of earlier versions: what to do without it, where a file still has it. Both outlive the section.
   void retired(std::string_view key, std::string_view what_to_do) { retired_.emplace_back(key, what_to_do); }
+  /// Reads the key `former`, if a file still has it, as `key`, and warns. Call it before `key` is read.
+  void renamed(std::string_view former, std::string_view key);
   std::string path_of(std::string_view key) const;
   /// Lets a key that is not given stand where the key that its default comes from does.
   void place_default(std::string_view key, std::string_view source);

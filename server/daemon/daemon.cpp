@@ -65,7 +65,7 @@ std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig
   } catch (const pose::TrajectoryError& error) {
     throw StartError("poses.trajectory.file", exit_config, error.what());
   } catch (const PoseSourceError& error) {
-    throw StartError("poses.ignition", exit_config, error.what());
+    throw StartError("poses.gazebo", exit_config, error.what());
   }
 }
 

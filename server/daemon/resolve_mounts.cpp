@@ -91,16 +91,16 @@ class MountResolver {
   }
 
   void name_entity() {
-    if (!config_.poses.ignition || !config_.poses.ignition->vehicle.name.empty()) {
+    if (!config_.poses.gazebo || !config_.poses.gazebo->vehicle.name.empty()) {
       return;
     }
     if (config_.vehicle_model.empty()) {
       problem(
-          "poses.ignition.vehicle",
+          "poses.gazebo.vehicle",
           "is required: the name of an entity of the simulator (without it, world.vehicle_model or a mount "
           "from_world says which model carries the sonars)");
     }
-    config_.poses.ignition->vehicle = {config_.vehicle_model, {}};
+    config_.poses.gazebo->vehicle = {config_.vehicle_model, {}};
   }
 
   void place_mavlink() {

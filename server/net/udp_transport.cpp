@@ -218,8 +218,8 @@ std::vector<Counter> UdpTransport::counts() const {
                               {"blocked", socket.blocked},
                               {"send_failed", socket.send_failed},
                               {"overflowed", socket.overflowed}};
-  for (const auto& [name, link] : {std::pair{"to_surface", &impl_->to_client.counters()},
-                                   std::pair{"from_surface", &impl_->from_client.counters()}}) {
+  for (const auto& [name, link] : {std::pair{"to_client", &impl_->to_client.counters()},
+                                   std::pair{"from_client", &impl_->from_client.counters()}}) {
     if (link->lost + link->duplicated + link->reordered > 0) {
       counts.push_back({fmt::format("{}_passed", name), link->passed});
       counts.push_back({fmt::format("{}_lost", name), link->lost});

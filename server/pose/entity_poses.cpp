@@ -62,14 +62,14 @@ bool is_there(const EntityPoses& poses, const std::string& name) {
 
 }  // namespace
 
-EntityMap::EntityMap(const IgnitionPoseInput& input)
+EntityMap::EntityMap(const GazeboPoseInput& input)
     : vehicle_(input.vehicle), T_entity_vehicle_(from_render(input.T_entity_vehicle)), bodies_(input.bodies) {
   const auto note = [this](const SimulatorEntity& entity) {
     configured_.insert(entity.name);
     configured_.insert(entity.parents.begin(), entity.parents.end());
   };
   note(vehicle_);
-  for (const IgnitionPoseInput::Body& body : bodies_) {
+  for (const GazeboPoseInput::Body& body : bodies_) {
     note(body.entity);
   }
 }
@@ -89,7 +89,7 @@ Result<pose::PoseSample, std::string> EntityMap::map(const EntityPoses& poses) {
   pose::PoseSample sample;
   sample.time_ns = *poses.time_ns;
   sample.T_world_vehicle = compose(*vehicle, T_entity_vehicle_);
-  for (const IgnitionPoseInput::Body& body : bodies_) {
+  for (const GazeboPoseInput::Body& body : bodies_) {
     if (!is_there(poses, body.entity.name)) {
       continue;
     }

@@ -27,7 +27,7 @@ struct EntityPoses {
 /// other entities. Reads no clock and no socket.
 class EntityMap {
  public:
-  explicit EntityMap(const IgnitionPoseInput& input);
+  explicit EntityMap(const GazeboPoseInput& input);
 
   /// Converts a message to a sample. A body that is not in the message stays where it was, so the sample
   /// omits it.
@@ -48,7 +48,7 @@ class EntityMap {
 
   SimulatorEntity vehicle_;
   pose::Transform T_entity_vehicle_;
-  std::vector<IgnitionPoseInput::Body> bodies_;
+  std::vector<GazeboPoseInput::Body> bodies_;
   std::set<std::string, std::less<>> configured_;
   std::set<std::string, std::less<>> seen_;
   std::vector<std::string> new_ignored_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_source.hpp"
 
-#include "server/pose/ignition_pose_source.hpp"
+#include "server/pose/gazebo_pose_source.hpp"
 #include "server/pose/mavlink_pose_source.hpp"
 #include "server/pose/tcp_pose_source.hpp"
 #include "server/pose/trajectory_pose_source.hpp"
@@ -23,9 +23,9 @@ std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_conte
   if (config.mavlink) {
     sources.push_back(std::make_unique<MavlinkPoseSource>(io, *config.mavlink, clock, sink_of_next()));
   }
-  if (config.ignition) {
+  if (config.gazebo) {
 #ifdef SONARD_HAS_GAZEBO
-    sources.push_back(std::make_unique<IgnitionPoseSource>(io, *config.ignition, clock, sink_of_next()));
+    sources.push_back(std::make_unique<GazeboPoseSource>(io, *config.gazebo, clock, sink_of_next()));
 #else
     throw PoseSourceError("this sonard was built without Gazebo Transport");
 #endif

@@ -25,9 +25,10 @@ Ipv4 address_of(const std::string& option, const std::string& text) {
 
 void GeminiArguments::declare_link(CLI::App& app) {
   app.add_option(
-         "--surface-address", topside_address_,
+         "--client-address", topside_address_,
          "Local address that sends commands, port 52901; default: the address that routes to the head")
       ->group("Link");
+  app.add_option("--surface-address", topside_address_)->group("");  // former name, not in --help
   app.add_option("--bind", bind_address_,
                  "Local address that receives replies and status packets, port 52900")
       ->capture_default_str()
@@ -101,9 +102,9 @@ GeminiOptions GeminiArguments::options() const {
   GeminiOptions options = options_;
   options.bind_address = address_of("--bind", bind_address_);
   if (!topside_address_.empty()) {
-    options.topside_address = address_of("--surface-address", topside_address_);
+    options.topside_address = address_of("--client-address", topside_address_);
     if (options.topside_address == 0) {
-      throw CLI::ValidationError("--surface-address", "must name one address of this machine");
+      throw CLI::ValidationError("--client-address", "must name one address of this machine");
     }
   }
   if (!head_address_.empty()) {

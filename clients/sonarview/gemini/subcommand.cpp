@@ -17,7 +17,7 @@ constexpr const char* footer = R"(Examples:
   sonarview --range 20 --compression 1 --out out          the head of configs/demo.yaml, until Ctrl-C
   sonarview --continuous 100 --pings 200 --log-pings      a ping every 100 ms, one line per ping
   sonarview --drop-rx 0.05 --drop-tx 0.05 --pings 200     a link that loses 5 % in both directions
-  sonarview --surface-address 10.61.19.1                  a head on another network
+  sonarview --client-address 10.61.19.1                  a head on another network
   sonarview compare --help                                compare two images
 
 Exit status: 0 all pings complete; 1 a socket or file could not be opened; 2 invalid command line;

@@ -62,7 +62,8 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   }
   section.integer("command_port", config.command_port, 1, 65535,
                   "port that receives commands and sends replies");
-  section.integer("surface_port", device.topside_port, 1, 65535,
+  section.renamed("surface_port", "client_port");
+  section.integer("client_port", device.topside_port, 1, 65535,
                   "destination port of all replies and status packets");
 
   const std::uint16_t id = device.sonar_id;
@@ -84,7 +85,8 @@ void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
                    "period of the status packets");
   section.duration("min_ping_period_ms", device.min_ping_period, Range::from(1.0, minute_ms),
                    "shortest time from ping to ping, whatever the client requests");
-  section.duration("surface_timeout_ms", device.topside_timeout, Range::from(10.0, 3600.0 * 1000.0),
+  section.renamed("surface_timeout_ms", "client_timeout_ms");
+  section.duration("client_timeout_ms", device.topside_timeout, Range::from(10.0, 3600.0 * 1000.0),
                    "time without a command after which the head drops its topside and suspends pinging");
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms),
                    "silence after a reboot command");
@@ -149,7 +151,7 @@ GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, 
   section.require("network", "a mapping with alternate_address and netmask");
   section.section("network", "addresses and ports", [&](YamlSection& inner) { read_network(inner, config); });
   read_lock_to_first(section, config.device.lock_to_first,
-                     "the first address is silent for `timing.surface_timeout_ms`");
+                     "the first address is silent for `timing.client_timeout_ms`");
   section.section("timing", "rates, timeouts, pacing",
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("acoustics", "formation of the image",

@@ -46,7 +46,7 @@ class Foxglove(OwnMachine):
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
         clients = [Program([os.path.join(PROGRAMS, "sonarview"), *options], "sonarview") for options in (
-            ("--range", "6", "--pings", "5", "--surface-address", "127.0.0.1"),
+            ("--range", "6", "--pings", "5", "--client-address", "127.0.0.1"),
             ("micron", "--tcp", "127.0.0.1:4001", "--range", "6", "--turns", "1"))]
         for client in clients:
             self.addCleanup(client.kill)

@@ -32,9 +32,9 @@ world:
   file: {world}
 engine: cpu
 poses:
-  ignition:
+  gazebo:
     topic: {topic}
-{ignition}
+{gazebo_input}
 sampling:
   preset: grid
   views: 3
@@ -67,10 +67,10 @@ class Gazebo(link_test.LinkTest):
 
     # ---- Set-up ----
 
-    def start(self, world=BASIN, ignition=BASIN_INPUT, more=FROM_WORLD.format(hides="true")):
+    def start(self, world=BASIN, gazebo_input=BASIN_INPUT, more=FROM_WORLD.format(hides="true")):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(DAEMON.format(world=world, topic=TOPIC, ignition=ignition,
+            file.write(DAEMON.format(world=world, topic=TOPIC, gazebo_input=gazebo_input,
                                      head=self.head_config(noisy=False, more=more)))
         self.daemon = self.lab.start(self.lab.head, os.path.join(link_test.PROGRAMS, "sonard"), "run", path)
         self.daemon.wait_for_line(r"sonard ready heads=", link_test.START_S)
@@ -122,10 +122,10 @@ class Gazebo(link_test.LinkTest):
         self.publish(("rov", 0, 0, -0.6, 0, 90, 0), kind=kind)
         self.check_range(4.0)
         self.end_daemon(self.daemon)
-        ends = link_test.key_values(self.daemon.wait_for_line(r"ignition .* ends: ", link_test.PATIENCE_S))
+        ends = link_test.key_values(self.daemon.wait_for_line(r"gazebo .* ends: ", link_test.PATIENCE_S))
         self.assertGreater(int(ends["samples"]), 0)
         self.assertEqual((ends["malformed"], ends["bad_value"]), ("0", "0"), ends)
-        in_all = link_test.key_values(self.daemon.wait_for_line(r"ignition .* in all: ", link_test.PATIENCE_S))
+        in_all = link_test.key_values(self.daemon.wait_for_line(r"gazebo .* in all: ", link_test.PATIENCE_S))
         self.assertEqual(in_all["poses"], ends["samples"])
 
     def test_range_follows_the_pose(self):
@@ -135,7 +135,7 @@ class Gazebo(link_test.LinkTest):
         self.follow("gz.msgs.Pose_V")
 
     def test_poses_relative_to_parents(self):
-        self.start(world=TWO_WALLS, more="", ignition="""
+        self.start(world=TWO_WALLS, more="", gazebo_input="""
     frame: relative
     vehicle: wrist
     parents: [rov, arm]
@@ -224,7 +224,7 @@ class Gazebo(link_test.LinkTest):
         self.daemon.wait_for_line(r"first at \(2.000, 0.000, -2.500\)", link_test.PATIENCE_S)
 
     def test_other_machines_are_listened_to_at_an_address(self):
-        self.start(ignition=BASIN_INPUT + f"    address: {HEAD_ADDRESS}\n")
+        self.start(gazebo_input=BASIN_INPUT + f"    address: {HEAD_ADDRESS}\n")
         self.publish_from_elsewhere(relay=HEAD_ADDRESS)
         self.daemon.wait_for_line(r"first at \(-1.000, 1.100, -2.300\)", link_test.PATIENCE_S)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses from programs of others that speak Ignition Transport: one with the stock library, and its command
 // line tool. They meet in a network of this test process alone, with multicast on its loopback.
-#include "server/pose/ignition_pose_source.hpp"
+#include "server/pose/gazebo_pose_source.hpp"
 
 #include <gmock/gmock.h>
 #include <sched.h>
@@ -22,7 +22,7 @@ namespace {
 using std::chrono::seconds;
 using test::ChildProcess;
 
-class IgnitionPoseSourceTest : public SourceTest {
+class GazeboPoseSourceTest : public SourceTest {
  protected:
   // Before the library opens its sockets, which it does once in a process and never closes.
   static void SetUpTestSuite() {
@@ -31,11 +31,11 @@ class IgnitionPoseSourceTest : public SourceTest {
     ASSERT_EQ(std::system("ip link set lo up multicast on && ip route add 239.0.0.0/8 dev lo"), 0);
   }
 
-  std::unique_ptr<IgnitionPoseSource> started(const std::string& topic) {
-    IgnitionPoseInput input;
+  std::unique_ptr<GazeboPoseSource> started(const std::string& topic) {
+    GazeboPoseInput input;
     input.topic = topic;
     input.vehicle.name = "rov";
-    auto source = std::make_unique<IgnitionPoseSource>(io_, input, clock_, sink_);
+    auto source = std::make_unique<GazeboPoseSource>(io_, input, clock_, sink_);
     source->start();
     return source;
   }
@@ -54,7 +54,7 @@ class IgnitionPoseSourceTest : public SourceTest {
   }
 };
 
-TEST_F(IgnitionPoseSourceTest, TakesPosesOfTheStockLibraryUnderEitherPackageName) {
+TEST_F(GazeboPoseSourceTest, TakesPosesOfTheStockLibraryUnderEitherPackageName) {
   for (const char* type : {"ignition.msgs.Pose_V", "gz.msgs.Pose_V"}) {
     delivered_.clear();
     const std::string topic = std::string("/stock/") + type[0];
@@ -68,7 +68,7 @@ TEST_F(IgnitionPoseSourceTest, TakesPosesOfTheStockLibraryUnderEitherPackageName
   }
 }
 
-TEST_F(IgnitionPoseSourceTest, AgesPosesOfAFastOrSlowSimulationByItsOwnClock) {
+TEST_F(GazeboPoseSourceTest, AgesPosesOfAFastOrSlowSimulationByItsOwnClock) {
   for (const char* rate : {"0.1", "5"}) {
     delivered_.clear();
     const std::string topic = std::string("/rate/") + rate[0];
@@ -87,7 +87,7 @@ TEST_F(IgnitionPoseSourceTest, AgesPosesOfAFastOrSlowSimulationByItsOwnClock) {
   }
 }
 
-TEST_F(IgnitionPoseSourceTest, FollowsASimulationThatIsReset) {
+TEST_F(GazeboPoseSourceTest, FollowsASimulationThatIsReset) {
   const auto source = started("/reset");
   PoseHistory history{PoseConfig{}};
   {
@@ -104,14 +104,14 @@ TEST_F(IgnitionPoseSourceTest, FollowsASimulationThatIsReset) {
   EXPECT_NE(history.at(delivered_.back().arrival)->quality, PoseQuality::stale);
 }
 
-TEST_F(IgnitionPoseSourceTest, CountsMessagesOfAnotherType) {
+TEST_F(GazeboPoseSourceTest, CountsMessagesOfAnotherType) {
   const auto source = started("/other");
   const ChildProcess other = publisher("/other", "1", "ignition.msgs.StringMsg");
   ASSERT_TRUE(run_until([&] { return source->counters().malformed >= 3; }));
   EXPECT_TRUE(delivered_.empty());
 }
 
-TEST_F(IgnitionPoseSourceTest, DeliversNothingOnceStopped) {
+TEST_F(GazeboPoseSourceTest, DeliversNothingOnceStopped) {
   const auto source = started("/stop");
   const ChildProcess other = publisher("/stop", "1", "ignition.msgs.Pose_V");
   ASSERT_TRUE(run_until_delivered(3));
@@ -122,7 +122,7 @@ TEST_F(IgnitionPoseSourceTest, DeliversNothingOnceStopped) {
 }
 
 // One publication of the tool may be lost (gazebosim/gz-transport#586): it is run until one arrives.
-TEST_F(IgnitionPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
+TEST_F(GazeboPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
   const auto source = started("/tool");
   const auto deadline = std::chrono::steady_clock::now() + seconds{60};
   while (delivered_.empty() && std::chrono::steady_clock::now() < deadline) {
@@ -138,7 +138,7 @@ TEST_F(IgnitionPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
 }
 
 // Names that are no UTF-8, 50 in a second: libprotobuf prints about each.
-TEST_F(IgnitionPoseSourceTest, LinesOfLibrariesGoToTheLogAndAreLimited) {
+TEST_F(GazeboPoseSourceTest, LinesOfLibrariesGoToTheLogAndAreLimited) {
   const auto ring = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
   const auto before = spdlog::default_logger();
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", ring));
@@ -159,18 +159,18 @@ TEST_F(IgnitionPoseSourceTest, LinesOfLibrariesGoToTheLogAndAreLimited) {
               testing::Contains(testing::HasSubstr("library: a library printed this")));
 }
 
-TEST_F(IgnitionPoseSourceTest, RefusesAnAddressThatIsNotOfThisMachine) {
-  IgnitionPoseInput input;
+TEST_F(GazeboPoseSourceTest, RefusesAnAddressThatIsNotOfThisMachine) {
+  GazeboPoseInput input;
   input.topic = "/elsewhere";
   input.address = 0xC0000201;  // 192.0.2.1, of documents (RFC 5737)
-  IgnitionPoseSource source{io_, input, clock_, sink_};
+  GazeboPoseSource source{io_, input, clock_, sink_};
   EXPECT_THROW(source.start(), PoseSourceError);
 }
 
-TEST_F(IgnitionPoseSourceTest, RefusesATopicThatIsNone) {
-  IgnitionPoseInput input;
+TEST_F(GazeboPoseSourceTest, RefusesATopicThatIsNone) {
+  GazeboPoseInput input;
   input.topic = "no topic";
-  IgnitionPoseSource source{io_, input, clock_, sink_};
+  GazeboPoseSource source{io_, input, clock_, sink_};
   EXPECT_THROW(source.start(), PoseSourceError);
 }
 

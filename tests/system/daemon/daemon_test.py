@@ -55,7 +55,7 @@ GEMINI = """
     network:
       alternate_address: {head}
       netmask: 255.0.0.0
-      surface_port: {topside_port}
+      client_port: {topside_port}
       status: [127.0.0.1]
 """
 

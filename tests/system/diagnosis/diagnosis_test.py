@@ -103,7 +103,7 @@ class Diagnosis(OwnMachine):
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
         client = Program([os.path.join(PROGRAMS, "sonarview"), "--continuous", "100", "--range", "20", "--ping-wait", "0",
-                          "--surface-address", "127.0.0.1"], "sonarview")
+                          "--client-address", "127.0.0.1"], "sonarview")
         self.addCleanup(client.kill)
         return daemon
 
@@ -209,7 +209,7 @@ class Diagnosis(OwnMachine):
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
         client = subprocess.run([os.path.join(PROGRAMS, "sonarview"), "--pings", "5", "--range", "20",
-                                 "--surface-address", "127.0.0.1"], capture_output=True, text=True, timeout=PATIENCE_S)
+                                 "--client-address", "127.0.0.1"], capture_output=True, text=True, timeout=PATIENCE_S)
         self.assertEqual(client.returncode, 0, client.stderr)
         self.assertEqual(self.status()["heads"][0]["findings"], [])
         self.assertEqual([line for line in daemon.lines if "warning" in line], [])

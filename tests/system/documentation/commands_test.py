@@ -147,7 +147,7 @@ RULES = [
     Run(VIEW + r"(--range (10|20) (--compression 1 )?)?--out out", until=PICTURE, beside=GEMINI),
     Run(VIEW + r"--range 20 --pings 20 --out out", beside=GEMINI),
     Run(VIEW + r"--(continuous 100|drop-rx 0.05 --drop-tx 0.05) --pings 200.*", until=PROGRESS, beside=GEMINI),
-    Run(VIEW + r"--surface-address 10.61.19.10 --sonar-id 513", until=PROGRESS, beside=("configs/gemini-netns.yaml",), addresses=VEHICLE,
+    Run(VIEW + r"--client-address 10.61.19.10 --sonar-id 513", until=PROGRESS, beside=("configs/gemini-netns.yaml",), addresses=VEHICLE,
         before="posecast configs/trajectories/docking_demo.csv --loop &"),
     Run(VIEW + r"--sonar-id 513,514( --out out)?", until=PROGRESS, beside=("two-heads.yaml",)),
     Run(VIEW + r"--bind 127.0.0.[13] .*", until=PICTURE, beside=("configs/two-vehicles-a.yaml", "configs/two-vehicles-b.yaml")),

@@ -202,8 +202,8 @@ class Pings(LinkTest):
     def test_single_over_a_link_with_every_fault(self):
         self.run_pings(count=100, more_config="""    link:
       seed: 11
-      to_surface: {loss: 0.03, duplicate: 0.02, reorder: 0.02, delay_ms: 3, jitter_ms: 1}
-      from_surface: {loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 3, jitter_ms: 2}
+      to_client: {loss: 0.03, duplicate: 0.02, reorder: 0.02, delay_ms: 3, jitter_ms: 1}
+      from_client: {loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 3, jitter_ms: 2}
 """)
 
     def test_compressed_run_length_coded_16_bit(self):

@@ -48,7 +48,7 @@ class ReplayTest(unittest.TestCase):
 
     def view(self, count, *options):
         """Takes pings on loopback; what sonarview logged of each, all of them complete."""
-        viewer = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonarview"), "--surface-address", "127.0.0.1",
+        viewer = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonarview"), "--client-address", "127.0.0.1",
                                 "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S),
                                 "--pings", str(count), *options)
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())

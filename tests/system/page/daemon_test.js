@@ -64,7 +64,7 @@ async function startDaemon(options = {}) {
 
 function startClients(range_m = RANGE_M) {
   return [
-    start("sonarview", "--range", String(range_m), "--continuous", "100", "--ping-wait", "0", "--surface-address", "127.0.0.1", "--quiet"),
+    start("sonarview", "--range", String(range_m), "--continuous", "100", "--ping-wait", "0", "--client-address", "127.0.0.1", "--quiet"),
     start("sonarview", "micron", "--tcp", "127.0.0.1:4001", "--range", String(range_m), "--turns", "0", "--line-wait", "0", "--quiet"),
   ];
 }

@@ -90,7 +90,7 @@ before(async () => {
     assert.equal(daemon.exitCode, null, `the daemon ended: ${daemon.output}`);
     return daemon.output.includes("sonard ready");
   });
-  start("sonarview", "--range", "10", "--continuous", "100", "--ping-wait", "0", "--surface-address", "127.0.0.1", "--quiet");
+  start("sonarview", "--range", "10", "--continuous", "100", "--ping-wait", "0", "--client-address", "127.0.0.1", "--quiet");
   start("sonarview", "micron", "--tcp", "127.0.0.1:4001", "--range", "10", "--turns", "0", "--line-wait", "0", "--quiet");
 });
 

@@ -100,10 +100,10 @@ FEWER = "{loss: 0.04, duplicate: 0.1, reorder: 0.1, delay_ms: 3, jitter_ms: 2}"
 class Link(TwoMachines):
     """The faults are those of `link`; what they did is read from what the daemon counts until its end."""
 
-    HEADS = (HEAD.format(name="asked", port=12345, scale=0, link=f"to_surface: {EVERY_FAULT}, from_surface: {EVERY_FAULT}")
-             + HEAD.format(name="scans", port=12346, scale=0.1, link="to_surface: " + EVERY_FAULT)
-             + HEAD.format(name="viewed", port=12347, scale=0.1, link=f"to_surface: {FEWER}, from_surface: {FEWER}")
-             + HEAD.format(name="doubled", port=12348, scale=0.1, link="to_surface: {duplicate: 1}"))
+    HEADS = (HEAD.format(name="asked", port=12345, scale=0, link=f"to_client: {EVERY_FAULT}, from_client: {EVERY_FAULT}")
+             + HEAD.format(name="scans", port=12346, scale=0.1, link="to_client: " + EVERY_FAULT)
+             + HEAD.format(name="viewed", port=12347, scale=0.1, link=f"to_client: {FEWER}, from_client: {FEWER}")
+             + HEAD.format(name="doubled", port=12348, scale=0.1, link="to_client: {duplicate: 1}"))
 
     def client_of(self, port):
         client = UdpClient(self.lab.topside.udp_socket(TOPSIDE_ADDRESS, 0), (HEAD_ADDRESS, port))
@@ -142,8 +142,8 @@ class Link(TwoMachines):
 
     def check_one_answer_to_each(self, sent, answers):
         counts = self.counts("asked")
-        self.check_faults(counts, "from_surface")
-        self.check_faults(counts, "to_surface")
+        self.check_faults(counts, "from_client")
+        self.check_faults(counts, "to_client")
         self.assertEqual(counts["received"], len(sent))
         self.assertEqual(counts["commands"], counts["from_surface_passed"], "every request that arrived was understood")
         answered = counts["to_surface_passed"] - counts["to_surface_duplicated"] + counts["to_surface_lost"]
@@ -179,7 +179,7 @@ class Link(TwoMachines):
 
     def check_gaps(self, scan, pings, stops):
         counts = self.counts("scans")
-        self.check_faults(counts, "to_surface")
+        self.check_faults(counts, "to_client")
         angles = {ping.angle for ping in pings}
         self.assertLess(max(angles), counts["pings_sent"])
         self.assertLess(counts["pings_sent"], 400)

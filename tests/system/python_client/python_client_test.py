@@ -102,7 +102,7 @@ class PythonClient(OwnMachine):
                     self.expect_rendered(ping)
 
     def test_pings_come_by_themselves_over_a_link_that_loses(self):
-        self.start("    link: {to_surface: {loss: 0.05}, from_surface: {loss: 0.05}}")
+        self.start("    link: {to_client: {loss: 0.05}, from_client: {loss: 0.05}}")
         with Gemini() as sonar:
             pings = sonar.pings(interval_s=0.1, range_m=6)
             for _ in range(20):

@@ -187,7 +187,7 @@ class RecordingTest(unittest.TestCase):
         return daemon
 
     def start_viewer(self, *options, range_m=4):
-        return self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonarview"), "--surface-address", TOPSIDE_ADDRESS,
+        return self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonarview"), "--client-address", TOPSIDE_ADDRESS,
                               "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
                               str(PATIENCE_S), "--range", str(range_m), *options)
 
@@ -546,8 +546,8 @@ class Replays(RecordingTest):
 class Faults(RecordingTest):
     LINK = """    link:
       seed: 7
-      to_surface: {{loss: 0.02, duplicate: 0.02, reorder: 0.02, delay_ms: 2, jitter_ms: 1}}
-      from_surface: {{loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 2, jitter_ms: 1}}
+      to_client: {{loss: 0.02, duplicate: 0.02, reorder: 0.02, delay_ms: 2, jitter_ms: 1}}
+      from_client: {{loss: 0.05, duplicate: 0.05, reorder: 0.05, delay_ms: 2, jitter_ms: 1}}
     dump: {{directory: {folder}}}
 """
 

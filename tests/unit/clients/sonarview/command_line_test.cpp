@@ -92,7 +92,7 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
 TEST(CommandLine, CommandsLeaveFromTheAddressThatRoutesToTheHead) {
   EXPECT_EQ(address_towards(0x7F000002), 0x7F000001U);
   EXPECT_EQ(address_towards(0x7F000001), 0x7F000001U);
-  EXPECT_EQ(options_of<GeminiArguments>("gemini", {"--surface-address", "127.0.0.3"}).topside_address,
+  EXPECT_EQ(options_of<GeminiArguments>("gemini", {"--client-address", "127.0.0.3"}).topside_address,
             0x7F000003U);
 }
 

@@ -153,8 +153,8 @@ TEST_F(Loader, reads_the_link_and_its_units) {
   const LoadedConfig loaded = load(minimal_config +
                                    "    link:\n"
                                    "      seed: 18446744073709551615\n"
-                                   "      to_surface: {loss: 0.05, delay_ms: 1.5, jitter_ms: 0.25}\n"
-                                   "      from_surface: {reorder: 0.01, duplicate: 1}\n");
+                                   "      to_client: {loss: 0.05, delay_ms: 1.5, jitter_ms: 0.25}\n"
+                                   "      from_client: {reorder: 0.01, duplicate: 1}\n");
   const LinkConfig& link = gemini_of(loaded.config).link;
   EXPECT_EQ(link.seed, 18446744073709551615U);
   EXPECT_EQ(link.to_client.loss, 0.05);
@@ -236,11 +236,30 @@ TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
                           "`engine: cpu` for ray, `engine: auto` for auto"));
 }
 
+TEST_F(Loader, reads_a_key_by_its_former_name_and_warns) {
+  const std::string former =
+      minimal_config + "    timing: {surface_timeout_ms: 500}\n    link: {to_surface: {loss: 0.5}}\n";
+  const LoadedConfig loaded = load(former);
+  EXPECT_EQ(loaded.config.heads.at(0).link.to_client.loss, 0.5);
+  std::vector<std::string> lines;
+  for (const ConfigProblem& warning : loaded.warnings) {
+    lines.push_back(problem_text("config.yaml", warning));
+  }
+  EXPECT_THAT(lines, testing::IsSupersetOf(
+                         {HasSubstr("config.yaml:11:34: heads[0].timing.client_timeout_ms: is called "
+                                    "'surface_timeout_ms' here, its former name; write 'client_timeout_ms'"),
+                          HasSubstr("heads[0].link.to_client: is called 'to_surface' here")}));
+  EXPECT_THAT(
+      complaints(minimal_config + "    timing: {surface_timeout_ms: 500, client_timeout_ms: 600}\n"),
+      ElementsAre(HasSubstr("timing.surface_timeout_ms: is the former name of 'client_timeout_ms', which is "
+                            "given, too")));
+}
+
 TEST_F(Loader, suggests_the_key_with_its_unit) {
   EXPECT_THAT(
-      complaints(minimal_config + "    link: {to_surface: {delay: 5s}}\n"),
+      complaints(minimal_config + "    link: {to_client: {delay: 5s}}\n"),
       ElementsAre(StartsWith(
-          "config.yaml:11:25: heads[0].link.to_surface.delay: unknown key, did you mean 'delay_ms'?")));
+          "config.yaml:11:25: heads[0].link.to_client.delay: unknown key, did you mean 'delay_ms'?")));
 }
 
 TEST_F(Loader, refuses_units_in_values) {
@@ -315,7 +334,7 @@ TEST_F(Loader, refuses_numbers_out_of_range) {
   EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {near_field_blank_m: -0.5}}\n"),
               ElementsAre(HasSubstr(
                   "near_field_blank_m: -0.5 is out of range (expected a number from 0 to 120, in m)")));
-  EXPECT_THAT(complaints(minimal_config + "    link: {to_surface: {loss: 1.5}}\n"),
+  EXPECT_THAT(complaints(minimal_config + "    link: {to_client: {loss: 1.5}}\n"),
               ElementsAre(HasSubstr("loss: 1.5 is out of range (expected a number from 0 to 1)")));
   EXPECT_THAT(complaints(minimal_config + "    timing: {min_ping_period_ms: .nan}\n"),
               ElementsAre(HasSubstr("min_ping_period_ms: '.nan' is not a finite number")));
@@ -580,15 +599,15 @@ TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
   const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
   const auto with = [&](const std::string& ignition) {
     std::string text = minimal_config;
-    return text.replace(text.find(initial), initial.size(), "  ignition: {topic: /p, " + ignition + "}\n");
+    return text.replace(text.find(initial), initial.size(), "  gazebo: {topic: /p, " + ignition + "}\n");
   };
-  EXPECT_EQ(load(with("frame: relative")).config.poses.ignition->vehicle.name, "");
-  EXPECT_EQ(load(with("frame: world, vehicle: rov")).config.poses.ignition->vehicle.name, "rov");
+  EXPECT_EQ(load(with("frame: relative")).config.poses.gazebo->vehicle.name, "");
+  EXPECT_EQ(load(with("frame: world, vehicle: rov")).config.poses.gazebo->vehicle.name, "rov");
   EXPECT_THAT(complaints(with("frame: relative, parents: [a], mount: {position_m: [0, 0, 1]}")),
-              testing::UnorderedElementsAre(HasSubstr("poses.ignition.parents: is of `vehicle`"),
-                                            HasSubstr("poses.ignition.mount: is of `vehicle`")));
+              testing::UnorderedElementsAre(HasSubstr("poses.gazebo.parents: is of `vehicle`"),
+                                            HasSubstr("poses.gazebo.mount: is of `vehicle`")));
   EXPECT_THAT(complaints(with("frame: relative, vehicle: rov")),
-              ElementsAre(HasSubstr("poses.ignition.parents: missing")));
+              ElementsAre(HasSubstr("poses.gazebo.parents: missing")));
 }
 
 TEST_F(Loader, leaves_a_mount_to_the_world) {

@@ -45,12 +45,12 @@ class ResolveMounts : public testing::Test {
 
 TEST_F(ResolveMounts, ChangesNothingThatIsNotAskedOfIt) {
   add_gemini("");
-  config_.poses.ignition.emplace().vehicle = {"boat", {"harbour"}};
+  config_.poses.gazebo.emplace().vehicle = {"boat", {"harbour"}};
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar, render::Pose{});
   EXPECT_EQ(config_.vehicle_model, "");
-  EXPECT_EQ(config_.poses.ignition->vehicle.name, "boat");
-  EXPECT_THAT(config_.poses.ignition->vehicle.parents, ElementsAre("harbour"));
+  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "boat");
+  EXPECT_THAT(config_.poses.gazebo->vehicle.parents, ElementsAre("harbour"));
 }
 
 TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
@@ -58,12 +58,12 @@ TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
   HeadConfig micron = micron_kind().make_default();
   micron.mount_from_world = "rov::bow::micron";
   config_.heads.push_back(micron);
-  config_.poses.ignition.emplace();
+  config_.poses.gazebo.emplace();
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar.position_m, glm::dvec3(1, 2, 3));
   EXPECT_EQ(config_.heads[1].T_vehicle_sonar.position_m, glm::dvec3(0, 0, 1));
   EXPECT_EQ(config_.vehicle_model, "rov");
-  EXPECT_EQ(config_.poses.ignition->vehicle.name, "rov");
+  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "rov");
 }
 
 TEST_F(ResolveMounts, NamesWhatTheWorldHas) {
@@ -96,12 +96,12 @@ TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
   config_ = {};
   add_gemini("");
   config_.heads[0].hides_vehicle = true;
-  config_.poses.ignition.emplace();
+  config_.poses.gazebo.emplace();
   EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].hides_vehicle", "expected world.vehicle_model"),
-                                  is_problem("poses.ignition.vehicle", "is required")));
+                                  is_problem("poses.gazebo.vehicle", "is required")));
   config_.vehicle_model = "rov";
   EXPECT_THAT(take(), IsEmpty());
-  EXPECT_EQ(config_.poses.ignition->vehicle.name, "rov");
+  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "rov");
 }
 
 }  // namespace

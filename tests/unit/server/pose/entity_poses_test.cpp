@@ -25,8 +25,8 @@ EntityPoses message(std::vector<pose::NamedTransform> entities) {
   return {std::int64_t{5'000'000'000}, std::move(entities)};
 }
 
-IgnitionPoseInput follow(const std::string& vehicle, std::vector<std::string> parents = {}) {
-  IgnitionPoseInput input;
+GazeboPoseInput follow(const std::string& vehicle, std::vector<std::string> parents = {}) {
+  GazeboPoseInput input;
   input.vehicle = {vehicle, std::move(parents)};
   return input;
 }
@@ -53,7 +53,7 @@ TEST(EntityMap, TakesAWorldPoseAsItIs) {
 }
 
 TEST(EntityMap, MountsTheVehicleInTheAxesOfTheEntity) {
-  IgnitionPoseInput input = follow("rov");
+  GazeboPoseInput input = follow("rov");
   input.T_entity_vehicle.position_m = {2, 0, 0};  // ahead, which is north after a quarter turn
   EntityMap map{input};
   const auto sample = map.map(message({at("rov", 1, 2, -3, quarter_to_port)}));
@@ -72,7 +72,7 @@ TEST(EntityMap, ComposesRelativePosesFromTheOutermostParentInwards) {
 }
 
 TEST(EntityMap, NamesBodiesAsOurWorldDoesAndLeavesOutThoseThatAreNotThere) {
-  IgnitionPoseInput input = follow("rov");
+  GazeboPoseInput input = follow("rov");
   input.bodies = {{{"fish_3", {}}, "fish"}, {{"hand", {"rov"}}, "gripper"}, {{"absent", {}}, "absent"}};
   EntityMap map{input};
   const auto sample =

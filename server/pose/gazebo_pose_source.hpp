@@ -12,10 +12,10 @@ namespace sonard::server {
 /// arrive while max_waiting others wait. The 1st, 2nd, 4th, 8th ... of each is logged.
 ///
 /// Messages arrive on a thread of the transport, which reads the time and posts the bytes to the I/O thread.
-class IgnitionPoseSource final : public PoseSource {
+class GazeboPoseSource final : public PoseSource {
  public:
-  IgnitionPoseSource(boost::asio::io_context& io, IgnitionPoseInput input, const Clock& clock, PoseSink sink);
-  ~IgnitionPoseSource() override;
+  GazeboPoseSource(boost::asio::io_context& io, GazeboPoseInput input, const Clock& clock, PoseSink sink);
+  ~GazeboPoseSource() override;
 
   void start() override;
   void stop() override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/pose/ignition_network.hpp"
+#include "server/pose/gazebo_network.hpp"
 
 #include <linux/filter.h>
 #include <linux/if_packet.h>
@@ -65,23 +65,23 @@ void drop_other_machines(int socket) {
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   if (setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) != 0) {
     throw PoseSourceError(
-        fmt::format("ignition: cannot keep discovery to this machine: {}", std::strerror(errno)));
+        fmt::format("gazebo: cannot keep discovery to this machine: {}", std::strerror(errno)));
   }
 }
 
 }  // namespace
 
-void set_ignition_address(Ipv4 address) {
+void set_gazebo_address(Ipv4 address) {
   const std::string text = address_text(address);
   if (const auto own = interface_addresses(); !own.empty() && !owner_of(address, own)) {
     throw PoseSourceError(
-        fmt::format("ignition: {} is not an address of this machine (poses.ignition.address)", text));
+        fmt::format("gazebo: {} is not an address of this machine (poses.gazebo.address)", text));
   }
   setenv("IGN_IP", text.c_str(), /*overwrite=*/1);
   setenv("GZ_IP", text.c_str(), /*overwrite=*/1);
 }
 
-void keep_ignition_to_this_machine() {
+void keep_gazebo_to_this_machine() {
   for (const int socket : discovery_sockets()) {
     drop_other_machines(socket);
   }

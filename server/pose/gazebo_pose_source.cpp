@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only file that includes the headers of Gazebo's transport, which take seconds to compile.
-#include "server/pose/ignition_pose_source.hpp"
+#include "server/pose/gazebo_pose_source.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,7 +15,7 @@
 
 #include "server/net/addresses.hpp"
 #include "server/pose/entity_poses.hpp"
-#include "server/pose/ignition_network.hpp"
+#include "server/pose/gazebo_network.hpp"
 #include "server/program_log/library_lines.hpp"
 #include "server/program_log/reasons.hpp"
 #ifdef SONARD_GAZEBO_GZ
@@ -101,8 +101,8 @@ Result<EntityPoses, std::string> parse(const Message& message) {
 
 // Lives as long as any handler queued on the io_context. `waiting`, `crowded` and `stopped` are shared with
 // the transport's threads and guarded by `mutex`. Everything else belongs to the I/O thread.
-struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSource::Impl> {
-  Impl(asio::io_context& context, IgnitionPoseInput configured, const Clock& used_clock, PoseSink poses_go_to)
+struct GazeboPoseSource::Impl : std::enable_shared_from_this<GazeboPoseSource::Impl> {
+  Impl(asio::io_context& context, GazeboPoseInput configured, const Clock& used_clock, PoseSink poses_go_to)
       : io(context),
         input(std::move(configured)),
         clock(used_clock),
@@ -115,7 +115,7 @@ struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSourc
   void complain(const std::string& problem);
 
   asio::io_context& io;
-  IgnitionPoseInput input;
+  GazeboPoseInput input;
   const Clock& clock;
   PoseSink sink;
   EntityMap entities;
@@ -128,7 +128,7 @@ struct IgnitionPoseSource::Impl : std::enable_shared_from_this<IgnitionPoseSourc
 };
 
 // Runs on a thread of the transport. Reading the clock and queueing under one lock keeps arrivals in order.
-void IgnitionPoseSource::Impl::on_message(const char* data, std::size_t size, const std::string& type) {
+void GazeboPoseSource::Impl::on_message(const char* data, std::size_t size, const std::string& type) {
   const std::scoped_lock lock(mutex);
   if (stopped) {
     return;
@@ -143,7 +143,7 @@ void IgnitionPoseSource::Impl::on_message(const char* data, std::size_t size, co
   });
 }
 
-void IgnitionPoseSource::Impl::take(const Message& message) {
+void GazeboPoseSource::Impl::take(const Message& message) {
   std::uint64_t dropped = 0;
   {
     const std::scoped_lock lock(mutex);
@@ -165,7 +165,7 @@ void IgnitionPoseSource::Impl::take(const Message& message) {
   }
   const auto mapped = entities.map(*parsed);
   if (const std::vector<std::string> ignored = entities.take_ignored(); !ignored.empty()) {
-    spdlog::info("ignition {}: entities without a part here: {}", input.topic, fmt::join(ignored, ", "));
+    spdlog::info("gazebo {}: entities without a part here: {}", input.topic, fmt::join(ignored, ", "));
   }
   if (!mapped) {
     ++counters.bad_value;
@@ -175,58 +175,58 @@ void IgnitionPoseSource::Impl::take(const Message& message) {
   deliver(*mapped, message.arrival);
 }
 
-void IgnitionPoseSource::Impl::deliver(const pose::PoseSample& sample, TimePoint arrival) {
+void GazeboPoseSource::Impl::deliver(const pose::PoseSample& sample, TimePoint arrival) {
   if (++counters.samples == 1) {
     const pose::Vec3& p = sample.T_world_vehicle.position_m;
-    spdlog::info("ignition {}: the vehicle is entity '{}', first at ({:.3f}, {:.3f}, {:.3f}), time {:.3f} s",
+    spdlog::info("gazebo {}: the vehicle is entity '{}', first at ({:.3f}, {:.3f}, {:.3f}), time {:.3f} s",
                  input.topic, input.vehicle.name, p.x, p.y, p.z, 1e-9 * static_cast<double>(sample.time_ns));
   }
   sink(sample, arrival);
 }
 
-void IgnitionPoseSource::Impl::complain(const std::string& problem) {
+void GazeboPoseSource::Impl::complain(const std::string& problem) {
   if (const std::uint64_t count = complaints.count(problem); std::has_single_bit(count)) {
-    spdlog::warn("ignition {}: message dropped: {} ({} so far)", input.topic, problem, count);
+    spdlog::warn("gazebo {}: message dropped: {} ({} so far)", input.topic, problem, count);
   }
 }
 
 // Destroyed with the source, on the source's thread. On a thread of the transport, its destructor would wait
 // for itself.
-struct IgnitionPoseSource::Subscription {
+struct GazeboPoseSource::Subscription {
   explicit Subscription(const gazebo::transport::NodeOptions& options) : node(options) {}
   gazebo::transport::Node node;
 };
 
-IgnitionPoseSource::IgnitionPoseSource(asio::io_context& io, IgnitionPoseInput input, const Clock& clock,
-                                       PoseSink sink)
+GazeboPoseSource::GazeboPoseSource(asio::io_context& io, GazeboPoseInput input, const Clock& clock,
+                                   PoseSink sink)
     : impl_(std::make_shared<Impl>(io, std::move(input), clock, std::move(sink))) {}
 
-IgnitionPoseSource::~IgnitionPoseSource() {
-  IgnitionPoseSource::stop();
+GazeboPoseSource::~GazeboPoseSource() {
+  GazeboPoseSource::stop();
 }
 
-void IgnitionPoseSource::start() {
-  const IgnitionPoseInput& input = impl_->input;
+void GazeboPoseSource::start() {
+  const GazeboPoseInput& input = impl_->input;
   gazebo::transport::NodeOptions options;
   if (!input.partition.empty() && !options.SetPartition(input.partition)) {
-    throw PoseSourceError(fmt::format("ignition: '{}' is no partition", input.partition));
+    throw PoseSourceError(fmt::format("gazebo: '{}' is no partition", input.partition));
   }
   take_lines_of_the_library();
-  set_ignition_address(input.address);
+  set_gazebo_address(input.address);
   subscription_ = std::make_unique<Subscription>(options);
   if (is_loopback(input.address)) {
-    keep_ignition_to_this_machine();
+    keep_gazebo_to_this_machine();
   }
   const auto receive = [impl = impl_](const char* data, std::size_t size,
                                       const gazebo::transport::MessageInfo& info) {
     impl->on_message(data, size, info.Type());
   };
   if (!subscription_->node.SubscribeRaw(input.topic, receive)) {
-    throw PoseSourceError(fmt::format("ignition: cannot subscribe to '{}'", input.topic));
+    throw PoseSourceError(fmt::format("gazebo: cannot subscribe to '{}'", input.topic));
   }
 }
 
-void IgnitionPoseSource::stop() {
+void GazeboPoseSource::stop() {
   {
     const std::scoped_lock lock(impl_->mutex);
     impl_->stopped = true;
@@ -234,23 +234,23 @@ void IgnitionPoseSource::stop() {
   subscription_.reset();
 }
 
-std::string IgnitionPoseSource::description() const {
-  return fmt::format("ignition {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
+std::string GazeboPoseSource::description() const {
+  return fmt::format("gazebo {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
 }
 
-std::vector<std::string> IgnitionPoseSource::entities() const {
+std::vector<std::string> GazeboPoseSource::entities() const {
   return impl_->entities.seen();
 }
 
-std::string IgnitionPoseSource::silence_hint() const {
+std::string GazeboPoseSource::silence_hint() const {
   const std::string reach = is_loopback(impl_->input.address)
-                                ? "does it run on this machine (another one needs poses.ignition.address)"
+                                ? "does it run on this machine (another one needs poses.gazebo.address)"
                                 : "does multicast reach it";
   return "is the simulator running, is the topic spelt as it spells it, is the partition the same, and " +
          reach + " (docs/simulators/gazebo.md)?";
 }
 
-const PoseSourceCounters& IgnitionPoseSource::counters() const {
+const PoseSourceCounters& GazeboPoseSource::counters() const {
   return impl_->counters;
 }
 
