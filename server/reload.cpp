@@ -116,7 +116,7 @@ bool holds(const PlannedSocket& held, const PlannedSocket& wanted) {
 /// The first socket or recording folder that `wanted` needs, `in_use` does not hold, and cannot be had;
 /// nullopt if there is no such problem.
 std::optional<std::string> missing(const LoadedConfig& wanted, const DaemonConfig& in_use) {
-  const std::vector<PlannedSocket> held = planned_sockets(in_use);
+  const std::vector<PlannedSocket> held = own_sockets();  // heads may have followed their interfaces
   for (const PlannedSocket& socket : planned_sockets(wanted.config)) {
     if (std::ranges::none_of(held, [&](const PlannedSocket& other) { return holds(other, socket); })) {
       if (const auto why = obstacle_to_binding(socket)) {

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/try_bind.hpp"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -63,6 +69,31 @@ std::optional<std::string> obstacle_to_binding(const PlannedSocket& planned) {
   }
   return fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)", transport,
                      endpoint_text(endpoint), error.message());
+}
+
+std::vector<PlannedSocket> own_sockets() {
+  std::vector<PlannedSocket> own;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
+    const int fd = std::atoi(entry.path().filename().c_str());
+    int type = 0, listens = 0;
+    socklen_t size = sizeof type;
+    sockaddr_in bound{};
+    socklen_t bound_size = sizeof bound;
+    if (getsockopt(fd, SOL_SOCKET, SO_TYPE, &type, &size) != 0 ||
+        getsockname(fd, reinterpret_cast<sockaddr*>(&bound), &bound_size) != 0 ||
+        bound.sin_family != AF_INET) {
+      continue;
+    }
+    size = sizeof listens;
+    const bool udp = type == SOCK_DGRAM;
+    if (udp || (getsockopt(fd, SOL_SOCKET, SO_ACCEPTCONN, &listens, &size) == 0 && listens != 0)) {
+      own.push_back({udp ? PlannedSocket::Transport::udp : PlannedSocket::Transport::tcp,
+                     {ntohl(bound.sin_addr.s_addr), ntohs(bound.sin_port)},
+                     ""});
+    }
+  }
+  return own;
 }
 
 }  // namespace sonard::server

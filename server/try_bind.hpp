@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/config/head_kind.hpp"
 
@@ -11,5 +12,9 @@ namespace sonard::server {
 
 /// Binds the socket for a moment. @return why it cannot be bound; nullopt if it can
 std::optional<std::string> obstacle_to_binding(const PlannedSocket& planned);
+
+/// Addresses and ports that this process receives on now: bound UDP sockets and listening TCP sockets, IPv4.
+/// Their `key` is empty.
+std::vector<PlannedSocket> own_sockets();
 
 }  // namespace sonard::server

@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <assimp/ColladaMetaData.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -35,7 +38,18 @@ class WorldFiles : public Assimp::DefaultIOSystem {
   bool Exists(const char* name) const override { return !permitted(name).empty(); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     const std::filesystem::path path = permitted(name);
-    return path.empty() ? nullptr : DefaultIOSystem::Open(path.c_str(), mode);
+    if (path.empty()) {
+      return nullptr;
+    }
+    // Assimp reads the mark of UTF-8 as a part of the first line of an OBJ.
+    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
+    if (lower_extension(path) == "obj" && head_of(path, utf8_mark.size()) == utf8_mark) {
+      const std::string content = content_of(path).substr(utf8_mark.size());
+      auto* const bytes = new std::uint8_t[content.size()];  // the stream deletes it
+      std::ranges::copy(content, bytes);
+      return new Assimp::MemoryIOStream(bytes, content.size(), /*own=*/true);
+    }
+    return DefaultIOSystem::Open(path.c_str(), mode);
   }
 
  private:

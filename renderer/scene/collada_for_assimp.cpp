@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <locale>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <tinyxml2.h>
 
 namespace sonard::render {
@@ -93,6 +97,7 @@ class Mender : public tinyxml2::XMLVisitor {
       return name != "rotate" && transform != node.FirstChildElement(transform->Name());
     };
     std::erase_if(wanted, repeats);
+    std::ranges::for_each(wanted, [&](XMLElement* transform) { make_unit_axis(*transform); });
     std::vector<XMLElement*> given;
     for (auto* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
       if (std::ranges::find(kinds, name_of(child)) != kinds.end()) {
@@ -110,6 +115,28 @@ class Mender : public tinyxml2::XMLVisitor {
     }
     std::ranges::for_each(wanted.rbegin(), wanted.rend(),
                           [&](XMLElement* transform) { node.InsertFirstChild(transform); });
+  }
+
+  /// Gazebo turns by the angle about the direction of the axis, whatever its length, and not at all about an
+  /// axis of zeros. Assimp takes the axis as it is, which scales.
+  void make_unit_axis(XMLElement& transform) {
+    if (name_of(&transform) != "rotate" || transform.GetText() == nullptr) {
+      return;
+    }
+    std::istringstream text(transform.GetText());
+    text.imbue(std::locale::classic());
+    double x = 0, y = 0, z = 0, angle_deg = 0;
+    if (!(text >> x >> y >> z >> angle_deg)) {
+      return;
+    }
+    const double length = std::hypot(x, y, z);
+    if (std::abs(length - 1) < 1e-6 || !std::isfinite(length)) {
+      return;
+    }
+    transform.SetText(length > 0
+                          ? fmt::format("{} {} {} {}", x / length, y / length, z / length, angle_deg).c_str()
+                          : "1 0 0 0");
+    changed_ = true;
   }
 
   void name_picture(XMLElement& init_from) {

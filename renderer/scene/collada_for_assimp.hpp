@@ -10,6 +10,7 @@ namespace sonard::render {
 /// - Values of a mesh's accessor are x, y, z in this order. Gazebo ignores the names of <param>. Assimp
 /// treats all values as the first one if the names are missing or in lower case.
 /// - The transforms of a node are in Gazebo's order: one <matrix> alone, else translate, rotate, scale.
+/// - The axis of a <rotate> has length 1; an axis of zeros does not turn.
 /// - A picture without a file name gets one, because Assimp 5.2 crashes without it.
 std::string collada_for_assimp(std::string document);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
@@ -193,6 +194,40 @@ void check_osgt(std::string_view bytes) {
   }
 }
 
+/// Bytes that every file of a format begins with.
+struct Magic {
+  std::string_view extension, name, bytes;
+};
+constexpr std::array<Magic, 6> magics{{{"png", "PNG", "\x89PNG\r\n\x1A\n"},
+                                       {"jpg", "JPEG", "\xFF\xD8"},
+                                       {"jpeg", "JPEG", "\xFF\xD8"},
+                                       {"bmp", "BMP", "BM"},
+                                       {"glb", "GLB", "glTF"},
+                                       {"3ds", "3DS", "MM"}}};
+constexpr std::array<std::string_view, 5> text_formats{"obj", "stl", "ply", "gltf", "osgt"};
+
+/// A download may leave something else under the name of a file.
+/// @param begin of the file, as many bytes as its longest magic and the tags of a page take
+void require_kind(std::string_view begin, std::string_view extension) {
+  if (begin.starts_with("version https://git-lfs")) {
+    throw std::runtime_error("it is a Git LFS pointer, not the file (fetch the file with `git lfs pull`)");
+  }
+  std::string text(begin.substr(std::min(begin.find_first_not_of(" \t\r\n\xEF\xBB\xBF"), begin.size()), 14));
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (text.starts_with("<!doctype html") || text.starts_with("<html")) {
+    throw std::runtime_error("it is a web page, perhaps that of a failed download");
+  }
+  if (std::ranges::find(text_formats, extension) != text_formats.end() &&
+      (begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF"))) {
+    throw std::runtime_error("it is UTF-16 text (save it as UTF-8)");
+  }
+  const auto* const magic = std::ranges::find(magics, extension, &Magic::extension);
+  if (magic != magics.end() && !begin.empty() && !begin.starts_with(magic->bytes.substr(0, begin.size()))) {
+    throw std::runtime_error(fmt::format("it does not begin as a {} file does", magic->name));
+  }
+}
+
 struct Check {
   std::string_view extension;
   void (*check)(std::string_view bytes);
@@ -214,7 +249,9 @@ constexpr std::array<Check, 12> checks{{{"png", check_png},
 }  // namespace
 
 void require_complete(const std::filesystem::path& file) {
+  constexpr std::size_t begin_bytes = 64;
   const std::string extension = lower_extension(file);
+  require_kind(head_of(file, begin_bytes), extension);
   const auto* const known = std::ranges::find(checks, extension, &Check::extension);
   if (known == checks.end()) {
     return;

@@ -15,6 +15,8 @@ namespace {
 constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate
 constexpr std::chrono::minutes worth_saying{1};  // a clock that went back once is reported for so long
 
+constexpr const char* wrong_unit = "stamps_unit";
+
 struct Unit {
   std::string_view name;
   double time_rate;  ///< measured rate of stamps in this unit, read as nanoseconds
@@ -24,13 +26,19 @@ constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6
 
 /// Compares the rate of the stamps with the clock.
 std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
-  if (summary.poses < enough_poses || !summary.time_rate || *summary.time_rate <= 0.0) {
+  if (summary.poses < enough_poses || !summary.time_rate) {
     return std::nullopt;
   }
   const double time_rate = *summary.time_rate;
+  if (time_rate < 0.0) {
+    return Finding{"stamps_backwards",
+                   fmt::format("Stamps run backwards, by {:.2g} s each second: poses are used by "
+                               "their stamps. Send the time of each pose.",
+                               -time_rate)};
+  }
   for (const Unit& unit : units) {
     if (time_rate > 0.2 * unit.time_rate && time_rate < 5 * unit.time_rate) {
-      return Finding{"stamps_unit",
+      return Finding{wrong_unit,
                      fmt::format("Stamps of poses look like {}: they are to be in nanoseconds.", unit.name)};
     }
   }
@@ -54,19 +62,26 @@ std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::strin
                      fmt::format("The stamps stand still while the vehicle moves: is {0} left out? Send the "
                                  "time of each pose as {0}.",
                                  name)};
-    case StampWatch::Looks::in_steps:
-      return Finding{"stamps_in_steps",
-                     fmt::format("The stamps stand still for {:.2g} s at a time while the vehicle moves: is "
-                                 "{} in whole seconds? Send the time of each pose, with its fraction.",
-                                 1e-9 * static_cast<double>(stamps.last_step().count()), name)};
+    case StampWatch::Looks::in_steps: {
+      const double step_s = 1e-9 * static_cast<double>(stamps.last_step().count());
+      return Finding{
+          "stamps_in_steps",
+          fmt::format("The stamps stand still for {:.2g} s at a time while the vehicle moves: is {} {}? "
+                      "Send the time of each pose, with its fraction.",
+                      step_s, name, step_s > 0.5 ? "in whole seconds" : "rounded")};
+    }
     case StampWatch::Looks::never_moved:
-      if (clock != PingClock::wall) {
-        return Finding{no_ping_by_stamps,
-                       fmt::format("The stamps have not moved since the first pose, so no ping is made "
-                                   "(poses.clock): is the simulation paused, or {} left out?",
-                                   name)};
+      if (clock == PingClock::wall) {
+        return Finding{
+            "stamps_stand_still",
+            fmt::format("The stamps have not moved since the first pose: is {0} left out? Send the time "
+                        "of each pose as {0}.",
+                        name)};
       }
-      break;
+      return Finding{no_ping_by_stamps,
+                     fmt::format("The stamps have not moved since the first pose, so no ping is made "
+                                 "(poses.clock): is the simulation paused, or {} left out?",
+                                 name)};
   }
   return std::nullopt;
 }
@@ -87,15 +102,19 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
                      "started anew, or stamps are not those of one clock.",
                      summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
   }
-  if (auto found = look_at_stamps(inputs.statistics(index).stamps(), inputs.source(index).stamp_name(),
-                                  inputs.ping_clock())) {
-    findings.push_back(std::move(*found));
+  auto of_rate = look_at_rate(summary);
+  // Stamps in seconds also stand still for a second at a time.
+  if (!of_rate || of_rate->code != wrong_unit) {
+    if (auto found = look_at_stamps(inputs.statistics(index).stamps(), inputs.source(index).stamp_name(),
+                                    inputs.ping_clock())) {
+      findings.push_back(std::move(*found));
+    }
   }
   if (std::string remark = inputs.source(index).remark(); !remark.empty()) {
     findings.push_back({"depth_alone", std::move(remark)});
   }
-  if (auto found = look_at_rate(summary)) {
-    findings.push_back(std::move(*found));
+  if (of_rate) {
+    findings.push_back(std::move(*of_rate));
   }
   return findings;
 }

@@ -123,19 +123,45 @@ std::optional<OwnAddress> parse_own_netmask(std::string_view text) {
   return netmask ? OwnAddress{.netmask = *netmask} : address_of_interface(text);
 }
 
-std::optional<InterfaceAddress> followed(const std::string& interface, Ipv4 address,
+std::optional<InterfaceAddress> followed(const std::string& interface, const std::string& netmask_interface,
+                                         const InterfaceAddress& current,
                                          const std::vector<InterfaceAddress>& now) {
-  std::optional<InterfaceAddress> first;
-  for (const InterfaceAddress& entry : now) {
-    if (interface.empty() || entry.interface != interface) {
-      continue;
+  // The entry of an interface that has `address`, or its first.
+  const auto entry_of = [&](const std::string& name, Ipv4 address) -> const InterfaceAddress* {
+    const InterfaceAddress* first = nullptr;
+    for (const InterfaceAddress& entry : now) {
+      if (!name.empty() && entry.interface == name) {
+        if (entry.address == address) {
+          return &entry;
+        }
+        first = first == nullptr ? &entry : first;
+      }
     }
-    if (entry.address == address) {
-      return std::nullopt;
-    }
-    first = first.value_or(entry);
+    return first;
+  };
+  InterfaceAddress next = current;
+  if (const InterfaceAddress* const entry = entry_of(interface, current.address)) {
+    next.address = entry->address;
   }
-  return first;
+  if (const InterfaceAddress* const entry = entry_of(netmask_interface, next.address)) {
+    next.netmask = entry->netmask;
+  }
+  if (next.address == current.address && next.netmask == current.netmask) {
+    return std::nullopt;
+  }
+  next.interface = interface.empty() ? netmask_interface : interface;
+  return next;
+}
+
+std::string followed_text(const InterfaceAddress& before, const InterfaceAddress& after) {
+  const std::string netmask = after.netmask == before.netmask
+                                  ? ""
+                                  : fmt::format("its netmask is {} now", address_text(after.netmask));
+  if (after.address == before.address) {
+    return fmt::format("{}: {}", after.interface, netmask);
+  }
+  return fmt::format("{}: its address is {} now{}{}", after.interface, address_text(after.address),
+                     netmask.empty() ? "" : ", ", netmask);
 }
 
 OwnAddresses::News OwnAddresses::look(const std::vector<Ipv4>& own,

@@ -42,11 +42,17 @@ std::optional<OwnAddress> parse_own_address(std::string_view text);
 /// parse_own_address().
 std::optional<OwnAddress> parse_own_netmask(std::string_view text);
 
-/// The new address of a head that is named by its interface: the first address of the interface. nullopt if
-/// the interface still has `address`, or has no address.
-/// @param interface empty: the head is not named by an interface
-std::optional<InterfaceAddress> followed(const std::string& interface, Ipv4 address,
+/// The new address and netmask of a head whose address, netmask or both are given by interfaces; nullopt if
+/// they are the same as before, or if the interfaces have no address. The address changes to the first of its
+/// interface if the interface no longer has the current one.
+/// @param interface empty: the address is given as numbers
+/// @param netmask_interface empty: the netmask is given as numbers
+/// @param current as the head serves now; its `interface` is ignored
+std::optional<InterfaceAddress> followed(const std::string& interface, const std::string& netmask_interface,
+                                         const InterfaceAddress& current,
                                          const std::vector<InterfaceAddress>& now);
+/// "eth0: its address is 10.61.19.201 now", or its netmask, or both; for the log.
+std::string followed_text(const InterfaceAddress& before, const InterfaceAddress& after);
 
 /// Distinguishes addresses that this machine had from addresses that it never had.
 class OwnAddresses {

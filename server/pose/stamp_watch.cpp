@@ -7,9 +7,10 @@
 namespace sonard::server {
 namespace {
 
-// Fewer poses, or a shorter time, may come from a simulator whose physics is slower than its messages.
+// Fewer poses, or a shorter time, may be jitter. A simulator whose physics is slower than its messages
+// repeats stamp and pose.
 constexpr std::size_t least_poses = 5;
-constexpr std::chrono::milliseconds least_length{200};
+constexpr std::chrono::milliseconds least_length{50};
 constexpr std::chrono::milliseconds soon{500};  // for stamps that have never moved
 constexpr std::chrono::milliseconds longest_step{
     1500};  // stamps in whole seconds stay for one second at a time

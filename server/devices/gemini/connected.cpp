@@ -69,13 +69,12 @@ class ConnectedGemini final : public ConnectedDevice {
 
   // Does not follow if a client has programmed another address.
   void follow_addresses(const std::vector<InterfaceAddress>& now) override {
-    const auto found = followed(config_.interface, addresses_.alternate, now);
+    const InterfaceAddress current{"", addresses_.alternate, addresses_.netmask};
+    const auto found = followed(config_.interface, config_.netmask_interface, current, now);
     if (found && addresses_.alternate == followed_) {
-      log_.info("head={} follows {}: its address is {} now", name_, found->interface,
-                address_text(found->address));
+      log_.info("head={} follows {}", name_, followed_text(current, *found));
       followed_ = found->address;
-      device_.move_to(found->address,
-                      config_.netmask_interface.empty() ? addresses_.netmask : found->netmask);
+      device_.move_to(found->address, found->netmask);
       after_step();
     }
     const Ipv4 bound = transport_.local_endpoint().address;

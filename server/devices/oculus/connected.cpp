@@ -34,22 +34,24 @@ class ConnectedOculus final : public ConnectedDevice {
   Transport& transport() override { return transport_; }
 
   void follow_addresses(const std::vector<InterfaceAddress>& now) override {
-    const auto found = followed(config_.interface, address_, now);
+    const InterfaceAddress current{"", address_, netmask_};
+    const auto found = followed(config_.interface, config_.netmask_interface, current, now);
     if (!found) {
       return;
     }
     try {
-      stream_->rebind({found->address, config_.tcp_port});
-      status_->rebind({found->address, 0});
+      if (found->address != address_) {
+        stream_->rebind({found->address, config_.tcp_port});
+        status_->rebind({found->address, 0});
+      }
     } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is free
       log_.error("head={} cannot follow {} to {}: {}", name_, found->interface, address_text(found->address),
                  error.what());
       return;
     }
-    log_.info("head={} follows {}: its address is {} now", name_, found->interface,
-              address_text(found->address));
+    log_.info("head={} follows {}", name_, followed_text(current, *found));
     address_ = found->address;
-    netmask_ = config_.netmask_interface.empty() ? netmask_ : found->netmask;
+    netmask_ = found->netmask;
     device_.move_to(address_, netmask_);
     tell_everybody();
   }

@@ -8,6 +8,7 @@
 import argparse
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -209,6 +210,32 @@ class AddressThatChanges(Machine):
         client.settimeout(PATIENCE_S)
         client.connect((NEW, 52100))
         self.assertGreater(len(client.recv(100)), 0, "the greeting of a head")
+
+    def test_a_mask_that_changes_alone_is_followed(self):
+        listeners = {GEMINI: self.far_socket(STATUS_OF_GEMINI), OCULUS: self.far_socket(STATUS_OF_OCULUS)}
+        daemon = self.run_daemon(GEMINI, OCULUS)
+        self.take(OLD)
+        self.give(OLD, 16)
+        for name in ("g", "o"):
+            daemon.wait_for_line(f"head={name} follows eth0: its netmask is 255.255.0.0 now", PATIENCE_S)
+        deadline = Deadline(PATIENCE_S)
+        while socket.inet_aton("255.255.0.0")[::-1] not in self.wait_for_status_from(listeners[GEMINI], OLD):
+            self.assertFalse(deadline.over())
+        self.wait_for_status_from(listeners[OCULUS], OLD)
+
+    def test_a_reload_goes_on_with_the_address_that_was_followed(self):
+        for head, name in ((GEMINI, "g"), (OCULUS, "o")):
+            with self.subTest(name):
+                daemon = self.run_daemon(head)
+                self.take(OLD)
+                self.give(NEW)
+                daemon.wait_for_line(f"head={name} follows eth0: its address is {NEW} now", PATIENCE_S)
+                daemon.signal(signal.SIGHUP)
+                daemon.wait_for_line("beginning anew", PATIENCE_S)
+                daemon.wait_for_line("sonard ready", START_S, count=2)
+                daemon.kill()
+                self.take(NEW)
+                self.give(OLD)
 
     def test_a_second_address_of_the_interface_moves_nothing(self):
         listener = self.far_socket(STATUS_OF_GEMINI)

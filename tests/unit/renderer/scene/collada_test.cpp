@@ -3,6 +3,7 @@
 // tests write files by the rules of COLLADA 1.4.1; boxes, areas and volumes are computed by hand.
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -398,6 +399,19 @@ TEST_F(Collada, OrdersTransformsAsGazebo) {
              {11, 2, 3});
   expect_box(box_of_node("<scale>2 2 2</scale><matrix>1 0 0 7 0 1 0 0 0 0 1 0 0 0 0 1</matrix>"), {7, 0, 0},
              {8, 2, 3});
+}
+
+/// By 120 degrees about (1, 1, 1), x becomes y, y becomes z and z becomes x.
+TEST_F(Collada, TurnsAboutAnAxisOfAnyLength) {
+  for (const auto& [rotation, low, high] :
+       {std::tuple<std::string, glm::vec3, glm::vec3>{"1 1 1 120", {0, 0, 0}, {3, 1, 2}},
+        {"0 0 2 90", {-2, 0, 0}, {0, 1, 3}},
+        {"0 0 -0.5 -90", {-2, 0, 0}, {0, 1, 3}},
+        {"0 0 0 90", {0, 0, 0}, {1, 2, 3}}}) {
+    Document document;
+    document.nodes = "<node name=\"a\"><rotate>" + rotation + "</rotate>" + instance + "</node>";
+    expect_box(load(document), low, high);
+  }
 }
 
 TEST_F(Collada, KeepsTheOutsideOfAMirroredNodeOutside) {

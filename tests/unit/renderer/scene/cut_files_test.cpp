@@ -271,5 +271,69 @@ TEST_P(CutElevations, AreRefused) {
 INSTANTIATE_TEST_SUITE_P(Compressions, CutElevations,
                          testing::Values(COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE));
 
+std::string refusal_of_mesh(const std::filesystem::path& file) {
+  try {
+    MeshFileRequest request;
+    request.file = file;
+    load_mesh_file(request);
+  } catch (const WorldError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal_of_picture(const std::filesystem::path& file) {
+  try {
+    load_grey_image(file);
+  } catch (const WorldError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// What a clone without LFS and a failed download leave.
+TEST(FileOfAnotherKind, IsNamed) {
+  const test::TempFolder folder;
+  const std::string pointer =
+      "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0\nsize 12345678\n";
+  for (const char* const extension : {"obj", "stl", "ply", "dae", "glb", "gltf", "3ds", "fbx", "osgt"}) {
+    const std::string name = std::string("hull.") + extension;
+    EXPECT_THAT(refusal_of_mesh(folder.write(name, pointer)), HasSubstr("Git LFS pointer")) << extension;
+    EXPECT_THAT(refusal_of_mesh(folder.write(name, "\n<!DOCTYPE HTML><html><body>404</body></html>")),
+                HasSubstr("web page"))
+        << extension;
+  }
+  for (const char* const name : {"map.png", "map.jpg", "map.bmp", "map.pgm"}) {
+    EXPECT_THAT(refusal_of_picture(folder.write(name, pointer)), HasSubstr("Git LFS pointer")) << name;
+    EXPECT_THAT(refusal_of_picture(folder.write(name, "<html><body>404</body></html>")),
+                HasSubstr("web page"))
+        << name;
+  }
+  EXPECT_THAT(refusal_of_picture(folder.write("map.png", std::string(400, 'x'))),
+              HasSubstr("does not begin as a PNG file does"));
+  EXPECT_THAT(refusal_of_mesh(folder.write("hull.glb", std::string(400, 'x'))),
+              HasSubstr("does not begin as a GLB file does"));
+}
+
+TEST(FileOfAnotherKind, InUtf16IsNamed) {
+  const test::TempFolder folder;
+  const std::string ascii =
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\nendsolid x\n";
+  std::string wide = "\xFF\xFE";
+  for (const char c : ascii) {
+    wide += c;
+    wide += '\0';
+  }
+  EXPECT_EQ(refusal_of_mesh(folder.write("hull.stl", ascii)), "");
+  EXPECT_THAT(refusal_of_mesh(folder.write("hull.stl", wide)), HasSubstr("UTF-16"));
+}
+
+TEST(FileOfAnotherKind, ObjWithTheMarkOfUtf8IsRead) {
+  const test::TempFolder folder;
+  EXPECT_EQ(refusal_of_mesh(folder.write("hull.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
+            "");
+}
+
 }  // namespace
 }  // namespace sonard::render

@@ -61,21 +61,46 @@ TEST(Interfaces, ANameThatThisMachineDoesNotHaveMayComeLater) {
 
 constexpr Ipv4 first = 0x0A3D13C8, second = 0xC0A802C8, other = 0x0A3D13C9;
 
-TEST(Followed, IsTheFirstAddressOfTheInterfaceWhereTheOldOneIsGone) {
-  ASSERT_TRUE(followed("eth0", other, interfaces));
-  EXPECT_EQ(followed("eth0", other, interfaces)->address, first);
-  EXPECT_EQ(followed("eth0", other, interfaces)->netmask, 0xFFFFFF00u);
+constexpr Ipv4 mask = 0xFFFFFF00, wide_mask = 0xFFFF0000;
+
+TEST(Followed, IsTheFirstAddressOfTheInterfaceIfTheOldOneIsGone) {
+  const auto found = followed("eth0", "eth0", {"", other, wide_mask}, interfaces);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->interface, "eth0");
+  EXPECT_EQ(found->address, first);
+  EXPECT_EQ(found->netmask, mask);
+  EXPECT_EQ(followed("eth0", "", {"", other, wide_mask}, interfaces)->netmask, wide_mask)
+      << "given as numbers";
+}
+
+TEST(Followed, IsTheMaskIfItAloneChanges) {
+  const std::vector<InterfaceAddress> now{{"eth0", second, mask}, {"eth0", first, wide_mask}};
+  const auto found = followed("eth0", "eth0", {"", first, mask}, now);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->address, first);
+  EXPECT_EQ(found->netmask, wide_mask) << "that of its own address, not of the first";
+  EXPECT_EQ(followed("", "eth0", {"", first, mask}, now)->netmask, wide_mask)
+      << "the address is given as numbers";
+  EXPECT_FALSE(followed("eth0", "", {"", first, mask}, now));
 }
 
 TEST(Followed, IsNoneAsLongAsTheInterfaceHasTheAddressOrNoneAtAll) {
-  EXPECT_FALSE(followed("eth0", first, interfaces));
-  EXPECT_FALSE(followed("eth0", second, interfaces)) << "its second one";
-  EXPECT_FALSE(followed("eth1", first, interfaces));
-  EXPECT_FALSE(followed("eth0", first, {}));
+  EXPECT_FALSE(followed("eth0", "eth0", {"", first, mask}, interfaces));
+  EXPECT_FALSE(followed("eth0", "eth0", {"", second, mask}, interfaces)) << "its second one";
+  EXPECT_FALSE(followed("eth1", "eth1", {"", first, mask}, interfaces));
+  EXPECT_FALSE(followed("eth0", "eth0", {"", first, mask}, {}));
 }
 
 TEST(Followed, IsNoneOfAHeadThatIsNamedByItsAddress) {
-  EXPECT_FALSE(followed("", other, interfaces));
+  EXPECT_FALSE(followed("", "", {"", other, mask}, interfaces));
+}
+
+TEST(Followed, TextNamesWhatChanged) {
+  const InterfaceAddress before{"", other, mask};
+  EXPECT_EQ(followed_text(before, {"eth0", first, mask}), "eth0: its address is 10.61.19.200 now");
+  EXPECT_EQ(followed_text(before, {"eth0", other, wide_mask}), "eth0: its netmask is 255.255.0.0 now");
+  EXPECT_EQ(followed_text(before, {"eth0", first, wide_mask}),
+            "eth0: its address is 10.61.19.200 now, its netmask is 255.255.0.0 now");
 }
 
 TEST(OwnAddresses, AreToldOnceWhenTheyGoAndWhenTheyAreBack) {

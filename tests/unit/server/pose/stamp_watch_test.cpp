@@ -91,10 +91,21 @@ TEST_F(StampWatchTest, WholeSecondsGoOnInSteps) {
   EXPECT_EQ(stream(60, 0.02, good), Looks::good);
 }
 
+std::int64_t tenths(std::int64_t now_ns) {
+  return now_ns / 100'000'000 * 100'000'000;
+}
+
+TEST_F(StampWatchTest, TenthsOfASecondGoOnInSteps) {
+  EXPECT_EQ(stream(50, 0.02, tenths), Looks::in_steps);
+  EXPECT_EQ(watch_.last_step(), milliseconds{80});
+}
+
 TEST_F(StampWatchTest, PhysicsThatIsSlowerThanTheMessagesIsGood) {
-  // At 10 Hz five poses share a stamp, although the vehicle moves by 2 cm from pose to pose.
-  const auto tenths = [](std::int64_t now_ns) { return now_ns / 100'000'000 * 100'000'000; };
-  EXPECT_EQ(stream(500, 0.02, tenths), Looks::good);
+  // At 10 Hz five messages repeat a pose with its stamp.
+  for (int i = 0; i < 100; ++i) {
+    stream(1, 0.1, tenths);
+    EXPECT_EQ(stream(4, 0.0, tenths), Looks::good);
+  }
 }
 
 }  // namespace
