@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole configuration of the daemon as plain values: SI units, radians, parsed addresses, paths that
-// are resolved against the folder of the configuration file.
-// server/config/loader.hpp makes it from YAML; everything else of the server only reads it.
+// The whole configuration of the daemon as plain values: SI units, radians, parsed addresses, paths resolved
+// against the folder of the configuration file.
+// server/config/loader.hpp makes it from YAML; the rest of the server only reads it.
 // docs/configuration.md lists the keys with their units and defaults.
 #pragma once
 
@@ -28,37 +28,37 @@ class HeadKind;
 enum class LogLevel { trace, debug, info, warn, error };
 enum class LogFormat { text, json };
 
-/// What the sonars swim in. What follows from it (absorption, true speed of sound) is already in the heads'
-/// settings; kept for the log and `sonard check`.
+/// The water. Values derived from it (absorption, true speed of sound) are already in the heads' settings; it
+/// is kept for the log and `sonard check`.
 struct WaterConfig {
   double temperature_c = 10.0;
   double salinity_ppt = 35.0;
   double depth_m = 10.0;
   double ph = 8.0;
   double sound_speed_mps = 0.0;  ///< of this water (Mackenzie or Medwin), whether or not the heads use it
-  /// By how much sound gets faster per metre upwards, 1/s: positive where rays sink; 0: they are straight.
+  /// Gradient of the speed of sound per metre upwards, 1/s. Positive: rays bend down; 0: rays are straight.
   double sound_speed_gradient_per_s = 0.0;
 };
 
-/// A UDP socket that takes one pose message per datagram (docs/poses.md).
+/// A UDP socket that receives one pose message per datagram (docs/poses.md).
 struct UdpPoseInput {
   Endpoint bind;
   AllowList allow;
 };
 
-/// A TCP listener that takes varint-delimited pose messages (docs/poses.md).
+/// A TCP listener for varint-delimited pose messages (docs/poses.md).
 struct TcpPoseInput {
   Endpoint bind;
   AllowList allow;
   int max_clients = 8;  ///< further connections are closed at once
 };
 
-/// Which messages of a MAVLink vehicle say where it is.
+/// The messages of a MAVLink vehicle that give its position.
 enum class MavlinkMessages {
-  automatic,       ///< ODOMETRY where it comes, else the others
+  automatic,       ///< ODOMETRY if it arrives, else the others
   odometry,        ///< ODOMETRY
   local_position,  ///< LOCAL_POSITION_NED with ATTITUDE or ATTITUDE_QUATERNION
-  global_position  ///< GLOBAL_POSITION_INT with the same
+  global_position  ///< GLOBAL_POSITION_INT with ATTITUDE or ATTITUDE_QUATERNION
 };
 
 /// A UDP socket that listens to a MAVLink vehicle (docs/simulators/ardusub.md).
@@ -66,26 +66,26 @@ struct MavlinkPoseInput {
   Endpoint bind;
   AllowList allow;
   std::uint8_t system_id = 1;     ///< the vehicle, 1..255
-  std::uint8_t component_id = 1;  ///< the part of it that is believed, 1..255; 1: the autopilot
+  std::uint8_t component_id = 1;  ///< component whose messages are used, 1..255; 1: the autopilot
   MavlinkMessages messages = MavlinkMessages::automatic;
-  render::Pose T_world_local;  ///< where the origin of its positions is, in axes east, north, up
-  /// Where the world is on Earth, for global_position (resolve_mounts() fills it in).
+  render::Pose T_world_local;  ///< origin of the vehicle's positions, in axes east, north, up
+  /// The world's place on Earth, for global_position (resolve_mounts() sets it).
   std::optional<render::GeographicOrigin> world_origin;
 };
 
-/// A trajectory file played in real time from the start of the daemon.
+/// A trajectory file, played in real time from the start of the daemon.
 struct TrajectoryInput {
-  std::filesystem::path file;  ///< CSV or TUM, told apart by its content (docs/poses.md)
+  std::filesystem::path file;  ///< CSV or TUM, recognised by its content (docs/poses.md)
   bool loop = false;           ///< false: the last pose stays the newest one
   double speed = 1.0;          ///< 2: twice as fast as recorded; > 0
   pose::Axes axes = pose::Axes::enu_flu;
 };
 
-/// Something that a simulator gives the pose of, by its name there.
+/// An entity whose pose a simulator sends, by its name in the simulator.
 struct SimulatorEntity {
   std::string name;
-  /// What the pose of each is relative to, from a model that stands in the world inwards; empty: the pose of
-  /// the entity is in the world.
+  /// The entities that each pose is relative to, from a model in the world inwards. Empty: the pose of the
+  /// entity is in the world.
   std::vector<std::string> parents;
 };
 
@@ -96,41 +96,41 @@ struct GazeboPoseInput {
     std::string body;  ///< of our world
   };
   std::string topic;
-  std::string partition;          ///< empty: that of IGN_PARTITION
-  Ipv4 address = 0x7F000001;      ///< of this machine: of loopback, Gazebo on this machine only
+  std::string partition;          ///< empty: the value of IGN_PARTITION
+  Ipv4 address = 0x7F000001;      ///< of this machine; loopback: Gazebo on this machine only
   SimulatorEntity vehicle;        ///< carrier of the sonars; without a name: DaemonConfig::vehicle_model
   render::Pose T_entity_vehicle;  ///< mount of the vehicle frame on that entity
   std::vector<Body> bodies;
 };
 
-/// What a head does when the newest pose is older than the extrapolation limit.
+/// What a head does if the newest pose is older than the extrapolation limit.
 enum class StalePolicy {
   hold,     ///< continues to ping from the last pose
   silence,  ///< sends status packets only, until a pose arrives
 };
 
-/// What time it is for the pings.
+/// The clock that times the pings.
 enum class PingClock {
   wall,       ///< the time of this machine
-  source,     ///< that of the stamps of the poses; a ping that would come too late to keep up is left out
-  lock_step,  ///< like `source`, but no ping is left out: publishers by TCP have to wait
+  source,     ///< the stamps of the poses; late pings are skipped to keep up
+  lock_step,  ///< as `source`, but no ping is skipped: TCP publishers must wait
 };
 
 struct PoseConfig {
-  /// T_world_vehicle that holds until the first pose arrives; without it the heads answer but do not ping.
+  /// T_world_vehicle until the first pose arrives. If nullopt, the heads answer but do not ping until then.
   std::optional<render::Pose> T_world_vehicle_initial;
   std::optional<UdpPoseInput> udp;
   std::optional<TcpPoseInput> tcp;
   std::optional<MavlinkPoseInput> mavlink;
   std::optional<TrajectoryInput> trajectory;
   std::optional<GazeboPoseInput> gazebo;
-  /// Past the newest pose the twist is followed this long (without a twist the pose is held); >= 0.
+  /// Extrapolates this long after the newest pose with its twist (without a twist, holds the pose); >= 0.
   std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
   StalePolicy stale_policy = StalePolicy::hold;
   PingClock clock = PingClock::wall;
 };
 
-/// The part of a head's configuration that only its kind of device knows.
+/// The part of a head's configuration that only its kind of device reads.
 struct DeviceSettings {
   DeviceSettings() = default;
   virtual ~DeviceSettings() = default;
@@ -140,56 +140,55 @@ struct DeviceSettings {
 
 /// One head.
 struct HeadConfig {
-  const HeadKind* kind = nullptr;                ///< what it is; never null once it is loaded
+  const HeadKind* kind = nullptr;                ///< kind of device; not null after loading
   std::shared_ptr<const DeviceSettings> device;  ///< of that kind
   std::string name;              ///< unique in the daemon; appears in every log line of this head
   render::Pose T_vehicle_sonar;  ///< mount
-  /// The sonar of the world that the mount is to be taken from (resolve_mounts() does); empty: none.
+  /// The sonar of the world that gives the mount (resolve_mounts() reads it); empty: no such sonar.
   std::string mount_from_world;
-  bool hides_vehicle = false;  ///< whether DaemonConfig::vehicle_model is not in its images
-  /// Everything of a ping that the device does not say by itself.
+  bool hides_vehicle = false;  ///< whether its images leave out DaemonConfig::vehicle_model
+  /// All values of a ping that the device itself does not set.
   render::SonarSettings acoustics;
-  /// Whether a faster preset than the one of `acoustics` is taken while pings cannot be made as fast as they
-  /// are asked for.
+  /// Whether a faster preset than the one of `acoustics` is used while pings cannot be made at the requested
+  /// rate.
   bool adaptive_quality = false;
   std::uint64_t seed = 1;  ///< of speckle and noise
-  /// Folder that receives the samples of every ping as the renderer handed them over, for tests and
-  /// debugging.
+  /// Folder for the samples of every ping as the renderer returned them, for tests and debugging.
   std::optional<std::filesystem::path> dump_directory;
 };
 
 /// The clock that names of logs and times in .glf logs show.
 enum class RecordingZone { utc, local };
 
-/// When what was written is forced onto the disk (docs/logs.md, "Recording").
+/// When written data is forced onto the disk (docs/logs.md, "Recording").
 enum class RecordingSync {
-  never,         ///< when the kernel likes
+  never,         ///< when the kernel writes it
   on_close,      ///< a file when it is closed
-  every_second,  ///< that, and all open files once a second
+  every_second,  ///< as on_close, and all open files once a second
 };
 
-/// Logs of what the heads say.
+/// Logs of what the heads send and receive.
 struct RecordingConfig {
-  std::filesystem::path directory;  ///< made when it is not there; one daemon at a time uses it
+  std::filesystem::path directory;  ///< created if missing; used by one daemon at a time
   bool glf = true;                  ///< of heads whose users know it (HeadKind)
   bool mcap = true;
-  bool mcap_wire_bytes = true;  ///< whether it has the bytes of both directions
-  bool mcap_foxglove = false;   ///< whether it has pictures, places and echoes for Foxglove
-  bool mcap_zstd = false;       ///< whether its chunks are compressed, when they are full
+  bool mcap_wire_bytes = true;  ///< whether it holds the bytes of both directions
+  bool mcap_foxglove = false;   ///< whether it holds images, poses and echoes for Foxglove
+  bool mcap_zstd = false;       ///< whether its full chunks are compressed
   bool pcapng = true;
-  std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< a file of this size or more ends all files
-  std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; and so does this time
+  std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< if a file reaches this size, all files end
+  std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; all files end after this time
   RecordingZone zone = RecordingZone::utc;
   RecordingSync sync = RecordingSync::on_close;
-  std::size_t queue_bytes = std::size_t{128} << 20;                 ///< what does not fit is dropped
-  std::chrono::nanoseconds stop_deadline{std::chrono::seconds{5}};  ///< for what waits, when the daemon ends
+  std::size_t queue_bytes = std::size_t{128} << 20;                 ///< further data is dropped
+  std::chrono::nanoseconds stop_deadline{std::chrono::seconds{5}};  ///< for the queue at the daemon's end
 };
 
-/// The page in the browser, and what monitors ask.
+/// The page in the browser and the metrics for monitors.
 struct WebConfig {
   Endpoint bind;
   AllowList allow;
-  std::string token;                 ///< lets whoever knows it change state; empty: only this machine may
+  std::string token;                 ///< clients that send it may change state; empty: only this machine may
   std::vector<std::string> origins;  ///< other sites whose pages may connect, "https://example.org"
   int max_viewers = 128;             ///< WebSockets at a time; 1 to 1000
   int max_viewers_per_peer = 64;     ///< of them with one address; 1 to 1000
@@ -203,19 +202,19 @@ struct DaemonConfig {
   bool open_water = false;           ///< whether the world may be without a surface
   bool skips_missing_files = false;  ///< of the world
   int world_max_triangles = 50'000'000;
-  /// Where the world is on Earth, in the place of what its file says.
+  /// The world's place on Earth; replaces the place in the world file.
   std::optional<render::GeographicOrigin> origin;
-  /// The body of the world that is the vehicle itself and moves with it; empty: none, or the one that carries
-  /// the sonars that heads are mounted from (resolve_mounts() fills it in).
+  /// The body of the world that is the vehicle and moves with it. If empty: no body, or the one with the
+  /// sonars that give the mounts of the heads (resolve_mounts() sets it).
   std::string vehicle_model;
   render::EngineKind engine = render::EngineKind::automatic;
   render::GpuOptions gpu;
-  render::SkipSwitches skip;  ///< what may be left out (docs/skipping.md)
+  render::SkipSwitches skip;  ///< what the renderer may leave out (docs/skipping.md)
   WaterConfig water;
   PoseConfig poses;
   std::vector<HeadConfig> heads;  ///< at least one
   std::optional<RecordingConfig> recording;
-  std::optional<WebConfig> web;  ///< nullopt: none is served
+  std::optional<WebConfig> web;  ///< nullopt: no page
 };
 
 }  // namespace sonard::server

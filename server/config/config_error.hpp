@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a configuration file, and where.
+// Problems in a configuration file, with their places.
 #pragma once
 
 #include <filesystem>
@@ -20,12 +20,12 @@ struct SourcePosition {
 
 struct ConfigProblem {
   SourcePosition at;
-  std::string key;          ///< "heads[0].link.to_client.loss"; empty for what concerns no key
+  std::string key;          ///< "heads[0].link.to_client.loss"; empty if the problem concerns no key
   std::string message;      ///< "... (expected ...)"
-  bool of_network = false;  ///< an interface of this machine lacks what the key wants, and may have it later
+  bool of_network = false;  ///< an interface of this machine lacks what the key needs, and may have it later
 };
 
-/// What is worth saying but no reason to stop.
+/// A warning about a key; the configuration remains valid.
 struct ConfigWarning {
   std::string key;
   std::string message;
@@ -40,11 +40,11 @@ SourcePosition nearest_position(const KeyPositions& positions, std::string_view 
 
 /// "file:line:column: key: message", without the parts that are unknown.
 std::string problem_text(const std::filesystem::path& file, const ConfigProblem& problem);
-/// problem_text() of each.
+/// problem_text() of each problem.
 std::vector<std::string> problem_lines(const std::filesystem::path& file,
                                        const std::vector<ConfigProblem>& problems);
 
-/// Everything that was wrong with one file. what() is the first problem in one line.
+/// All problems of one file. what() is the first problem in one line.
 class ConfigError : public std::runtime_error {
  public:
   /// @param problems at least one
@@ -54,7 +54,7 @@ class ConfigError : public std::runtime_error {
   const std::vector<ConfigProblem>& problems() const { return problems_; }
   /// One line for each problem.
   std::vector<std::string> lines() const { return problem_lines(file_, problems_); }
-  /// Nothing is wrong with the file itself: when the network is up it can be used.
+  /// Whether the file itself is valid, and only needs the network to be up.
   bool only_of_network() const;
 
  private:

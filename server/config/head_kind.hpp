@@ -14,23 +14,23 @@
 
 namespace sonard::server {
 
-/// A socket that the configuration asks for.
+/// A socket in the configuration.
 struct PlannedSocket {
   enum class Transport : std::uint8_t { udp, tcp };
   Transport transport = Transport::udp;
   Endpoint endpoint;
-  std::string key;  ///< "heads[0].network.bind", or of a head "network.bind"
+  std::string key;  ///< "heads[0].network.bind", or "network.bind" in a list for one head
 };
 
 /// A value that no two heads may share.
 struct Identity {
   std::string key;      ///< of the head: "sonar_id"
   std::string value;    ///< as text: "513"
-  bool of_kind = true;  ///< heads of different kinds may have the same; false: a file of this machine, say
+  bool of_kind = true;  ///< heads of different kinds may share it; false: they may not
 };
 
-/// One for each kind of device, without state. A head of the configuration names its kind, and its `device`
-/// are the settings that this kind has read.
+/// One object for each kind of device, without state. A head of the configuration points to its kind; its
+/// `device` holds the settings that this kind has read.
 class HeadKind {
  public:
   HeadKind() = default;
@@ -40,12 +40,12 @@ class HeadKind {
 
   virtual std::string_view type() const = 0;   ///< as in the configuration: "example_100"
   virtual std::string_view title() const = 0;  ///< for people: "Example 100"
-  /// Words of the key `model`, which people give for the type.
+  /// Model names (values of the key `model`) that users may write as the type by mistake.
   virtual std::vector<std::string_view> models() const { return {}; }
 
   /// A head with the defaults of this kind.
   virtual HeadConfig make_default() const = 0;
-  /// Reads a section of `heads`, but for its type.
+  /// Reads a section of `heads`, except its type.
   virtual HeadConfig read(YamlSection& section, const HeadContext& context) const = 0;
 
   virtual std::uint16_t device_id(const HeadConfig& head) const = 0;  ///< on the wire
@@ -53,13 +53,13 @@ class HeadKind {
   virtual std::vector<Identity> identities(const HeadConfig& head) const = 0;
   /// For `sonard check`: "ID 513, commands to 127.0.0.2:52901, status to 127.0.0.1".
   virtual std::string summary(const HeadConfig& head) const = 0;
-  /// What of this head a client would stumble over on this machine; keys are those of the head.
+  /// Problems that a client on this machine would have with this head; keys are relative to the head.
   virtual std::vector<ConfigWarning> network_warnings(const HeadConfig& /*head*/) const { return {}; }
 };
 
-/// Of a serial link under a key of a head.
+/// Planned sockets of the serial link under a key of a head.
 std::vector<PlannedSocket> serial_sockets(const SerialLinkConfig& link, const std::string& key);
-/// The links to its pseudo terminals, likewise.
+/// Identities of the links to its pseudo terminals.
 std::vector<Identity> serial_identities(const SerialLinkConfig& link, const std::string& key);
 
 }  // namespace sonard::server

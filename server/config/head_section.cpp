@@ -240,8 +240,8 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
                  "minimum of the speckle factor");
 }
 
-/// Whether an angle is a multiple of 5 degrees in radians, of at least 10, as people write it: with two
-/// digits behind the point or more. What has one (0.5, 1.4) is more likely to be degrees.
+/// Whether an angle looks like a multiple of 5 degrees (at least 10) in radians, written with two or more
+/// decimals. Angles with one decimal (0.5, 1.4) are more likely to be degrees.
 bool looks_like_radians(double angle) {
   constexpr double step = std::numbers::pi / 36;
   const double multiple = std::round(angle / step);
@@ -252,7 +252,7 @@ bool looks_like_radians(double angle) {
   return multiple >= 2.0 && !has_digits(10.0) && off < (has_digits(100.0) ? 0.005 : 0.0006);
 }
 
-/// Whether three angles are likely to be radians that stand for degrees: none is beyond a turn.
+/// Whether three angles are likely to be radians instead of degrees: none exceeds one turn.
 bool look_like_radians(const glm::dvec3& angles) {
   bool any = false;
   for (int axis = 0; axis < 3; ++axis) {
@@ -265,7 +265,7 @@ bool look_like_radians(const glm::dvec3& angles) {
   return any;
 }
 
-/// A vehicle is shorter.
+/// Larger offsets cause a warning: vehicles are smaller.
 constexpr double longest_arm_m = 10.0;
 
 void read_mount(YamlSection& section, HeadConfig& head) {
@@ -291,7 +291,7 @@ void read_mount(YamlSection& section, HeadConfig& head) {
   }
 }
 
-/// Reports a model that is given for the type.
+/// Reports a model that is given as the type.
 void report_model(YamlSection& section, std::span<const HeadKind* const> kinds) {
   for (const HeadKind* kind : kinds) {
     for (const std::string_view model : kind->models()) {
@@ -318,7 +318,7 @@ HeadConfig read_head(YamlSection& section, const HeadContext& context,
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
   const bool known = section.choice("type", kind, types, "type of device") && section.has("type");
   if (!known && !section.describing()) {
-    section.ignore_rest();  // which keys a head of another type has is not known
+    section.ignore_rest();  // the keys of heads of other types are unknown here
     return {};
   }
   return kind->read(section, context);
@@ -413,10 +413,10 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
 
 namespace {
 
-/// Which of the formula's bounds are left (in_absorption_range()), in words; empty: none.
+/// The violated bounds of the formula (in_absorption_range()), in words; empty if all hold.
 std::string outside_of_absorption_range(double carrier_hz, const render::Water& water) {
   std::vector<std::string> outside;
-  // Each bound by itself, with the other values where the formula holds.
+  // Tests each bound alone; the other values are inside the formula's range.
   constexpr double usual_hz = 100'000.0;
   const auto holds = [](double hz, double temperature_c, double salinity_ppt) {
     return render::in_absorption_range(hz, {temperature_c, salinity_ppt, 10.0, 8.0});
@@ -458,7 +458,7 @@ void apply_water(YamlSection& section, const HeadContext& context, double carrie
 
 void read_pose(YamlSection& section, render::Pose& pose, std::string_view position_meaning,
                std::string_view rpy_meaning) {
-  constexpr double far_m = 1e8;  // beyond the radius of the earth: geocentric coordinates fit
+  constexpr double far_m = 1e8;  // larger than the Earth's radius: geocentric coordinates fit
   section.vector3("position_m", pose.position_m, Range::from(-far_m, far_m), position_meaning);
   glm::dvec3 rpy_deg{0.0};
   section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0), rpy_meaning);

@@ -24,8 +24,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uintmax_t most_bytes = 4
-                                      << 20;  // a thousand times those that ship; more takes minutes to parse
+constexpr std::uintmax_t most_bytes = 4 << 20;  // 1000 times our own files; more takes minutes to parse
 
 std::string read_file(const std::filesystem::path& file) {
   const auto fail = [&](const std::error_code& cause) {
@@ -50,7 +49,7 @@ std::string read_file(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Notes where the documents of a text begin.
+/// Collects the start of each document of a text.
 class DocumentStarts : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
@@ -68,8 +67,8 @@ class DocumentStarts : public YAML::EventHandler {
   std::vector<YAML::Mark> marks;
 };
 
-/// How many documents there are: 0, 1 or, for more than that, 2. (YAML::LoadAll() finds documents without end
-/// in a text that begins with a comma.)
+/// The number of documents: 0, 1, or 2 if there are more. (YAML::LoadAll() never ends for a text that begins
+/// with a comma.)
 /// @throws YAML::Exception
 int count_documents(const std::string& text) {
   std::istringstream in(text);
@@ -153,7 +152,7 @@ render::Water properties(const WaterConfig& water) {
   return {water.temperature_c, water.salinity_ppt, water.depth_m, water.ph};
 }
 
-/// Fills the water and what the heads take from it.
+/// Sets the water and the values that heads derive from it.
 void read_water(YamlSection& section, HeadContext& context) {
   section.introduce(
       "These keys set the absorption (Francois & Garrison 1982, at the frequency of each head). With "
@@ -227,7 +226,7 @@ std::optional<std::string> any_text(std::string_view text) {
   return text.empty() ? std::nullopt : std::optional(std::string(text));
 }
 
-/// "parents", which says what a relative pose is relative to.
+/// "parents": the entities that a relative pose is relative to.
 void read_parents(YamlSection& section, bool relative, SimulatorEntity& entity, std::string_view meaning) {
   constexpr TextForm names{"names of entities, the outermost first", "texts", R"("type": "string")"};
   section.parsed_list("parents", entity.parents, &any_text, names, meaning);
@@ -450,7 +449,7 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
     section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
-  section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and a ping may still come
+  section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and another ping may follow
                   "file size in MiB; when one file reaches it, sonard closes all files and begins new ones");
   recording.rotate_bytes = mebibytes << 20;
   section.duration("rotate_min", recording.rotate_after, Range::from(0.05, 10'080.0),

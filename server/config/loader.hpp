@@ -14,32 +14,32 @@
 
 namespace sonard::server {
 
-/// A configuration, and where in the file its values stand.
+/// A configuration, and the places of its values in the file.
 struct LoadedConfig {
   DaemonConfig config;
   /// Place of the value of every key that the file gives; "heads[0].network.bind" is the form of a key.
   KeyPositions positions;
   std::vector<ConfigProblem> warnings;
 
-  /// The warnings, one line each, with place and key.
+  /// The warnings with place and key, one line each.
   std::vector<std::string> warning_lines() const { return problem_lines(config.file, warnings); }
 
-  /// A problem that showed only when the value of a key was used (a mesh that is missing, an address in use),
-  /// in one line with the place of the key or of the nearest mapping around it that the file gives.
+  /// A problem that was found only when a key's value was used (a missing mesh, an address in use), in one
+  /// line. Its place is the key, or the nearest mapping around it in the file.
   std::string problem_with(std::string_view key, const std::string& message) const;
-  /// The same as data.
+  /// As problem_with(), but as data.
   ConfigProblem problem_at(std::string_view key, const std::string& message) const;
 };
 
-/// Reads and checks a configuration without touching what it names: no world is loaded, no socket opened.
-/// Relative paths in it are resolved against its folder.
-/// @param kinds those that heads may be of
+/// Reads and checks a configuration: loads no world and opens no socket. Relative paths are resolved against
+/// the configuration's folder.
+/// @param kinds the permitted kinds of heads
 /// @throws ConfigError with every problem of the file.
 LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds);
 
 /// Bytes of a configuration file. @throws ConfigError
 std::string read_config(const std::filesystem::path& file);
-/// The same for bytes that were read before.
+/// The configuration in bytes that were read before.
 /// @param file for messages and relative paths; not read
 LoadedConfig load_config(const std::filesystem::path& file, const std::string& text,
                          std::span<const HeadKind* const> kinds);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view complaint = "unknown key";
 
-/// Paths of all keys of a name; one of a mapping ends with the mapping's first key if a plain value is given.
+/// Paths of all keys with a name. If a mapping got a plain value, its path ends with the mapping's first key.
 void find_paths(const std::vector<KeyReference>& keys, const std::string& path, const UnknownKey& wanted,
                 std::set<std::string>& found) {
   for (const KeyReference& key : keys) {
@@ -21,7 +21,7 @@ void find_paths(const std::vector<KeyReference>& keys, const std::string& path, 
       found.insert(wanted.has_value && !key.keys.empty() ? fmt::format("{}.{}", here, key.keys.front().name)
                                                          : here);
     }
-    // A head's keys are named from the head on, as in the documents.
+    // Paths of a head's keys begin at the head, as in the documents.
     find_paths(key.keys, here == "heads" ? "" : here, wanted, found);
   }
 }

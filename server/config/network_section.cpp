@@ -71,7 +71,7 @@ void read_faults(YamlSection& section, LinkFaults& faults) {
 void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, std::string_view meaning) {
   if (is_loopback(bind_address)) {
     allow = {{0x7F000000, 8}};
-  } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address itself was refused
+  } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address was rejected before
     section.require("allow", "the address blocks to serve, as the socket is not bound to loopback");
   }
   constexpr TextForm blocks{"an address block such as 10.61.19.0/24", "address blocks",
@@ -84,7 +84,7 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, 
 void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
                  std::string_view bind_meaning, std::string_view allow_meaning) {
   section.require("bind", form.expected);
-  constexpr Ipv4 loopback = 0x7F000001;  // where the address was refused no `allow` is asked for, too
+  constexpr Ipv4 loopback = 0x7F000001;  // for a rejected address: then `allow` is not required
   const bool stands = section.parsed("bind", bind, &parse_endpoint, form, bind_meaning);
   read_allow_list(section, stands ? bind.address : loopback, allow, allow_meaning);
 }

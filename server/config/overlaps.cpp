@@ -23,7 +23,7 @@ std::string head_key(std::size_t head, std::string_view key) {
   return fmt::format("heads[{}].{}", head, key);
 }
 
-/// What the configuration gives to two of its parts.
+/// Values that the configuration gives to two of its parts.
 class Overlaps {
  public:
   Overlaps(const DaemonConfig& config, const KeyPositions& positions)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two heads, or a head and a pose input, must not share.
+// Values that two heads, or a head and a pose input, must not share.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace sonard::server {
 
-/// Of pose input first, then of each head; keys are those of the whole configuration.
+/// Sockets of the pose input, then of each head; keys are paths in the whole configuration.
 std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config);
 
-/// Sockets that clash, names given twice, and what else no two heads of a kind may share.
+/// Sockets that conflict, duplicate names, and values that two heads of a kind must not share.
 std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPositions& positions);
 
 }  // namespace sonard::server

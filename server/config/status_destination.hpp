@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whom a head tells by status packets that it is there.
+// The destinations of a head's status packets.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace sonard::server {
 
-/// Where the status packets of a head go.
+/// Destination of a head's status packets.
 struct StatusDestination {
   enum class Mode : std::uint8_t {
     limited_broadcast,   ///< 255.255.255.255, as the devices do
@@ -18,10 +18,10 @@ struct StatusDestination {
     unicast,             ///< each of `hosts`
   };
   Mode mode = Mode::limited_broadcast;
-  std::vector<Ipv4> hosts;  ///< for `unicast` only, then not empty
+  std::vector<Ipv4> hosts;  ///< for `unicast` only; then not empty
 };
 
-/// Hosts that status packets go to.
+/// Destination addresses of the status packets.
 std::vector<Ipv4> status_hosts(const StatusDestination& status, Ipv4 address, Ipv4 netmask);
 /// "by limited broadcast", "to 127.0.0.1".
 std::string status_text(const StatusDestination& status, Ipv4 address, Ipv4 netmask);

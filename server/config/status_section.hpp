@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of the loader that reads where a head is on its network, and whom it tells so.
+// The part of the loader that reads a head's address and the destinations of its status packets.
 #pragma once
 
 #include <string_view>
@@ -22,22 +22,22 @@ inline constexpr TextForm netmask_form{
 inline constexpr TextForm mac_form{"six hexadecimal octets such as 00:12:34:00:02:01", "six octets",
                                    mac_schema};
 
-/// Reads the key of an address of this machine, given as numbers or by its interface. The value before is the
-/// default. @return the interface; empty: given as numbers
+/// Reads a key with an address of this machine: numbers, or the name of its interface. The present value is
+/// the default. @return the interface; empty: given as numbers
 std::string read_own_address(YamlSection& section, std::string_view key, Ipv4& address,
                              std::string_view meaning);
-/// Reads the key of the mask of a network of this machine in the same way.
+/// Reads a key with the netmask of a network of this machine: numbers, or the name of an interface.
 std::string read_own_netmask(YamlSection& section, std::string_view key, Ipv4& netmask,
                              std::string_view meaning);
-/// Reports an address that a head cannot own or talk to.
+/// Reports an address that cannot be the address of one host.
 void check_host_address(YamlSection& section, std::string_view key, Ipv4 address);
-/// The key `netmask` stands beside `address_key`: reports a mask that is none, and an address that is not
-/// that of one host under it.
+/// Checks the key `netmask` beside `address_key`: reports an invalid mask, and an address that is not the
+/// address of one host under it.
 void check_inside_network(YamlSection& section, std::string_view address_key, Ipv4 address, Ipv4 netmask);
-/// The key `status`, of a head that has the address of `address_key` under `netmask`.
+/// The key `status` of a head with the address of `address_key` under `netmask`.
 void read_status_destination(YamlSection& section, std::string_view address_key, Ipv4 netmask,
                              StatusDestination& status);
-/// Warns of hosts that are told of the head and may not use it.
+/// Warns of hosts that receive status packets but are not allowed to use the head.
 void warn_of_status_without_access(YamlSection& section, const StatusDestination& status,
                                    const AllowList& allow);
 

@@ -17,14 +17,14 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::size_t most_problems = 1000;     // of one file: more than there are keys
-constexpr std::size_t longest_known_key = 100;  // of those that are known, thrice
+constexpr std::size_t most_problems = 1000;     // per file: more than there are keys
+constexpr std::size_t longest_known_key = 100;  // thrice the longest known key
 
-constexpr std::string_view plain_tag = "?";  // what yaml-cpp gives to scalars without quotes
+constexpr std::string_view plain_tag = "?";  // yaml-cpp's tag of scalars without quotes
 
-/// The unit that the ending of a key fixes; empty when it has none.
+/// The unit that the ending of a key means; empty if it has no unit.
 std::string_view unit_of(std::string_view key) {
-  // Longer endings stand before those they end in.
+  // Longer endings precede their own endings.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 12> units{{{"_db_per_km", "dB/km"},
                                                                                  {"_position_m", "m"},
                                                                                  {"_mps", "m/s"},
@@ -45,7 +45,7 @@ std::string_view unit_of(std::string_view key) {
   return {};
 }
 
-/// The key itself, without the path before it and an index behind it.
+/// The key without its path and index.
 std::string_view last_key(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   path = dot == std::string_view::npos ? path : path.substr(dot + 1);
@@ -69,7 +69,7 @@ std::string ipv6_text(std::string_view value, std::string_view expected) {
   return fmt::format("{} is an IPv6 address; IPv6 is not served (expected {})", in_quotes(value), expected);
 }
 
-/// A list of an IPv6 address is one in brackets.
+/// A node as text; an IPv6 address in brackets, which YAML reads as a list, gets its own text.
 std::string describe_with_ipv6(const YAML::Node& node) {
   const bool address =
       node.IsSequence() && node.size() == 1 && node[0].IsScalar() && is_ipv6(node[0].Scalar());
@@ -77,7 +77,7 @@ std::string describe_with_ipv6(const YAML::Node& node) {
                  : describe(node);
 }
 
-/// True for "10C", "5 ms", "-3.5deg": a number that something follows.
+/// Whether a text is a number and more text: "10C", "5 ms", "-3.5deg".
 bool is_number_with_unit(std::string_view text) {
   double value = 0.0;
   const char* end = text.data() + text.size();
@@ -100,7 +100,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// In lower case, with what parts words left out: "Fixed-Seed" as "fixedseed".
+/// In lower case, without the characters that separate words: "Fixed-Seed" as "fixedseed".
 std::string letters_of(std::string_view word) {
   std::string letters;
   for (const char c : word) {
@@ -111,8 +111,8 @@ std::string letters_of(std::string_view word) {
   return letters;
 }
 
-/// The word of a choice that was probably meant, or an empty text: one that differs in little, or that is a
-/// part of the other, as a maker's name is of a model's.
+/// The word of a choice that was probably meant; empty if no word is close. A close word differs by a few
+/// letters, or one contains the other (a maker's name and a model's).
 std::string_view closest_word(std::string_view given, const std::vector<std::string_view>& words) {
   constexpr std::size_t shortest_part = 4;
   const std::string name = letters_of(given.substr(0, longest_known_key));
@@ -133,7 +133,7 @@ std::string_view closest_word(std::string_view given, const std::vector<std::str
   return best;
 }
 
-/// The known key that was probably meant, or an empty text.
+/// The known key that was probably meant; empty if no key is close.
 std::string_view closest(std::string_view name, const std::vector<KeyReference>& known) {
   std::string_view best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();
@@ -160,7 +160,7 @@ std::string range_schema(const Range& range) {
                      range.above_min ? "exclusiveMinimum" : "minimum", range.min, range.max);
 }
 
-/// Of a number that may have been converted between units.
+/// Rounded, because the number may have been converted between units.
 std::string number_text(double value) {
   return fmt::format("{:g}", value);
 }
@@ -173,7 +173,7 @@ std::string quoted_words(const std::vector<std::string_view>& words, char quote)
   return text;
 }
 
-/// Whether a plain text is `sea.sdf"`: YAML takes a quote that does not begin a value for a part of it.
+/// Whether a plain text has a stray quote, as `sea.sdf"`: YAML keeps a quote that does not begin a value.
 bool ends_with_stray_quote(const YAML::Node& node) {
   if (!node.IsScalar() || node.Tag() != plain_tag || node.Scalar().empty()) {
     return false;
@@ -182,7 +182,7 @@ bool ends_with_stray_quote(const YAML::Node& node) {
   return (last == '"' || last == '\'') && std::ranges::count(node.Scalar(), last) == 1;
 }
 
-/// The parser places an empty value at what comes next in the file, which is another key.
+/// Place of a node; `otherwise` for an empty value, which the parser places at the next key of the file.
 SourcePosition place_of(const YAML::Node& node, const SourcePosition& otherwise) {
   return node.IsNull() && otherwise.line > 0 ? otherwise : position_of(node.Mark());
 }
@@ -505,7 +505,7 @@ void YamlSection::document(std::string_view key, std::string_view type, std::str
   KeyReference& known = known_key(key);
   if (!known.schema.empty()) {
     known.type += fmt::format(", or {}", type);
-    if (!schema.empty()) {  // a mapping has none: its keys say more
+    if (!schema.empty()) {  // a mapping has no schema: its keys have
       known.schema = fmt::format(R"("anyOf": [{{{}}}, {{{}}}])", known.schema, schema);
     }
     return;
@@ -544,7 +544,7 @@ const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
 }
 
 void YamlSection::problem(const SourcePosition& at, std::string path, std::string message, bool of_network) {
-  // What follows from a value that was refused is not worth a second line.
+  // Further problems of a rejected value are not reported.
   if (!findings_.keys_with_problems.insert(path).second) {
     return;
   }

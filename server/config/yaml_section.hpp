@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strict reading of YAML mappings: every key is known, given once, of the right type and in range, or it is
-// reported with its place. All problems of a file are collected; nothing here throws.
-// A line that reads a key is all there is to say of it: name, form, range, default and meaning. The schema
-// and the tables of docs/configuration.md are written from these lines (describe_config() in loader.hpp).
+// Strict reading of YAML mappings. Each key must be known, given once, of the right type and in range;
+// otherwise it is reported with its place. All problems of a file are collected; nothing here throws.
+// The line that reads a key is its only definition: name, form, range, default and meaning. The schema and
+// the tables of docs/configuration.md are written from these lines (describe_config() in loader.hpp).
 #pragma once
 
 #include <chrono>
@@ -26,20 +26,20 @@
 
 namespace sonard::server {
 
-/// Where problems and the places of keys gather while one file is read.
+/// Collects problems and the places of keys while one file is read.
 struct YamlFindings {
   std::vector<ConfigProblem> problems;
-  std::set<std::string, std::less<>> keys_with_problems;  ///< of these
-  std::size_t problems_left_out = 0;                      ///< beyond the most that are worth reading
+  std::set<std::string, std::less<>> keys_with_problems;  ///< keys of `problems`
+  std::size_t problems_left_out = 0;                      ///< beyond the maximum
   std::vector<UnknownKey> unknown_keys;                   ///< without a similar key in their section
   std::vector<ConfigWarning> warnings;                    ///< each once
   KeyPositions positions;                                 ///< of the value of every key that was read
-  bool describing = false;  ///< no file is read: every section is entered, for what it knows (KeyReference)
+  bool describing = false;  ///< no file is read: every section is entered to collect its keys (KeyReference)
 };
 
 SourcePosition position_of(const YAML::Mark& mark);
 
-/// Which numbers a key takes, in the unit its name ends in.
+/// The valid numbers of a key, in the unit at the end of its name.
 struct Range {
   double min;
   double max;
@@ -50,21 +50,21 @@ struct Range {
   bool holds(double value) const { return (above_min ? value > min : value >= min) && value <= max; }
 };
 
-/// What a text has to look like.
+/// The valid form of a text.
 struct TextForm {
-  std::string_view expected;  ///< for complaints: "an IPv4 address such as 127.0.0.2"
+  std::string_view expected;  ///< for error messages: "an IPv4 address such as 127.0.0.2"
   std::string_view type;      ///< for people: "address"; for a list "addresses"
   std::string_view schema;    ///< as KeyReference::schema
 };
 
-/// One mapping. At most one problem is reported for each key. Each reader writes its result only when the key
-/// is there and its value is good, so what stood there before is the default. Readers name the unit of a
-/// number in the key ("delay_ms"). `meaning` is KeyReference::meaning.
+/// One mapping. Reports at most one problem for each key. A reader writes its result only if the key exists
+/// and its value is valid, so the previous content is the default. Readers take the unit of a number from the
+/// name of the key ("delay_ms"). `meaning` is KeyReference::meaning.
 class YamlSection {
  public:
   /// @param path of the mapping, "" for the document. A node that is not a mapping is reported and read as
   /// empty.
-  /// @param key_at the place of the key or list that the node belongs to, which stands for an empty one
+  /// @param key_at the place of the node's key or list; it stands for an empty node
   YamlSection(YamlFindings& findings, const YAML::Node& node, std::string path, SourcePosition key_at = {});
   /// Reports the keys that no reader asked for.
   ~YamlSection();
@@ -73,42 +73,42 @@ class YamlSection {
 
   bool has(std::string_view key) const;
   bool is_list(std::string_view key) const;
-  /// The value of a key that may have a mapping as well. Empty: it has one, or is missing.
+  /// The plain value of a key that may have a mapping instead. Empty if it has one, or is missing.
   std::string_view word(std::string_view key) const;
-  /// Reports the key when it is missing.
+  /// Reports the key if it is missing.
   void require(std::string_view key, std::string_view expected);
-  /// Leaves the keys that no reader asked for without a complaint: what they mean is not known.
+  /// Does not report the keys that no reader asked for, because their meaning is unknown.
   void ignore_rest();
   /// Reports a problem with the value of a key that a reader accepted, or with the key's absence.
   void report(std::string_view key, const std::string& message);
-  /// The same of what this machine's network lacks, and may have later.
+  /// As report(), for something that this machine's network lacks and may have later.
   void report_network(std::string_view key, const std::string& message);
-  /// Something about a key that is worth saying but no reason to stop.
+  /// Warns of a key; the configuration remains valid.
   void warn(std::string_view key, std::string message) { warn_of(path_of(key), std::move(message)); }
-  /// The same of a key of any other section.
+  /// As warn(), for a key of any other section.
   void warn_of(std::string path, std::string message);
-  /// Warns where a key is given that has no effect here.
+  /// Warns of a key that is given but has no effect here.
   void warn_if_given(std::string_view key, std::string_view why);
-  /// A key of earlier versions: what to do without it, where a file still has it. Both outlive the section.
+  /// A key of earlier versions, and what to do instead. Both texts must outlive the section.
   void retired(std::string_view key, std::string_view what_to_do) { retired_.emplace_back(key, what_to_do); }
   /// Reads the key `former`, if a file still has it, as `key`, and warns. Call it before `key` is read.
   void renamed(std::string_view former, std::string_view key);
   std::string path_of(std::string_view key) const;
-  /// Lets a key that is not given stand where the key that its default comes from does.
+  /// If a key is not given, its place is the place of the key that gives its default.
   void place_default(std::string_view key, std::string_view source);
 
-  /// For what the schema and docs/configuration.md say: sentences on this mapping as a whole.
+  /// Adds sentences on the whole mapping for the schema and docs/configuration.md.
   void introduce(std::string_view sentences) { introduction_ = sentences; }
-  /// For the same: the default of a key that was read, where it is not the value that stood there.
+  /// Sets a default for the schema and docs/configuration.md, if the value before is not the default.
   void default_is(std::string_view key, std::string_view text, std::string_view json = "");
-  /// Whether there is no file: then each key is read for what is known of it, whatever the others are.
+  /// Whether there is no file. Then each key is read for its description, whatever the other keys are.
   bool describing() const { return findings_.describing; }
   const std::vector<KeyReference>& known() const { return known_; }  ///< keys that readers asked for
 
-  /// @param units_per_one how many units of the key make one of `out`: 1000 for "_mm" and metres
+  /// @param units_per_one units of the key in one unit of `out`: 1000 for "_mm" and metres
   void number(std::string_view key, double& out, const Range& range, std::string_view meaning,
               double units_per_one = 1.0);
-  /// A number, or one of the words, which stands for a number.
+  /// A number, or a word that means a number.
   void number_or_word(std::string_view key, double& out, const Range& range,
                       const std::vector<std::pair<std::string_view, double>>& words,
                       std::string_view meaning);
@@ -132,7 +132,7 @@ class YamlSection {
     out = static_cast<Integer>(value);
   }
 
-  /// @return false if the value is none of the words; true without one
+  /// @return false if the value is not one of the words; true if there is no value
   template <typename Value>
   bool choice(std::string_view key, Value& out,
               const std::vector<std::pair<std::string_view, std::type_identity_t<Value>>>& choices,
@@ -150,7 +150,7 @@ class YamlSection {
     return index.has_value() || !has(key);
   }
 
-  /// A text that `parse` understands. Returns whether `out` stands, read or left as it was.
+  /// A text that `parse` accepts. @return false if the value is invalid; true if it was read or is missing
   template <typename Value>
   bool parsed(std::string_view key, Value& out, std::optional<Value> (*parse)(std::string_view),
               const TextForm& form, std::string_view meaning) {
@@ -166,8 +166,8 @@ class YamlSection {
     return true;
   }
 
-  /// A list of such texts; `out` is replaced.
-  /// @param if_empty what to complain of where nothing is listed; without it the list may be empty
+  /// A list of such texts; replaces `out`.
+  /// @param if_empty the error message for an empty list; if it is not given, the list may be empty
   template <typename Value>
   void parsed_list(std::string_view key, std::vector<Value>& out,
                    std::optional<Value> (*parse)(std::string_view), const TextForm& form,
@@ -188,7 +188,7 @@ class YamlSection {
     }
   }
 
-  /// Reads a mapping inside this one, when it is there.
+  /// Reads a mapping inside this one, if it exists.
   void section(std::string_view key, std::string_view meaning, const std::function<void(YamlSection&)>& read);
   /// Reads each mapping of a list.
   void sections(std::string_view key, std::string_view meaning,
@@ -198,7 +198,7 @@ class YamlSection {
   struct Entry {
     std::string name;
     SourcePosition key_at;
-    SourcePosition value_at;  ///< of an empty value: that of the key
+    SourcePosition value_at;  ///< if the value is empty: the place of the key
     YAML::Node value;
     bool read = false;
   };
@@ -208,12 +208,12 @@ class YamlSection {
   void document(std::string_view key, std::string_view type, std::string_view schema,
                 std::string_view default_json, std::string_view meaning);
   void document_list(std::string_view key, const TextForm& form, std::string_view meaning, bool may_be_empty);
-  /// Reads a mapping of a key, or of a list that the key has.
+  /// Reads the mapping of a key, or an item of its list.
   void read_inner(std::string_view key, const YAML::Node& node, std::string path, SourcePosition key_at,
                   const std::function<void(YamlSection&)>& read);
   const Entry* find(std::string_view key);
   const Entry* peek(std::string_view key) const;
-  /// Where the value of a key stands; without one, the section.
+  /// The place of a key's value; without a value, of the section.
   SourcePosition place_of_key(std::string_view key) const;
   void problem(const SourcePosition& at, std::string path, std::string message, bool of_network = false);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);

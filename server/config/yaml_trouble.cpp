@@ -33,7 +33,7 @@ std::size_t indent_of(std::string_view line) {
   return std::min(line.find_first_not_of(' '), line.size());
 }
 
-/// Columns at which the mappings and lists stand that are open behind the lines so far.
+/// The columns of the mappings and lists that are open after the lines so far.
 class Indents {
  public:
   void add(std::string_view line) {
@@ -43,7 +43,7 @@ class Indents {
     }
     open_.push_back(at);
     for (; line.substr(at).starts_with("- "); open_.push_back(at)) {
-      at = line.find_first_not_of(' ', at + 1);  // what follows a dash stands in a mapping of its own
+      at = line.find_first_not_of(' ', at + 1);  // text after a dash is a mapping of its own
     }
     may_go_deeper_ = line.ends_with(':') || line.ends_with('-') || line.ends_with('|') || line.ends_with('>');
   }

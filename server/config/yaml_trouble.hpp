@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a text is no YAML, and why a value is not what was expected, in the words of the person who wrote it.
+// Why a text is invalid YAML, or a value is not as expected, in terms of the text that the user wrote.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 
 namespace sonard::server {
 
-/// What is wrong with a text that the YAML parser gave up on at `at`, where it said `complaint`. Tabs,
-/// indents, IPv6 addresses, and quotes and brackets that nothing closes, are named as such, at their own
-/// place; all else is what the parser says.
+/// The problem in a text that the YAML parser rejected at `at` with the message `complaint`. Names tabs,
+/// indents, IPv6 addresses, and unclosed quotes and brackets, at their own places; otherwise passes on the
+/// parser's message.
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint);
 
-/// "20,5" as "20.5"; empty for what is no number with a decimal comma.
+/// "20,5" as "20.5"; empty if the text is no number with a decimal comma.
 std::string with_decimal_point(std::string_view text);
 
-/// True for an IPv6 address, also with a port ("[::1]:14600") or a prefix length ("fe80::/64").
+/// Whether it is an IPv6 address, also with a port ("[::1]:14600") or a prefix length ("fe80::/64").
 bool is_ipv6(std::string_view text);
 
-/// A text of the user in quotes: 'text'; a long one is cut, and its length stands behind it.
+/// A text of the user in quotes: 'text'. A long text is cut, and its length is appended.
 std::string in_quotes(std::string_view text);
 
 }  // namespace sonard::server

@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto npos = std::string_view::npos;
 
-/// Reads a text character by character, as far as it takes to know what is a quote and what is a bracket.
+/// Reads a text character by character, enough to recognise quotes and brackets.
 class Scanner {
  public:
   Scanner(std::string_view text, int last_line) : text_(text), last_line_(last_line) {}
@@ -50,7 +50,7 @@ void Scanner::begin_line() {
   value_begins_ = true;
 }
 
-/// Place of the quote that closes the one at at_; npos: none does.
+/// Place of the quote that closes the quote at at_; npos if there is no such quote.
 std::size_t Scanner::closing_quote(char quote) const {
   for (std::size_t i = at_ + 1; i < text_.size(); ++i) {
     if (quote == '"' && text_[i] == '\\') {
@@ -59,13 +59,13 @@ std::size_t Scanner::closing_quote(char quote) const {
       if (quote == '"' || i + 1 == text_.size() || text_[i + 1] != quote) {
         return i;
       }
-      ++i;  // '' stands for one
+      ++i;  // '' means one quote
     }
   }
   return npos;
 }
 
-/// Whether text stands behind a closing quote that cannot follow one.
+/// Whether the text after a closing quote cannot follow one.
 bool Scanner::more_follows(std::size_t end) const {
   const std::size_t next = text_.find_first_not_of(" \t", end + 1);
   return next != npos && std::string_view("\r\n#,]}:").find(text_[next]) == npos;
@@ -88,7 +88,7 @@ std::optional<ConfigProblem> Scanner::take_quoted(char quote) {
   return std::nullopt;
 }
 
-/// Whether this line begins with a key or an item at the indent of the bracket's line, or further left.
+/// Whether this line begins with a key or an item at the indent of the bracket's line, or less.
 bool Scanner::leaves_bracket() const {
   const std::string_view rest = text_.substr(at_, text_.find('\n', at_) - at_);
   const std::size_t colon = rest.find(':');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a quote or a bracket of a YAML text begins that nothing closes.
+// Finds the quote or bracket of a YAML text that is never closed.
 #pragma once
 
 #include <optional>
@@ -9,13 +9,13 @@
 
 namespace sonard::server {
 
-/// For a text that the YAML parser refused at `last_line`. The parser complains where it gave up, many lines
-/// behind the mistake. A quoted text over several lines is valid YAML; it counts as unclosed if no quote
-/// follows, or if more text stands behind the one that follows, which then was meant to open another.
-/// @param last_line from 1; what begins behind it is no cause
+/// For a text that the YAML parser rejected at `last_line`. The parser reports the place where it gave up,
+/// many lines after the mistake. A quoted text over several lines is valid YAML. It counts as unclosed if no
+/// quote follows, or if text after the next quote shows that this quote was meant to open another text.
+/// @param last_line from 1; later quotes and brackets are ignored
 std::optional<ConfigProblem> find_unclosed(std::string_view text, int last_line);
 
-/// A quote that opens a text which runs to the end of the file. yaml-cpp 0.7 takes that for valid.
+/// A quote whose text runs to the end of the file. yaml-cpp 0.7 accepts that.
 std::optional<ConfigProblem> find_endless_quote(std::string_view text);
 
 }  // namespace sonard::server
