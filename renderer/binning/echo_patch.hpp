@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output of the visibility stage and input of binning: pieces of visible surface, each within one beam.
+// Output of the visibility stage and input of binning: visible segments of a surface, each within one beam.
 #pragma once
 
 namespace sonard::render {
 
-/// A piece of surface between two elevations, over a span of azimuths. At each azimuth its echo is spread
+/// A segment of a surface between two elevations, over a span of azimuths. At each azimuth its echo is spread
 /// between the ranges of its two ends, evenly or linearly rising. From one side of the azimuths to the other,
 /// the range of each end changes linearly by its smear. A pixel of a grid has equal smears (docs/physics.md
 /// 2.3); the ends of a facet follow its edges.

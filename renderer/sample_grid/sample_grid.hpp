@@ -69,7 +69,7 @@ struct SampleGrid {
   double column_rad(const ColumnPart& part) const;
   double port_rad(const ColumnPart& part) const;
   double starboard_rad(const ColumnPart& part) const;
-  /// Solid angle times elevation pattern of the part's piece of the pixel in this row, steradians.
+  /// Solid angle times elevation pattern of the part's share of the pixel in this row, steradians.
   float weight(const ColumnPart& part, int row) const;
   /// Number of cells: pixels, each counted once per part.
   std::size_t cell_count() const;

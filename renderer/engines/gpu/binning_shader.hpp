@@ -40,8 +40,8 @@ layout(location = 0) uniform int lines;
 layout(binding = 12) uniform samplerBuffer line_weight;
 layout(binding = 13) uniform isamplerBuffer parts;
 
-// ColumnPart, the tangent of its column's centre, and its neighbours: parts of the next columns, also where another
-// beam begins, with the distances of the centres in radians; the part itself where there is none.
+// ColumnPart, the tangent of its column's centre, and its neighbours: parts of the next columns, even in another beam,
+// with the distances of the centres in radians. A part without a neighbour is its own neighbour.
 struct Part {
   int column, row_begin, row_end, beam;
   float x, x_offset, width, limit_slope;
@@ -185,7 +185,7 @@ const float most_response_step = 0.05;  // of the sum of their responses
 
 uint own_samples = 0u, own_invalid = 0u, own_saturated = 0u, own_additions = 0u, own_pairs = 0u;
 
-// A place on the range axis. A single float would say where in line 16384 no closer than to a thousandth.
+// A place on the range axis. In line 16384 a single float would resolve only a thousandth of a line.
 struct Place {
   float line;  // a whole number
   float part;  // of a line, from its beginning
@@ -237,13 +237,13 @@ uvec2 whole_units(float amount) {
 float echo_units, weight_units;  // of the sample at hand
 uint first_line;                 // of its beam
 
-// What a sample adds to the differences, line after line. Two words make a sum, and what goes into the high one is added
-// in a step of its own: it hardly ever is anything, and a software OpenGL makes every addition that a step may make.
-// The words may be added to by others in between: every carry out of the low word is seen by exactly one of them, so
-// that in the end all are in the high one.
+// The additions of a sample to the differences, line after line. A sum is two words. The high word is added in a step of
+// its own: it is nearly always 0, and a software OpenGL makes every addition that a step may make.
+// Other invocations may add to the words in between: each carry out of the low word is seen by exactly one of them, so
+// that all carries reach the high word.
 struct Steps {
   uvec2 echo_before, weight_before;  // of the line before
-  uint echo_high, weight_high;       // what is left to be added of the line that was added last
+  uint echo_high, weight_high;       // rest to add to the line that was added last
   uint at;                           // its low word
 };
 
@@ -266,8 +266,8 @@ bool carrying(Steps steps) {
     if (!carry) steps.before_it = here;                                                   \
   }
 
-// What is left of the line before, or to the line `k` the units of its share that the line before did not have.
-// Returns whether that was done.
+// Adds the rest of the previous line, or to line `k` the units of its share that the previous line did not get. Returns
+// whether it added to line `k`.
 bool step_to(int k, float share, inout Steps steps) {
   bool carry = carrying(steps);
   uint at = carry ? steps.at + 1u : 2u * (first_line + uint(k));
@@ -337,8 +337,8 @@ bool coplanar(vec4 below, vec4 above, float width, float per_m) {
   return above.x > 0.0 && off * per_m < most_off_plane && abs(more.y) <= most_response_step * (below.y + above.y);
 }
 
-// Returns how many rows are done with: two where the sample above is taken as one with this one, or neither saw
-// anything.
+// Returns the number of finished rows: two if the sample above was merged with this one, or if both are empty; otherwise
+// one.
 int bin(Part part, int row, bool may_pair) {
   vec4 seen = sample_at((THINNED + 1) * ivec2(part.column, row));  // range, response, range derivatives
   vec4 above = PAIRED == 1 ? sample_at((THINNED + 1) * ivec2(part.column, min(row + 1, part.row_end - 1))) : vec4(-1.0);

@@ -14,7 +14,7 @@ vec3 echo_of(vec4 seen, float width, float height, float weight) {
   float line = seen.x * per_m;
   float half_spread = 0.5 * per_m * (abs(seen.z) * width + abs(seen.w) * height);
   float end = float(lines);
-  // Where the last line cuts through a surface there is no edge: neither what lies beyond of a pixel nor the next
+  // A surface that the last line cuts through has no edge there: neither the part of a pixel beyond it nor the next
   // few pixels count.
   if (!(line > 0.0) || !(line - 9.0 * half_spread < end)) return vec3(0.0, 0.0, 1.0);
   if (line - half_spread >= end) return vec3(0.0);
@@ -121,8 +121,8 @@ vec4 sum_of_all(vec4 own) {
   return sum;
 }
 
-// What a strip of this width may be off by in total and centroid, from the echo (and its moment) per unit of width of
-// three neighbours. A lone jump is met twice, and the edge lies within half a strip of where it is taken to be.
+// Upper limit of a strip's error in total and centroid, from the echo (and its moment) per unit of width of three
+// neighbours. A single jump is met twice, and the edge lies within half a strip of its assumed place.
 vec2 strip_error(vec2 a, vec2 b, vec2 c, float to_before, float to_after, float width, float all, float all_at) {
   vec2 bend = width * min(to_before, to_after) * ((c - b) / to_after - (b - a) / to_before);
   return abs(vec2(bend.x, bend.y - all_at * bend.x)) / (2.8284271 * all);
@@ -167,7 +167,7 @@ void main() {
     for (int j = 1 + int(me); j + 1 < beam.rows; j += BEAM_GROUP) {
       vec4 a = texelFetch(rows, first_row + j - 1), b = texelFetch(rows, first_row + j),
            c = texelFetch(rows, first_row + j + 1);
-      // Rows that the elevation limit or the last line leaves little of tell nothing.
+      // Rows that the elevation limit or the last line nearly empties give no information.
       float least = 0.1 * b.z;
       if (b.z > 0.0 && a.z > least && c.z > least) {
         vec2 error = strip_error(a.xy / a.z, b.xy / b.z, c.xy / c.z, b.z, b.z, b.z, all.x, all_at);
@@ -180,7 +180,7 @@ void main() {
   barrier();
   if (me != 0u) return;
 
-  // Where edges lie: both ends are trimmed while what is left out stays small.
+  // The zone with the edges: both ends are trimmed while the discarded part stays small.
   int begin = beam.part_begin, end = beam.part_end;
   float rest = 0.0, within = 0.0;
   if (all.x > 0.0) {

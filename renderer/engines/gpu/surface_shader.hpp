@@ -59,7 +59,7 @@ vec3 bent_point(vec3 p) {
   return lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30));
 }
 #endif
-flat out vec4 plane;  // n / d, where n.p = d, and how far it is
+flat out vec4 plane;  // n / d, where n.p = d, and the distance
 #if SHADING != 0
 out vec3 normal_eye;
 #endif
@@ -164,7 +164,7 @@ float map_level(float inverse_depth, vec2 inverse_depth_step) {
 #endif
 
 #if SHADING != 0
-// Not of unit length where a map averages.
+// Shorter than unit length if a map averages.
 vec3 shading_normal(float inverse_depth, vec2 step) {
   vec3 n = normalize(normal_eye);
 #if SHADING == 2
@@ -190,7 +190,7 @@ float variance_of_mean_normal(float mean_length) {
   return mean_length < 1.0 ? (1.0 - mean_length) / max(mean_length, 0.1) : 0.0;
 }
 
-// Facets need a direction; what is missing of the length of a mean normal widens their slopes.
+// Facets need a direction; a mean normal below unit length widens their slopes.
 float facet_response_of_mean(float cos_phi, float mean_length) {
   float cosine = min(cos_phi / mean_length, 1.0);
 #if FACETS == 1
