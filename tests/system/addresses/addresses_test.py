@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A machine whose interface has no address yet, gets another one, or loses it, and a client at the other end of its wire.
+"""A machine whose interface gets its address late, changes it or loses it, and a client at the other end of its wire.
 
     addresses_test.py --programs DIR [TestCase.test_name ...]
 """
@@ -98,7 +98,7 @@ class Machine(unittest.TestCase):
         return daemon
 
     def ended(self, command, *heads, **config):
-        """(exit code, what it printed) of a program that does not go on."""
+        """(exit code, output) of a program that ends by itself."""
         program = self.sonard(*command.split(), self.config(*heads, **config))
         return program.wait(START_S), program.output()
 
@@ -109,7 +109,7 @@ class Machine(unittest.TestCase):
         return made
 
     def wait_for_status_from(self, listener, address):
-        """The first status packet that comes from there."""
+        """The first status packet from this address."""
         deadline = Deadline(PATIENCE_S)
         while not deadline.over():
             datagram, sender = listener.recvfrom(2048)
@@ -186,7 +186,7 @@ class AddressThatChanges(Machine):
         self.assertEqual(self.findings(), [])
 
     def test_directed_broadcasts_and_the_mask_follow_too(self):
-        # The far side takes the broadcasts of networks in which it has an address.
+        # The far machine receives the broadcasts of networks in which it has an address.
         self.far.ip("address", "add", OLD.rpartition(".")[0] + ".9/24", "brd", "+", "dev", "eth0")
         listener = self.far_socket(STATUS_OF_GEMINI)
         daemon = self.run_daemon(GEMINI, status="directed_broadcast")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real program on configurations that are broken in one way each, and on those that ship.
-// Each broken file in tests/data/configs/broken/ says in its first line what is wrong with it.
+// The real program on configurations that are broken in one way each, and on the shipped configurations.
+// The first line of each file in tests/data/configs/broken/ names its fault.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -47,9 +47,9 @@ std::vector<std::string> lines_of(const std::string& text) {
 struct Broken {
   std::string file;   ///< below broken_folder
   std::string place;  ///< line, column and key in that file
-  std::string
-      asset;  ///< file and line in the asset the key names, below broken_folder; empty when none is named
-  std::string message;  ///< part of what follows
+  std::string asset;  ///< file and line in the asset that the key names, below broken_folder; empty if there
+                      ///< is no asset
+  std::string message;  ///< part of the message after the key
 };
 
 std::ostream& operator<<(std::ostream& out, const Broken& broken) {
@@ -58,7 +58,7 @@ std::ostream& operator<<(std::ostream& out, const Broken& broken) {
 
 class BrokenConfig : public testing::TestWithParam<Broken> {};
 
-/// Exactly one complaint, in one line, that names file, line and key (and those of the asset), and exit
+/// Exactly one error message, in one line, that names file, line and key (also in the asset), and exit
 /// code 2.
 void expect_complaint(const Broken& broken) {
   const std::string file = broken_folder + broken.file;
@@ -118,11 +118,11 @@ INSTANTIATE_TEST_SUITE_P(Addresses, BrokenConfig,
                            return test.param.file.substr(0, test.param.file.find('.'));
                          });
 
-/// A socket on a port of the kernel's choice, held as long as it lives, and the broken configuration that
-/// asks for it.
+/// A socket on a port that the kernel chose, and the broken configuration that uses this port. The socket is
+/// open as long as the object lives.
 class HeldPort {
  public:
-  /// @param file below broken_folder; its "40000" becomes the port
+  /// @param file below broken_folder; the port replaces its "40000"
   HeldPort(int type, const char* address, const std::string& file) : socket_(socket(AF_INET, type, 0)) {
     sockaddr_in name{};
     name.sin_family = AF_INET;
@@ -186,11 +186,11 @@ TEST(OverlappingHeads, are_refused_with_what_they_share) {
           StartsWith(file + ":18:26: heads[1].network.alternate_address: 127.91.0.8 already belongs to")));
 }
 
-// --- what ships
+// --- shipped configurations
 // ------------------------------------------------------------------------------------------------------
 
-/// Runs the program in a network of its own, which has the address of a 720i: no daemon that happens to run
-/// on this machine is in the way.
+/// Runs the program in its own network namespace, which has the address of a 720i. Daemons on this machine
+/// do not disturb it.
 ProcessResult check_in_own_network(const std::string& config) {
   const std::string set_up = "ip link set lo up && ip address add 10.61.19.200/24 dev lo && exec \"$@\"";
   std::vector<std::string> command{"unshare", "--net"};
@@ -232,7 +232,7 @@ TEST(Check, can_leave_addresses_alone) {
   EXPECT_EQ(result.err, "");
 }
 
-/// A configuration and its world, in a folder of their own.
+/// A configuration and its world, in their own folder.
 class CheckedWorld : public testing::Test {
  protected:
   ~CheckedWorld() override { std::filesystem::remove_all(folder_); }
@@ -250,7 +250,7 @@ class CheckedWorld : public testing::Test {
           "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" + models + "</world></sdf>");
     return check_with("{file: world.sdf}", more, environment);
   }
-  /// @param world as the configuration has it
+  /// @param world the value of the key
   ProcessResult check_with(const std::string& world, const std::string& more = "",
                            const std::vector<std::string>& environment = {}) const {
     std::vector<std::string> command{"env"};
@@ -306,8 +306,8 @@ TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
   }
 }
 
-/// A seabed or a pipeline of kilometres is usual, as are meshes far from each other, and shapes without a
-/// file have metres.
+/// Seabeds and pipelines of kilometres are usual, as are meshes far from each other. Shapes without a file
+/// are in metres.
 TEST_F(CheckedWorld, that_is_large_is_not_taken_for_millimetres) {
   write("bed.obj", "v 0 0 0\nv 7000 0 80\nv 0 9000 0\nf 1 2 3\n");
   write("pipe.obj", "v 0 0 0\nv 3000 1 0\nv 0 0 1\nf 1 2 3\n");
@@ -340,7 +340,7 @@ TEST_F(CheckedWorld, asks_of_a_tiny_mesh_only_if_it_is_scaled) {
   EXPECT_THAT(result.err, HasSubstr("is its mesh scaled twice?"));
 }
 
-/// A turned plane has a thickness of some 1e-16 m in floating point.
+/// A rotated plane has a thickness of some 1e-16 m in floating point.
 TEST_F(CheckedWorld, has_sizes_to_the_micrometre) {
   const ProcessResult result = check(
       "<model name=\"wall\"><pose>5 0 0 0 1.5707963 0.3</pose><link name=\"l\"><visual name=\"v\"><geometry>"
@@ -421,7 +421,7 @@ TEST_F(CheckedWorld, is_told_of_as_json_with_the_places_of_what_is_wrong) {
   EXPECT_EQ(problem["column"], 15);
   EXPECT_THAT(problem["message"].get<std::string>(), HasSubstr("gone.sdf: world file not found"));
 
-  // A file that cannot be loaded at all has the same form.
+  // A file that cannot be loaded at all causes a message of the same form.
   const auto broken = nlohmann::json::parse(
       run_process({SONARD_PROGRAM, "check", "--json", write("broken.yaml", "wibble: 1\n")}).out);
   EXPECT_EQ(broken["good"], false);

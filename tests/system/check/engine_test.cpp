@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which engine the real program takes, with OpenGL and without, and how it says so.
+// The engine that the real program selects with OpenGL and without, and its log lines.
 #include <unistd.h>
 
 #include <filesystem>
@@ -23,10 +23,10 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// EGL finds its drivers in the folders this names: none.
+/// EGL searches this folder for drivers and finds no drivers.
 const std::string no_gl = "__EGL_VENDOR_LIBRARY_DIRS=/nonexistent";
 
-/// How `auto` says that it did not time OpenGL, on a machine that has no other.
+/// The message of `auto` if it did not time OpenGL because OpenGL runs in software.
 const std::string software = "OpenGL runs in software here";
 
 ProcessResult selftest(const std::string& setting, const std::string& engine) {
@@ -106,7 +106,7 @@ TEST(SelfTest, knows_no_other_engine) {
   EXPECT_EQ(selftest("A=", "gl").exit_code, 64);
 }
 
-/// One head on loopback beside the shipped world.
+/// One head on loopback, with the shipped world.
 class ServedConfig {
  public:
   explicit ServedConfig(const std::string& engine)
@@ -126,7 +126,7 @@ class ServedConfig {
 
   ProcessResult run_without_gl() const { return run({no_gl, "XDG_CACHE_HOME=/nonexistent"}); }
 
-  /// `sonard run` in a network of its own; SIGTERM when it is ready. The log is in `out`.
+  /// `sonard run` in its own network namespace; gets SIGTERM when it is ready. The log is in `out`.
   ProcessResult run(const std::vector<std::string>& environment,
                     const std::vector<std::string>& options = {}) const {
     std::vector<std::string> command{"unshare", "--net"};

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Worlds that somebody wrote to harm: `sonard check` names the file and what is wrong, and reads nothing else.
+"""Worlds that were written to do harm: `sonard check` names the file and its fault, and reads no other file.
 
     hostile_worlds_test.py PROGRAM
 """
@@ -101,7 +101,7 @@ class World(unittest.TestCase):
                               capture_output=True, timeout=HANGS_S, check=False)
 
     def expect_refused(self, body, *parts):
-        """Exit code 2, and one line that has all of `parts`."""
+        """Exit code 2, and one line with all of `parts`."""
         done = self.check(body)
         text = done.stdout + done.stderr
         self.assertEqual(done.returncode, 2, text)
@@ -165,7 +165,7 @@ class Names(World):
 
 
 class SpecialFiles(World):
-    """Opening one of these may wait for ever."""
+    """Files that block for ever when they are opened."""
 
     def fifo(self, name):
         os.makedirs(os.path.dirname(os.path.join(self.folder, name)), exist_ok=True)
@@ -195,7 +195,7 @@ class SpecialFiles(World):
 
 
 class CutFiles(World):
-    """All formats, at many places: tests/unit/renderer/scene/cut_files_test.cpp."""
+    """For all formats, cut at many places, see tests/unit/renderer/scene/cut_files_test.cpp."""
 
     def test_what_a_header_promises_is_there(self):
         with open(os.path.join(SHARED, "elevation_f32.tif"), "rb") as file:
@@ -229,7 +229,7 @@ class Size(World):
 
 @unittest.skipUnless(shutil.which("strace"), "strace is not installed")
 class SystemCalls(World):
-    """What the processes that read files ask of the kernel, once they are confined."""
+    """System calls of the confined processes that read files."""
 
     def test_a_reader_opens_no_socket_and_no_file_outside_of_the_world(self):
         for name in ("tetrahedron.obj", "tetrahedron.mtl", "tetrahedron.ply", "tetrahedron.stl", "tetrahedron.osgt",

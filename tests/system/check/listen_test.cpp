@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonard check --listen`, with the Python example of docs/poses.md as the publisher, and without any.
+// `sonard check --listen`, with the Python example of docs/poses.md as the publisher, and with no publisher.
+// publisher.
 #include <unistd.h>
 
 #include <chrono>
@@ -56,7 +57,7 @@ TEST_F(Listen, shows_who_sends_what) {
   EXPECT_THAT(result.out,
               ContainsRegex("  poses=[0-9]+ rate_hz=[0-9.]+ time_rate=(0\\.9|1\\.0)[0-9] age_ms=[0-9]+ "
                             "longest_gap_ms=[0-9]+ gaps=0 jumps=0 clock_restarts=0\n"));
-  // It drives a circle of 10 m at 20 m depth, from due east to the north.
+  // It moves on a circle of 10 m at 20 m depth, from due east to the north.
   EXPECT_THAT(result.out,
               ContainsRegex(
                   "  vehicle  last at \\((9\\.9|10\\.0)[0-9]+, [0-9.]+, -20\\.000\\) m east, north, up; roll "

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every key that a message or a finding names is taken to the loader, with the value that the message gives it.
+"""The loader must accept every key that a message or a finding names, with the value in the message.
 
     message_keys_test.py PROGRAM
 
@@ -35,7 +35,7 @@ def sources():
 
 
 def a_value(node):
-    """One that suits a schema."""
+    """A value that is valid in a schema."""
     node = node.get("anyOf", [node])[0]
     if "enum" in node:
         return node["enum"][0]
@@ -50,7 +50,7 @@ def a_value(node):
 
 
 def document(parts, value):
-    """The nested mapping of a key; a list where the schema has one."""
+    """The nested mapping of a key; a list if the schema has one."""
     name, *rest = parts
     inner, is_list = name
     made = document(rest, value) if rest else value
@@ -58,7 +58,7 @@ def document(parts, value):
 
 
 def typed(value):
-    """A value as a message has it, in its type."""
+    """The text of a value in a message, converted to its type."""
     if value in ("true", "false"):
         return value == "true"
     return json.loads(value) if value and value.replace(".", "", 1).isdigit() else value
@@ -74,7 +74,7 @@ class MessageKeys(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
 
     def complaints_of(self, path, type_of_head, value):
-        """{key: complaint} of a file that has this key and nothing else."""
+        """{key: error message} of a file with this key only."""
         parts = path.split(".")
         nested = document([(part, self.is_list(".".join(parts[:i + 1]))) for i, part in enumerate(parts)], value)
         if parts[0] == "heads":
@@ -91,7 +91,7 @@ class MessageKeys(unittest.TestCase):
         return any("items" in node for node in self.paths[path])
 
     def types_with(self, path):
-        """Types of heads that have a key; one that no head has is tried once."""
+        """Types of heads that have a key; a key outside of `heads` is tried once."""
         if not path.startswith("heads."):
             return [None]
         types = []
@@ -101,7 +101,7 @@ class MessageKeys(unittest.TestCase):
         return types
 
     def is_accepted(self, path, value):
-        """By heads of one type at least: the key is known and, where a value is given, takes it."""
+        """Whether at least one type of heads accepts the key, and the value if it is given."""
         for type_of_head in self.types_with(path):
             said = self.complaints_of(path, type_of_head, a_value(self.paths[path][0]) if value is None else value)
             unknown = any("unknown key" in complaint for complaint in said.values())
@@ -119,7 +119,7 @@ class MessageKeys(unittest.TestCase):
                 self.assertTrue(any(self.is_accepted(path, typed(value)) for path in paths))
 
     def test_it_does_not_accept_a_key_that_there_is_not(self):
-        """Of this test itself: a wrong name, a wrong value and a mapping that is given a word are found."""
+        """Tests this test: it finds a wrong name, a wrong value, and a mapping that is given a word."""
         self.paths["heads.acoustics.multipath"] = [{"type": "string"}]
         self.addCleanup(self.paths.pop, "heads.acoustics.multipath")
         self.assertIn("unknown key", self.complaints_of("heads.acoustics.multipath", "gemini_720i", "off")

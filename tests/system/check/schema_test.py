@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the program refuses of a configuration, and what a validator that is not ours refuses by the JSON Schema.
+"""The program and an independent validator of JSON Schema must reject the same keys of a configuration.
 
     schema_test.py PROGRAM
 
-Each key is given a value that suits none, an empty mapping, and each mapping one key too many. The program reads such a
-file key by key, while the schema was written without one: both have to know the same keys.
+Each key gets a value that is invalid everywhere, an empty mapping, and each mapping gets an unknown key. The program
+reads such a file key by key, while the schema was written without a file: both must know the same keys.
 """
 
 import copy
@@ -25,7 +25,7 @@ SURPLUS = "zz"
 
 
 def for_heads_of_each_type():
-    """Schemas of documents whose heads are of one type."""
+    """The schema, once for each type of heads."""
     with open(os.path.join(SOURCE, "configs", "schema", "sonard.schema.json"), encoding="utf-8") as file:
         schema = json.load(file)
     for head in schema["properties"]["heads"]["items"]["oneOf"]:
@@ -63,7 +63,7 @@ def key_in(path, name):
 
 
 def bad_keys(schema):
-    """Paths of all in nonsense() that is wrong."""
+    """Paths of all invalid keys and values in nonsense()."""
     for path, node in mappings(schema):
         yield key_in(path, SURPLUS)
         yield from (key_in(path, name) for name, value in node["properties"].items() if not mapping_of(value))
@@ -71,7 +71,7 @@ def bad_keys(schema):
 
 class Schema(unittest.TestCase):
     def program_says(self, document):
-        """{key: complaint}"""
+        """{key: error message}"""
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             json.dump(document, file)  # JSON is YAML
             file.flush()
@@ -81,7 +81,7 @@ class Schema(unittest.TestCase):
 
     @staticmethod
     def validator_says(schema, document):
-        """Keys"""
+        """Paths of keys that fail."""
         for error in jsonschema.Draft202012Validator(schema).iter_errors(document):
             path = error.json_path.removeprefix("$").removeprefix(".")
             yield key_in(path, SURPLUS) if error.validator == "additionalProperties" else path

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The daemon as a process: its log, signals, descriptors, and what clients of a Micron meet right after the start.
+"""The daemon as a process: its log, signals, descriptors, and its answers to clients of a Micron right after the start.
 
     daemon_test.py --programs DIR [TestCase.test_name ...]
 
-Frames of the Micron are those of tests/data/micron, which says where each is from.
+Frames of the Micron are in tests/data/micron, with their sources.
 """
 
 import argparse
@@ -60,7 +60,7 @@ GEMINI = """
 """
 
 ALIVE, HEAD_DATA = 4, 2
-# Tests run side by side, and a head has its port at its address.
+# Tests run in parallel, so each process uses its own addresses.
 HEAD, SECOND_HEAD = (f"127.{1 + os.getpid() % 250}.{os.getpid() // 250 % 250}.{last}" for last in (2, 3))
 
 
@@ -80,7 +80,7 @@ def frame(name):
 
 
 class Client:
-    """A driver of a Micron that blocks: one frame at a time, with a time-out."""
+    """A blocking driver of a Micron: one frame at a time, with a time-out."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S)
@@ -90,7 +90,7 @@ class Client:
         self.socket.sendall(data)
 
     def read(self, seconds):
-        """The next whole frame, None when there was none in time."""
+        """The next whole frame; None after the time-out."""
         deadline = Deadline(seconds)
         while True:
             if len(self._bytes) >= 7:
@@ -143,7 +143,7 @@ class DaemonCase(unittest.TestCase):
         return daemon
 
     def start_bare(self, command, **popen):
-        """One whose standard error is the test's own business; returns when it takes connections."""
+        """Starts a daemon without reading its standard error; returns when it accepts connections."""
         process = subprocess.Popen(command, **popen)
         self.processes.append(process)
         deadline = Deadline(START_S)
@@ -169,7 +169,7 @@ class LogReader(DaemonCase):
     def test_one_that_stops_reading_costs_no_line_and_sigterm_ends_it_within_a_second(self):
         reader, writer = os.pipe()
         try:
-            # Debug: a line of text for every line of the scan, so that it is full in no time.
+            # Debug: one line per scan line, so that the pipe is soon full.
             daemon, client = self.start_bare(self.configuration(level="debug"), stderr=writer)
             os.close(writer)
             writer = -1
@@ -260,7 +260,7 @@ class Signals(DaemonCase):
         self.assertEqual(code, 0)
 
     def served_port(self, *ports):
-        """The port on which the daemon serves within PATIENCE_S."""
+        """The one of these ports on which the daemon accepts a connection within PATIENCE_S."""
         deadline = Deadline(PATIENCE_S)
         while not deadline.over():
             for port in ports:
@@ -271,7 +271,7 @@ class Signals(DaemonCase):
         self.fail(f"none of {ports} is served")
 
     def refused(self, daemon, why):
-        """SIGHUP leaves the daemon as it is, and one line says why."""
+        """SIGHUP does not change the daemon, and one line gives the reason."""
         daemon.signal(signal.SIGHUP)
         daemon.wait_for_line(f"going on with the one in use: .*{why}", PATIENCE_S)
         self.configured(self.client())
@@ -299,7 +299,7 @@ class Signals(DaemonCase):
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
     def test_sighup_serves_the_bytes_that_were_checked(self):
-        """The file becomes unusable at each of 50 moments after SIGHUP, as an editor writes it in two steps."""
+        """The file becomes invalid at each of 50 times after SIGHUP, as if an editor wrote it in two steps."""
         daemon, ports = self.start(), (self.port, free_port())
         path = os.path.join(self.folder.name, "sonard.yaml")
         for moment in range(50):
@@ -318,7 +318,7 @@ class Signals(DaemonCase):
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0, daemon.tail())
 
     def test_a_configuration_that_cannot_be_served_after_all_gives_way_to_the_one_before(self):
-        """The check makes no pseudo terminal, so a file in the place of its link shows at the start."""
+        """The check makes no pseudo terminal, so only the start finds the file in the place of its link."""
         daemon = self.start()
         link = os.path.join(self.folder.name, "link")
         with open(link, "w", encoding="utf-8"):
@@ -345,13 +345,13 @@ class Signals(DaemonCase):
 
     @staticmethod
     def is_a_check(process):
-        """Not the copy of the daemon that is about to become one: the daemon waits for that."""
+        """False for a fork of the daemon that has not yet started the check: the daemon waits for it."""
         with contextlib.suppress(OSError), open(f"/proc/{process}/cmdline", "rb") as file:
             return b"check" in file.read().split(b"\0")
         return False
 
     def test_sigterm_ends_a_check_that_hangs(self):
-        """The process that checks is stopped, as one that waits for a file server is."""
+        """The checking process is stopped (SIGSTOP), as if it waited for a file server."""
         daemon = self.start()
         daemon.signal(signal.SIGHUP)
         deadline = Deadline(PATIENCE_S)
@@ -364,7 +364,7 @@ class Signals(DaemonCase):
         self.assertLess(took, 5.0)
 
     def test_the_service_manager_is_told(self):
-        """By the protocol of sd_notify(3)."""
+        """The daemon notifies the service manager with the protocol of sd_notify(3)."""
         manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.addCleanup(manager.close)
         manager.settimeout(START_S)
@@ -379,7 +379,7 @@ class Signals(DaemonCase):
             self.assertEqual(daemon.wait(PATIENCE_S), 0)
 
     def test_a_second_sigterm_is_the_first_one(self):
-        """As `timeout` sends them: to its child, and to the whole process group."""
+        """`timeout` sends two: to its child, and to the process group."""
         directory = os.path.join(self.folder.name, "logs")
         os.mkdir(directory)
         topside = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -438,10 +438,10 @@ class Descriptors(DaemonCase):
 
 
 class Exhaustion(DaemonCase):
-    """Where descriptors, threads or memory run out at the start a sentence says so; where they last, it serves."""
+    """If descriptors, threads or memory run out at the start, the daemon prints the reason; otherwise it serves."""
 
     def outcome(self, command, sentence, **popen):
-        """'ready', or 'out' where it has ended with the sentence."""
+        """'ready', or 'out' if it has ended with the sentence."""
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **popen)
         self.processes.append(process)
         self.addCleanup(process.stdout.close)
@@ -468,8 +468,8 @@ class Exhaustion(DaemonCase):
                       (*range(6, 20), 64), "(?m)^out of file descriptors .*ulimit -n")
 
     def as_nobody(self, engine="cpu"):
-        """Command line, environment and ID of a user that has no processes."""
-        # Where that user may read it.
+        """Command line, environment and ID of a user without processes."""
+        # Copies in a folder that this user can read.
         program = shutil.copy(os.path.join(PROGRAMS, "sonard"), self.folder.name)
         shutil.copy(WORLD, self.folder.name)
         os.chmod(self.folder.name, 0o755)
@@ -502,14 +502,14 @@ class Exhaustion(DaemonCase):
     def test_of_memory(self):
         command = self.configuration()
         limits = [n << 20 for n in (*range(50, 600, 25), 8000)]
-        # Below the first of these the loader finds no room for the libraries, and no sentence can come from the program.
+        # Below the first of these limits the loader has no room for the libraries, and the program prints nothing.
         starts = [n for n in limits if subprocess.run(
             [command[0], "--version"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False,
             preexec_fn=lambda n=n: resource.setrlimit(resource.RLIMIT_AS, (n, n))).returncode == 0]
         self.outcomes(command, resource.RLIMIT_AS, starts, "(?m)^out of (memory|threads) .*ulimit -v")
 
     def pings_of_two_heads(self, limit_bytes):
-        """The heads that pinged when one was asked for 100 m and the other for 2 m, and what the log says; None: it was not
+        """The heads that sent pings when one was set to 100 m and the other to 2 m, and the log. None: the daemon never got
         ready."""
         topside_port = free_port()
         second = GEMINI.replace("bow", "second").replace("513", "514").replace("{head}", SECOND_HEAD)
@@ -568,15 +568,15 @@ class Exhaustion(DaemonCase):
 
 
 class Faults(DaemonCase):
-    """What befalls a daemon from its machine (docs/reliability.md)."""
+    """Faults of the machine (docs/reliability.md)."""
 
     def ended(self, command):
-        """Exit code and output of one that does not come to serve."""
+        """Exit code and output of a daemon that fails at the start."""
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=START_S)
         return done.returncode, done.stdout
 
     def test_it_writes_no_file_that_it_was_not_told_to(self):
-        """Neither into the home folder nor into the one that it was started from, where libraries put their logs."""
+        """Neither in the home folder nor in the working folder, where libraries put their logs."""
         with tempfile.TemporaryDirectory() as home, tempfile.TemporaryDirectory() as here:
             environment = {**os.environ, "HOME": home, "TMPDIR": home, "XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": ""}
             daemon, client = self.start_bare(self.configuration(), env=environment, cwd=here)
@@ -631,7 +631,7 @@ class Faults(DaemonCase):
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
     def ping_heads(self, topside, count):
-        """Number and time of the pings that come, while the topside keeps saying that it is there."""
+        """Number and time of each ping, while the topside keeps the connection alive."""
         heads, said, deadline = [], Deadline(0), Deadline(PATIENCE_S)
         while len(heads) < count:
             self.assertFalse(deadline.over(), heads)
@@ -648,14 +648,14 @@ class Faults(DaemonCase):
 
 
 class Leftovers(DaemonCase):
-    """What clients leave behind that have gone."""
+    """Descriptors and threads of clients that have gone must be free again."""
 
     def held(self, daemon):
-        """Descriptors and threads."""
+        """Numbers of descriptors and threads."""
         return tuple(len(os.listdir(f"/proc/{daemon.pid}/{what}")) for what in ("fd", "task"))
 
     def come_and_go(self, port, visit):
-        """A client that asks for lines, one that leaves half a command, or one that breaks off."""
+        """A client that requests lines, one that sends half a command, or one that resets the connection."""
         with (contextlib.suppress(ConnectionError),  # one too many is closed at once
               socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as client):
             client.sendall((frame("send_version"), frame("send_data")[:5], b"GET /hea")[visit % 3])
@@ -686,7 +686,7 @@ class Leftovers(DaemonCase):
 
 class Micron(DaemonCase):
     def test_a_client_of_one_second_is_served_right_after_ready(self):
-        """It gives every answer one second, and its first line comes before it has one."""
+        """This client waits one second for each answer; the first line must arrive in that time."""
         self.start()
         client = self.client()
         self.assertIsNotNone(client.read_until(ALIVE, 2.0), "the regular one, so that the next is an answer")
@@ -738,7 +738,7 @@ class Micron(DaemonCase):
             client.close()  # with lines on their way
         time.sleep(11)  # a report comes every ten seconds
         self.assertNotIn("too slowly", daemon.output())
-        # One that stays and does not read is told, by the port that it came to.
+        # A client that stays and does not read causes a warning with the port of its connection.
         slow = self.client()
         slow.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         slow.write(frame("head_command_ros"))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Text of peers and files wherever the programs print it: it forges no line and commands no terminal.
+"""Text from peers and files, in every place that the programs print: it forges no line and controls no terminal.
 
     text_test.py --programs DIR [TestCase.test_name ...]
 """
@@ -28,7 +28,7 @@ import glf_writer  # noqa: E402
 import messages  # noqa: E402
 from sonard_client.poses import _message_field, _quaternion, encode_pose  # noqa: E402
 
-# A line of its own that clears the screen: by ESC, by the one-character CSI, and behind a mark of direction.
+# A forged line that clears the screen: by ESC, by the one-character CSI, and behind a mark of direction.
 HOSTILE = "x'\n2026-11-20T14:22:33.250Z error FORGED\r\x1b[2J\x9b2J\u202e\x7f"
 AS_YAML = json.dumps(HOSTILE)  # YAML takes the strings of JSON
 AS_XML = "x'&#10;FORGED&#13;&#9;&#x9b;2J&#x202e;&#x7f;"  # XML 1.0 has no ESC
@@ -40,7 +40,7 @@ class HostileText(DaemonCase):
         return os.path.join(self.folder.name, name)
 
     def expect_clean(self, output):
-        """`output`: bytes. The hostile text is in it, and does nothing."""
+        """`output`: bytes. They contain the hostile text without its control characters."""
         text = output.decode(errors="surrogateescape")
         self.assertIn("FORGED", text)
         commands = [c for c in text if (c < " " and c != "\n") or "\x7f" <= c <= "\x9f" or c == "\u202e"]
@@ -55,7 +55,7 @@ class HostileText(DaemonCase):
         return done.stdout
 
     def serve_hostile_bodies(self, *options):
-        """What the daemon prints whose pose stream names bodies."""
+        """Output of a daemon whose pose stream sends hostile names of bodies."""
         port = free_port()
         command = self.configuration(poses=f", udp: {{bind: 127.0.0.1:{port}}}")
         with open(self.path("log"), "w+b") as log:
@@ -128,7 +128,7 @@ class HostileText(DaemonCase):
                 self.expect_clean(self.run_to_end("sonard", *command, codes=(0, 2)))
 
     def test_no_program_prints_an_error_or_a_path_as_it_is(self):
-        """What is tested above are the ways that a test can reach; this finds a new one."""
+        """The tests above cover known paths; this one searches the sources for new ones."""
         argument = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
         prints = 0
         for path in glob.glob(os.path.join(SOURCE, "server", "**", "*.cpp"), recursive=True) + \
@@ -200,7 +200,7 @@ class HostileText(DaemonCase):
         self.expect_clean(self.run_to_end("sonard", "render", configuration, "--trajectory", way, "--out", out, codes=(2,)))
 
     def test_what_the_demo_passes_on(self):
-        """Beside programs that print what they like; the demo takes its programs from its own folder."""
+        """The demo starts programs from its own folder; here these programs print hostile text."""
         programs = self.path("a/b/bin")
         os.makedirs(programs)
         os.symlink(os.path.join(SOURCE, "configs"), self.path("configs"))

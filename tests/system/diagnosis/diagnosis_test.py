@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What log, status and `sonard check` say of poses that make a picture black, on a machine of its own.
+"""The findings of log, status and `sonard check` about poses that make an image black, on a machine of its own.
 
     diagnosis_test.py --programs DIR --modules DIR [TestCase.test_name ...]
 
-Places and what is to be said of them are in tests/data/system/wrong_poses.json; distances follow from
-pier_and_hull.sdf beside it.
+Places and their findings are in tests/data/system/wrong_poses.json; distances follow from pier_and_hull.sdf beside it.
 """
 
 import argparse
@@ -54,8 +53,8 @@ def wrong_poses():
 
 
 class Publisher:
-    """Sends a pose twenty times a second, which goes on at a speed; stamps are those of a clock of its own, or what `stamp`
-    makes of the seconds since it began."""
+    """Sends a pose 20 times per second that moves at a constant speed. Stamps are from its own clock, or `stamp` computes
+    them from the seconds since the start."""
 
     def __init__(self, pose, ticks_per_s=1e9, speed_mps=0.0, stamp=None):
         self.pose = pose
@@ -98,7 +97,7 @@ class Diagnosis(OwnMachine):
         return path
 
     def start(self, **config):
-        """A daemon whose client asks for pings to 20 m."""
+        """A daemon, and a client that requests pings to 20 m."""
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", self.config(**config)], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
@@ -117,7 +116,7 @@ class Diagnosis(OwnMachine):
             return json.load(answer)
 
     def wait_for_finding(self, findings_of, says):
-        """Until the status has it; what it has is the message where it never comes."""
+        """Waits until the status has the finding; otherwise fails and prints the findings."""
         end = time.monotonic() + PATIENCE_S
         found = []
         while time.monotonic() < end:
@@ -148,7 +147,7 @@ class Diagnosis(OwnMachine):
 
     @staticmethod
     def says_of_check(pose):
-        """Before a client asks for a range, it is that of the head's usual ping."""
+        """Until a client requests a range, the check uses the range of the head's usual ping."""
         return pose["says"].replace("20(\\.\\d+)?", "\\d+(\\.\\d+)?")
 
     def test_check_names_every_wrong_start_pose(self):
@@ -199,7 +198,7 @@ class Diagnosis(OwnMachine):
         self.assertNotIn("inside of", self.check(file.name))
 
     def test_open_water_is_no_fault(self):
-        """Noise comes at each ping, nothing is found to be wrong, and the log says once that there is no surface."""
+        """Noise is present in each ping, so nothing is found, and the log states once that there is no surface."""
         path = self.config("initial: {position_m: [0, 0, -5]}")
         with open(path, encoding="utf-8") as file:
             text = file.read()

@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the Markdown of this repository prints for a shell: blocks of commands, commands within sentences, and files to save."""
+"""The shell text in the Markdown of this repository: blocks of commands, commands within sentences, and files to save."""
 
 import dataclasses
 import pathlib
 import re
 
 SHELL = ("", "sh", "bash", "console", "shell")
-# What a line of a block begins with when it is a command. A block in which no line does is output or a drawing.
+# A line of a block is a command if it begins with one of these. A block without such lines is output or a drawing.
 PROGRAMS = ("sonard", "sonarview", "posecast", "roscast", "./run", "./test", "build/", "tests/", "docker", "clients/", "configs/",
             "hooks/", "cmake", "ctest", "git", "sudo", "apt", "pip", "npm", "python3", "podman", "kubectl", "ip", "systemctl",
             "mkdocs", "doxygen", "protoc", "ros2", "rosrun", "roslaunch", "rostopic", "colcon", "ign", "gz", "tshark", "tcpdump",
             "editcap", "wireshark", "curl", "socat", "nc", "ss", "sysctl", "unshare", "export", "for", "while", "cd", "cp", "ln",
             "mkdir", "kill", "cmp", "wait", "PYTHONPATH=", "SONARD", "chrt", "perf", "nvidia-smi", "qemu", "ffmpeg", "ethtool", "seed=",
             "umask", "chmod", "modprobe", "setcap", "source", ".", "xvfb-run", "world=", "set", "screen", "stty", "sim_vehicle.py")
-# Of a sentence, only what starts one of the programs that are built here, with what it needs: `sonard render` alone is a name.
+# In sentences, only a program of this repository with its arguments is a command: `sonard render` alone is a name.
 INLINE = re.compile(r"^(build/release/bin/)?(sonard (?!ready)(\w+ \S|--|demo|selftest)|sonarview (\w+ \S|--)|posecast \S)")
 
 
 @dataclasses.dataclass(frozen=True)
 class Command:
-    """A command as it is printed, joined where a backslash continues it, without what stands behind a #."""
+    """A command as printed: continued lines joined, comments behind # removed."""
 
     file: str
     line: int

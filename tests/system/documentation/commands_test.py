@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that README.md and docs print is run as printed, or is listed here with the reason why it is not.
+"""Every command in README.md and docs is run as printed, or is listed here with the reason why it is not run.
 
     commands_test.py --programs DIR [TestCase.test_name ...]
 
-Each command has a folder like the root of the repository, a machine of its own (a network namespace), and the files that
-the text beside it gives. A command that runs until it is stopped gets SIGTERM when it has shown that it works, and has to end
+Each command has a folder like the root of the repository, a machine of its own (a network namespace), and the files from
+the surrounding text. A command that runs until it is stopped gets SIGTERM once it has shown that it works. It must then end
 cleanly.
 """
 
@@ -31,14 +31,14 @@ PROGRAMS = None  # folder of the programs under test
 PATIENCE_S = 120
 SOME_LOST = 4  # of sonarview, which is then right: a machine that runs several of these at once may be too slow for each ping
 
-# Words that stand for something of the reader's.
+# Placeholders in the documents, and their values here.
 PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.yaml", "LOG": "log.mcap", "DIR": "out", "NAME": "demo-micron", "SECONDS": "1",
                 "FILE": "configs/trajectories/demo.csv", "ADDRESS": "127.0.0.3", "<device>": "micron", "E": "cpu", "L": "info"}
 
-# Files that the text gives: name -> (document, place among the blocks of that language).
+# Files from the text: name -> (document, index of the block among the blocks of that language).
 FILES = {"harbour.sdf": ("docs/worlds.md", "xml", 0), "harbour.yaml": ("docs/worlds.md", "yaml", 0),
          "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 0)}
-# Files that are the reader's own, and what of the repository is like them.
+# Files of the reader, and similar files of the repository.
 LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/ssiv_demo.tum",
         "dive.csv": "configs/trajectories/docking_demo.csv"}
 
@@ -172,7 +172,7 @@ RULES = [
     Run(r"sonard run configs/lock-step.yaml &\nPYTHONPATH=.*"),
 ]
 
-# The programs that serve beside a command start first and end behind it.
+# The servers of a command start before it and end after it.
 SCRIPT = """
 ip link set lo up
 {addresses}
@@ -211,7 +211,7 @@ def block_of(document, language, place):
 
 
 def filled_in(text):
-    """Without placeholders and the brackets around what may be left out."""
+    """Without placeholders and the brackets around optional parts."""
     text = re.sub(r"\[--gpu-device D\]", "", text).replace("[", "").replace("]", "") if re.match(r"sonard \w+ .*\[", text) else text
     for word, stands_for in PLACEHOLDERS.items():
         text = re.sub(rf"(?<![\w<-]){re.escape(word)}(?![\w>=])", stands_for, text)
@@ -261,7 +261,7 @@ class Documentation(unittest.TestCase):
 
     @staticmethod
     def complaint(folder, command, rule):
-        """(command, what is wrong)"""
+        """(command, error)"""
         place = pathlib.Path(tempfile.mkdtemp(dir=folder))
         (place / "build" / "release").mkdir(parents=True)
         (place / "build" / "release" / "bin").symlink_to(PROGRAMS)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two machines on one wire, made of network namespaces, and the programs that run on them.
+"""Two machines on one wire, as network namespaces, and the programs on them.
 
-Every wait has a deadline; whatever was started is ended and whatever was made is removed when the test ends.
+Every wait has a deadline. When the test ends, all programs are stopped and all namespaces are removed.
 """
 
 import ctypes
@@ -30,7 +30,7 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 class Deadline:
-    """Time that is left."""
+    """Remaining time."""
 
     def __init__(self, seconds):
         self._end = time.monotonic() + seconds
@@ -67,15 +67,15 @@ class Namespace:
         _ip("-netns", self.name, *arguments)
 
     def command(self, *arguments):
-        """Command line that runs `arguments` here, in the process that is started (ip replaces itself)."""
+        """Command line that runs `arguments` in this namespace, in the started process (ip replaces itself)."""
         return ["ip", "netns", "exec", self.name, *arguments]
 
     def udp_socket(self, address, port, reuse=False):
-        """A socket of this process that lives in this namespace: a socket keeps the one it was made in. With `reuse` it
-        shares its port with others that share theirs."""
+        """A socket of this process in this namespace: a socket stays in the namespace in which it was made. With `reuse` it
+        shares its port with other sockets that set it."""
         def make():
             made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            # Beyond net.core.rmem_max: Python reads slower than a head sends.
+            # Exceeds net.core.rmem_max, because Python reads slower than a head sends.
             made.setsockopt(socket.SOL_SOCKET, SO_RCVBUFFORCE, 16 << 20)
             made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(reuse))
             made.bind((address, port))
@@ -83,7 +83,7 @@ class Namespace:
         return self._inside(make)
 
     def tcp_socket(self):
-        """The same of TCP, not connected."""
+        """A TCP socket in this namespace, not connected."""
         return self._inside(lambda: socket.socket(socket.AF_INET, socket.SOCK_STREAM))
 
     def _inside(self, make):
@@ -100,7 +100,7 @@ class Namespace:
             os.close(own)
 
     def enter(self):
-        """From here on sockets of this thread are made in the namespace, and programs start in it."""
+        """From now on, sockets of this thread and programs that it starts are in this namespace."""
         with open(f"/run/netns/{self.name}", "rb") as there:
             _enter(there.fileno())
 
@@ -114,7 +114,7 @@ def _enter(namespace_fd):
 
 
 class OwnMachine(unittest.TestCase):
-    """Tests whose process, and the programs that it starts, are on a machine of their own, with a folder for each."""
+    """Tests whose process and programs have a machine (namespace) of their own, with a folder for each test."""
 
     @classmethod
     def setUpClass(cls):
@@ -162,7 +162,7 @@ class Lab:
         self.head = self._add("head")
         self.topsides = [self._add(f"topside{i}") for i in range(self._wanted_topsides)]
         self.topside = self.topsides[0]
-        # One wire, or a switch (a bridge, which is then the interface of the head machine).
+        # One wire; with two topsides a switch (a bridge, which is then the interface of the head machine).
         switched = self._wanted_topsides > 1
         if switched:
             self.head.ip("link", "add", "eth0", "type", "bridge")
@@ -185,11 +185,11 @@ class Lab:
         return program
 
     def tails(self):
-        """What every program said last, for messages of failed tests."""
+        """The last output of every program, for messages of failed tests."""
         return "\n".join(program.tail() for program in self._programs)
 
     def tc(self, namespace, *arguments):
-        """Shapes the traffic that leaves by an interface."""
+        """Shapes the traffic that leaves through an interface."""
         _run("tc", "-netns", namespace.name, *arguments)
 
     def _remove(self):
@@ -230,12 +230,12 @@ class Program:
             return "\n".join(self.lines)
 
     def tail(self, count=40):
-        """The last lines, for messages of failed tests."""
+        """The last lines of output, for messages of failed tests."""
         with self._news:
             return f"{self.name} ends with:\n" + "\n".join(self.lines[-count:])
 
     def wait_for_line(self, pattern, seconds, count=1):
-        """The `count`-th line in which the pattern is found."""
+        """Waits for the `count`-th line that matches the pattern."""
         deadline = Deadline(seconds)
         with self._news:
             while True:
@@ -263,7 +263,7 @@ class Program:
         self._process.send_signal(number)
 
     def terminate(self, seconds):
-        """Asks it to end. Returns exit code and time taken."""
+        """Sends SIGTERM. Returns exit code and time taken."""
         start = time.monotonic()
         self.signal(signal.SIGTERM)
         return self.wait(seconds), time.monotonic() - start
@@ -277,7 +277,7 @@ class Program:
 
 
 def receive(sock, seconds):
-    """(bytes, sender), or None when nothing came in time."""
+    """(bytes, sender); None after the time-out."""
     ready, _, _ = select.select([sock], [], [], seconds)
     return sock.recvfrom(2048) if ready else None
 

@@ -4,7 +4,7 @@
 
     link_test.py --programs DIR [--replay] [TestCase.test_name ...]
 
-With --replay the heads play back logs that are written here, and what arrives is compared with those.
+With --replay the heads play back logs written here, and the received pings are compared with those.
 """
 
 import argparse
@@ -30,7 +30,7 @@ WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
 REPLAY = False  # heads play back logs instead of rendering
 
-# The machine that runs these tests may be busy with others: patience costs nothing when all is well.
+# Long time-outs, because the machine may be busy with other tests.
 START_S = 60
 PATIENCE_S = 60
 
@@ -114,7 +114,7 @@ class LinkTest(unittest.TestCase):
         return daemon
 
     def write_log(self, heads):
-        """A log for heads of these configurations. Their images have the shape that start_viewer() asks for."""
+        """A log for heads of these configurations, with images of the shape that start_viewer() requests."""
         names = [re.search(r"name: (\S+)", head).group(1) for head in heads]
         ids = [int(re.search(r"sonar_id: (\d+)", head).group(1)) for head in heads]
         self.recorded = {name: glf_writer.noise(250, 482, sonar_id) for name, sonar_id in zip(names, ids)}
@@ -123,8 +123,8 @@ class LinkTest(unittest.TestCase):
         return path
 
     def check_recorded(self, crcs, name):
-        """What arrived is in the log, in this order. A request that the link has doubled makes a ping more than the
-        client counts, so a few may lie between."""
+        """The received pings are in the log, in this order. A request that the link doubled makes one more ping than the
+        client counts, so a few pings may lie between."""
         written = 2 * [f"{image.crc32():08x}" for image in self.recorded[name]]
         at = 0
         for crc in crcs:
@@ -132,19 +132,19 @@ class LinkTest(unittest.TestCase):
             at = written.index(crc, at) + 1
 
     def start_viewer(self, lab, *options, topside=None, range_m=4):
-        """One that finds out for itself from which of its addresses commands go to the head."""
+        """A viewer that finds its own address towards the head."""
         return lab.start(topside or lab.topside, os.path.join(PROGRAMS, "sonarview"), "--log-pings", "--wait", str(PATIENCE_S),
                          "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
 
     # ---- Checks ----
 
     def rendered(self, name="bow"):
-        """CRC-32 of every ping as the renderer handed it over, by its transmit time."""
+        """CRC-32 of every ping as the renderer returned it, by its transmit time."""
         with open(os.path.join(self.folder.name, name + ".csv"), encoding="utf-8") as file:
             return {int(row["transmit_us"]): row["crc32"] for row in csv.DictReader(file)}
 
     def check_pings(self, viewer, count, name="bow"):
-        """All of them complete and bit-identical to what was rendered. Returns the viewer's summary."""
+        """All pings are complete and bit-identical to the rendered ones. Returns the viewer's summary."""
         logged = [key_values(line) for line in viewer.lines if line.startswith("ping ")]
         self.assertEqual(len(logged), count)
         rendered = self.rendered(name)
@@ -176,7 +176,7 @@ class LinkTest(unittest.TestCase):
 
 
 class Pings(LinkTest):
-    """200 pings, found by broadcast, every image complete and bit-identical to what the renderer handed over."""
+    """200 pings, found by broadcast; every image is complete and bit-identical to the renderer's output."""
 
     LOSSY = ("--drop-rx", "0.05", "--drop-tx", "0.05", "--seed")
 
@@ -213,7 +213,7 @@ class Pings(LinkTest):
 
 
 class Topsides(LinkTest):
-    """Clients that come, go, fall silent and share the wire."""
+    """Clients that connect, leave, become silent and share the wire."""
 
     def test_killed_in_the_middle_of_a_ping_and_started_again(self):
         lab = self.make_lab()
@@ -275,7 +275,7 @@ class Topsides(LinkTest):
 
 
 class RawTopside:
-    """A topside made of two sockets and the bytes of the document."""
+    """A topside of two sockets, with bytes from the document."""
 
     def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS, topside=0):
         self.sonar_id = sonar_id
@@ -292,7 +292,7 @@ class RawTopside:
         self.commands.sendto(message, (to or self.head, COMMAND_PORT))
 
     def next_of(self, message_type, seconds=PATIENCE_S):
-        """The next datagram of this type and its sender; None when none comes in time."""
+        """The next datagram of this type and its sender; None after the time-out."""
         deadline = Deadline(seconds)
         while not deadline.over():
             got = receive(self.reports, deadline.left())
@@ -301,7 +301,7 @@ class RawTopside:
         return None
 
     def next_ping(self, seconds=PATIENCE_S):
-        """The next complete ping; lines that the socket lost would make it time out."""
+        """The next complete ping; times out if the socket lost lines."""
         deadline = Deadline(seconds)
         ping = None
         while not deadline.over():
@@ -322,7 +322,7 @@ class RawTopside:
 
 
 class Wire(LinkTest):
-    """What a client of another make sees: bytes and timing by the document, without our protocol code."""
+    """The view of another maker's client: bytes and timing from the document, without our protocol code."""
 
     def start(self, *heads, **keywords):
         lab = self.make_lab()
@@ -365,7 +365,7 @@ class Wire(LinkTest):
         self.assertAlmostEqual(first * wire.line_step_m(1500.0), math.sqrt(13) - 0.5, delta=0.05)
 
     def place_of_target(self, ping):
-        """Bearing of the middle of all that echoes, degrees to starboard."""
+        """Bearing of the middle of all beams with an echo, degrees to starboard."""
         beams = [beam for beam in range(256) if any(ping.lines[i][beam] for i in range(ping.count))]
         self.assertTrue(beams, "nothing is seen")
         return math.degrees(sum(wire.bearing_rad(beam) for beam in beams) / len(beams))
@@ -382,18 +382,18 @@ class Wire(LinkTest):
             topside.send(wire.ping_config(513, lines=483, spreading=293))
             return topside.next_ping()
 
-        # The sphere is 33.69 degrees to port of the x axis. Turned 60 degrees to port, the sonar has it 26.31 degrees to
+        # The sphere is 33.69 degrees to port of the x axis. If the sonar turns 60 degrees to port, it is 26.31 degrees to
         # starboard.
         self.assertAlmostEqual(self.place_of_target(ping_after((0, 0, 0))), -33.69, delta=1.0)
         turned = ping_after((0, 0, 0), yaw_rad=math.radians(60))
         self.assertAlmostEqual(self.place_of_target(turned), 26.31, delta=1.0)
-        # The sphere itself moved to the mirrored place.
+        # The sphere moves to the mirrored place.
         moved = ping_after((0, 0, 0), bodies=[("sphere", (3.0, -2.0, 0.0))])
         self.assertAlmostEqual(self.place_of_target(moved), 33.69, delta=1.0)
 
     def test_link_slower_than_the_head_loses_nothing(self):
         lab, daemon, topside = self.start(self.head_config())
-        # 20 Mbit/s, where the head sends 80: the queue of the socket fills up and the head has to wait.
+        # 20 Mbit/s for the 80 that the head sends: the queue of the socket fills up, and the head must wait.
         lab.tc(lab.head, "qdisc", "add", "dev", "eth0", "root", "tbf", "rate", "20mbit", "burst", "5kb", "limit", "50mb")
         topside.send(wire.ping_config(513, lines=10000))
         ping = topside.next_ping()
@@ -413,7 +413,7 @@ class Wire(LinkTest):
             self.assertLess(time.monotonic() - asked, 30, "went on pinging without a topside")
             if topside.next_of(wire.PING_HEAD, seconds=0.2):
                 last_ping = time.monotonic()
-        # The configuration was the last command: 3 s, and what a busy machine adds.
+        # The configuration was the last command: 3 s, plus the delay of a busy machine.
         self.assertGreater(last_ping - asked, 1.5)
         self.assertLess(last_ping - asked, 6.0)
         daemon.wait_for_line(f"topside {TOPSIDE_ADDRESS} lost", PATIENCE_S)
@@ -443,7 +443,7 @@ class Wire(LinkTest):
 
 
 class SecondTopside(LinkTest):
-    """A second topside on the wire of a head that has one (docs/security.md)."""
+    """A second topside on the wire of a head that serves another (docs/security.md)."""
 
     def start(self, lock_to_first):
         lab = self.make_lab(topsides=2)
@@ -456,7 +456,7 @@ class SecondTopside(LinkTest):
         return daemon
 
     def ask_as_both(self, rounds):
-        """Both keep asking for a sign of life. Returns the types of what the second hears, but for the status."""
+        """Both keep requesting the status. Returns the types of the second's messages, except the status."""
         heard = set()
         for _ in range(rounds):
             self.first.send(wire.status_request(513))
@@ -505,7 +505,7 @@ class StalePoses(LinkTest):
             time.sleep(0.02)
 
     def pings_within(self, topside, seconds):
-        """Ping heads seen, while the topside keeps the connection alive."""
+        """Number of ping heads received, while the topside keeps the connection alive."""
         heads, deadline = 0, Deadline(seconds)
         while not deadline.over():
             topside.send(wire.status_request(513))

@@ -35,7 +35,7 @@ class ReplayTest(unittest.TestCase):
         self.addCleanup(self.lab.__exit__)
 
     def log(self, count, suffix=".glf", **settings):
-        """Writes a log; its path. `self.images` is what is in it."""
+        """Writes a log of `self.images`. Returns its path."""
         self.images = glf_writer.noise(count, LINES, **settings)
         path = os.path.join(self.folder, "log" + suffix)
         (glf_writer.write_dat if suffix == ".dat" else glf_writer.write_glf)(path, self.images)
@@ -47,7 +47,7 @@ class ReplayTest(unittest.TestCase):
         return daemon
 
     def view(self, count, *options):
-        """Takes pings on loopback; what sonarview logged of each, all of them complete."""
+        """Receives pings on loopback, all complete. Returns what sonarview logged of each."""
         viewer = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonarview"), "--client-address", "127.0.0.1",
                                 "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S),
                                 "--pings", str(count), *options)
@@ -63,7 +63,7 @@ class ReplayTest(unittest.TestCase):
         return [(int(ping["transmit_us"]) - int(pings[0]["transmit_us"])) / 1000 for ping in pings]
 
     def check_offsets(self, pings, speed=1):
-        """On time, but for what a busy machine adds; never early by more than the clocks' rounding."""
+        """On time except for the delays of a busy machine; early at most by the clocks' rounding."""
         expected = [1000 * (image.time_s - self.images[0].time_s) / speed for image in self.images]
         late = sorted(offset - due for offset, due in zip(self.offsets_ms(pings), expected))
         self.assertGreater(late[0], -0.01)
@@ -147,7 +147,7 @@ class Logs(ReplayTest):
         self.assertNotIn("cannot render", daemon.output())
 
     def refused(self, *arguments):
-        """The one line that `sonard replay` says."""
+        """The only line that `sonard replay` prints."""
         daemon = self.lab.start(self.lab.head, os.path.join(PROGRAMS, "sonard"), "replay", *arguments)
         self.assertEqual(daemon.wait(20), 2, daemon.tail())
         self.assertEqual(len(daemon.lines), 1, daemon.tail())

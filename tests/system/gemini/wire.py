@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The few messages these tests send and read themselves, written from docs/protocols/gemini.md and
-protocol/pose/pose.proto, without our C++ code: a second opinion on every byte."""
+"""The few messages that these tests send and read themselves, written from docs/protocols/gemini.md and
+protocol/pose/pose.proto, without our C++ code: an independent check of every byte."""
 
 import math
 import struct
@@ -19,7 +19,7 @@ def status_request(sonar_id):
 
 
 def ping_config(sonar_id, lines, continuous_ms=None, sound_speed_mps=1500.0, spreading=67):
-    """0x21 (section 5): 8 bit, also out of water, speed of sound from the configuration, no compression."""
+    """0x21 (section 5): 8 bit, also pings out of water, speed of sound from the configuration, no compression."""
     body = struct.pack("<4H", 0, 0, 0, 0)
     body += struct.pack("<HH", 0 if continuous_ms is None else 1, 0x0204)  # runMode, extMode
     body += struct.pack("<HHI", 0, lines, 1000 * (continuous_ms or 200))  # startRange, endRange, interping
@@ -115,7 +115,7 @@ def _doubles(*values):
 
 
 def pose_update(time_ns, position_m, yaw_rad=0.0, bodies=()):
-    """PoseUpdate at rest in the axes FRAME_ENU_FLU; `bodies` are (name, position) pairs."""
+    """PoseUpdate at rest in the axes of FRAME_ENU_FLU; `bodies` are (name, position) pairs."""
     message = _varint(1 << 3) + _varint(time_ns)
     message += _field(3, _pose(position_m, yaw_rad))
     for name, body_position_m in bodies:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The programs are built with the protections of docs/security.md ("Builds"), and the check finds what lacks them.
+"""The programs are built with the protections of docs/security.md ("Builds"), and the check finds programs without them.
 
     hardening_test.py --programs DIR
 """

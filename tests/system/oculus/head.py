@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A daemon with heads of type oculus on a machine of its own (a network namespace), and what talks to them."""
+"""A daemon with heads of type oculus on a machine of its own (a network namespace), and its clients."""
 
 import argparse
 import os
@@ -36,13 +36,13 @@ heads:
 
 
 def example(name):
-    """A message of tests/data/oculus, whose notes say where it is from."""
+    """A message of tests/data/oculus, whose notes name its source."""
     with open(os.path.join(SOURCE, "tests", "data", "oculus", name + ".hex"), encoding="ascii") as file:
         return bytes.fromhex("".join(line.split("#")[0] for line in file))
 
 
 def tcp_client(machine, address, port=52100, receive_buffer=None):
-    """Connected; a socket keeps the namespace that it was made in."""
+    """A connected socket; it stays in the namespace in which it was made."""
     made = machine.tcp_socket()
     if receive_buffer:
         made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
@@ -63,7 +63,7 @@ class Client:
         self.connection.sendall(data)
 
     def next(self, seconds=PATIENCE_S):
-        """The next message; None when none came in time, or the head has closed the connection."""
+        """The next message; None after the time-out, or if the head has closed the connection."""
         deadline = Deadline(seconds)
         while not self._messages:
             if not select.select([self.connection], [], [], deadline.left())[0]:
@@ -78,7 +78,7 @@ class Client:
         return self._messages.pop(0)
 
     def wait(self, wanted, seconds=PATIENCE_S):
-        """The next message of that kind; what comes before it is skipped, as clients do."""
+        """The next message of this kind; skips others, as clients do."""
         deadline = Deadline(seconds)
         while (got := self.next(deadline.left())) is not None and got.id != wanted:
             pass
@@ -96,7 +96,7 @@ class Client:
         return got
 
     def is_closed(self, seconds=PATIENCE_S):
-        """What has come is read; True once the head has closed the connection."""
+        """Reads everything that has arrived. True if the head has closed the connection."""
         deadline = Deadline(seconds)
         while select.select([self.connection], [], [], deadline.left())[0]:
             try:
@@ -111,7 +111,7 @@ class Client:
 
 
 class HeadCase(unittest.TestCase):
-    """One daemon for all cases of a class, as it takes longer to start than they to run; each brings clients of its own."""
+    """One daemon for all cases of a class, because it starts slower than they run; each case has its own clients."""
 
     PROGRAMS = None  # folder of the programs under test
     HEADS = ""  # YAML
@@ -155,8 +155,8 @@ class HeadCase(unittest.TestCase):
         self.assertNotRegex(self.daemon.output(), "Z (error|critical) ")
 
     def view(self, pings, *options):
-        """Takes pings by sonarview; what it printed. Where a busy machine kept it from reading, it may miss some: those
-        that the daemon says it dropped."""
+        """Receives pings with sonarview. Returns its output. A busy machine may make it miss pings that the daemon counts as
+        dropped."""
         told = self.times_too_slow()
         viewer = self.start(os.path.join(self.PROGRAMS, "sonarview"), "oculus", "--pings", str(pings), *options,
                             machine=self.client_machine)
@@ -173,7 +173,7 @@ class HeadCase(unittest.TestCase):
         return sum(bool(re.search(TOO_SLOW, line)) for line in self.daemon.lines)
 
     def client(self, address=None, greeted=True, **settings):
-        """Waits until the head has seen that its last client is gone."""
+        """Waits until the head has noticed that its last client is gone."""
         deadline = Deadline(PATIENCE_S)
         while True:
             client = Client(tcp_client(self.client_machine, address or self.ADDRESS, **settings))
@@ -196,7 +196,7 @@ class HeadCase(unittest.TestCase):
 
 
 def main():
-    """Runs the cases of the script that calls this."""
+    """Runs the cases of the calling script."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
     arguments, rest = parser.parse_known_args()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Heads as their clients meet them: with configs/demo-oculus.yaml and no more, and with both models beside a sphere.
+"""Heads and their clients: with configs/demo-oculus.yaml alone, and with both models beside a sphere.
 
     head_test.py --programs DIR [Demo.test_name ...]
 """
@@ -69,11 +69,11 @@ class Demo(HeadCase):
             messages.status_of(statuses.recv(2048))
         self.assertAlmostEqual(time.monotonic() - begin, 4.0, delta=0.5)
 
-    # ---- Clients and what they check (9)
+    # ---- Clients and their checks (9)
 
     def test_ensta_driver_sets_standby_and_resumes(self):
-        """Its request loop: fires until a ping has its settings, a hundred times at most; then standby, which a Dummy
-        confirms within five seconds, and the last settings again, as it copies them from a ping."""
+        """The client's request loop: it fires until a ping has its settings, at most a hundred times. Then it sends standby,
+        which a Dummy confirms within five seconds, and the last settings again, copied from a ping."""
         client = self.client()
         client.write(example("fire_ensta"))
         wanted = struct.unpack("<d", bytes.fromhex("52b81e85eb510440"))[0]
@@ -118,7 +118,7 @@ class Demo(HeadCase):
         self.assertEqual(ids, sorted(set(ids)))
         if ids[-1] - ids[0] >= len(ids):  # this machine kept the client waiting: the head must have said so
             self.daemon.wait_for_line(TOO_SLOW, PATIENCE_S, said + 1)
-        # A ping may start late on a busy machine, and the next one then in time: all of them together keep the rate.
+        # A ping may start late on a busy machine, and the next one then in time: their mean rate counts.
         took_s = sum((after - before) % 2 ** 32 for before, after in zip(times, times[1:])) * 1e-9
         self.assertGreater(took_s, 0.1 * (len(times) - 2), "no extra pings")
         client.write(messages.user_config())
@@ -159,7 +159,7 @@ class Demo(HeadCase):
         client = self.client(receive_buffer=8192)
         client.write(messages.fire(mode=LOW, rate=1, flags=0x4B, range_m=20.0, speed=1500.0))  # 1.2 MB each, 15 a second
         self.daemon.wait_for_line("head=oculus pings: .* bits=16", PATIENCE_S)
-        # It does not read.
+        # The client does not read.
         self.daemon.wait_for_line(TOO_SLOW, PATIENCE_S)
         ids = []
         while len(ids) < 20 and (not ids or ids[-1] - ids[0] == len(ids) - 1):
@@ -186,7 +186,7 @@ SPHERE_RANGE_M = math.sqrt(13) - 0.5
 
 
 class Attitude(HeadCase):
-    """Two heads of a vehicle that is turned, tilted and rolled 20 m below the surface."""
+    """Two heads of a vehicle that is yawed, pitched and rolled, 20 m below the surface."""
 
     WORLD = """<?xml version="1.0"?>
 <sdf version="1.9" xmlns:sonard="https://sonard.dev/sdf">
@@ -238,7 +238,7 @@ heads:
             self.assertAlmostEqual((angle - right + 180) % 360, 180, delta=1e-3)
 
     def test_a_ping_has_the_attitude_of_the_head_by_its_mount_and_the_pressure_of_its_depth(self):
-        """Truth: the product of the rotation matrices of vehicle and mount, worked out by hand."""
+        """Truth: the product of the rotation matrices of vehicle and mount, computed by hand."""
         ping = self.ping_of("127.0.0.3", 2)
         self.assert_angles(ping.attitude_deg, 59.461, -14.986, 3.094)
         self.assertAlmostEqual(ping.pressure_bar, 1.013 + 0.1 * 20, delta=1e-6)
@@ -268,7 +268,7 @@ heads:
 
 
 class Sphere(HeadCase):
-    """A ball of steel three metres ahead and two to port."""
+    """A ball of steel, 3 m ahead and 2 m to port."""
 
     HEADS = BOTH
 
@@ -282,7 +282,7 @@ class Sphere(HeadCase):
         self.assertEqual(found, {7892: ("127.0.0.3", 1032), 8000: ("127.0.0.4", 1042)})
 
     def test_the_ball_is_where_it_is_at_both_frequencies_with_any_number_of_beams(self):
-        """At the high frequency of an M750d it stands near the edge of the fan, of an M1200d outside of it."""
+        """At the high frequency of an M750d it is near the edge of the fan; of an M1200d, outside of the fan."""
         for address, mode, sees in (("127.0.0.3", LOW, True), ("127.0.0.3", HIGH, True), ("127.0.0.4", LOW, True),
                                     ("127.0.0.4", HIGH, False)):
             for beams_flag, beams in ((0x40, 512), (0, 256)):
@@ -316,7 +316,7 @@ class Sphere(HeadCase):
             self.assertAlmostEqual(angle, right, delta=1e-9)
 
     def test_samples_of_all_widths_and_gammas_are_of_one_picture(self):
-        """The same ping, twice, has the same noise only by chance: the ball is compared."""
+        """Two pings have the same noise only by chance, so the ball is compared."""
         strongest = {}
         for width, flags, extension in ((1, 0x49, None), (2, 0x4B, None), (4, 0x4B, 0x200)):
             client = self.client()
@@ -332,7 +332,7 @@ class Sphere(HeadCase):
         self.assertAlmostEqual(strongest[2], strongest[4], delta=0.15)
 
     def test_the_table_of_bearings_is_that_of_a_recorded_head(self):
-        """4.5, of an M1200d at its high frequency with 256 beams."""
+        """4.5, for an M1200d at its high frequency with 256 beams."""
         client = self.client("127.0.0.4")
         client.write(messages.fire(flags=0x19, range_m=2.0, speed=1490.658551265436))
         ping = client.ping()
@@ -346,7 +346,7 @@ class Sphere(HeadCase):
         self.assertEqual(ping.ranges, 351)
 
     def test_rates_are_kept(self):
-        """Within what this machine can render: no rate is exceeded, and the slow ones are met."""
+        """Within the rendering speed of this machine: no rate is exceeded, and the slow rates are reached."""
         for code, hertz in ((0, 10), (1, 15), (2, 40), (3, 5), (4, 2)):
             with self.subTest(hertz=hertz):
                 client = self.client()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the Oculus, written from docs/protocols/oculus.md and not from our C++ code: a second opinion.
+"""Messages of the Oculus, written from docs/protocols/oculus.md, not from our C++ code: an independent check.
 
 Section numbers are those of that page.
 """
@@ -27,7 +27,7 @@ def header(message, version, size, source=0):
 
 def fire(mode=HIGH, rate=0, network=0xFF, gamma=0x7F, flags=0x0D, range_m=5.0, gain=50.0, speed=0.0, salinity=0.0, version=0,
          extension=None, states_size=True):
-    """`extension`: extFlags of the second version."""
+    """`extension`: extFlags of version 2."""
     body = FIRE_BODY.pack(mode, rate, network, gamma, flags, range_m, gain, speed, salinity)
     if extension is not None:
         body += EXTENSION.pack(extension, *(8 * [0]))
@@ -52,7 +52,7 @@ class Message:
 
 
 class Stream:
-    """What comes by TCP, put together. What begins no message fails."""
+    """Joins the bytes of a TCP stream into messages. Fails at bytes that do not begin a message."""
 
     def __init__(self):
         self._bytes = bytearray()
@@ -73,7 +73,7 @@ class Stream:
 
 @dataclasses.dataclass
 class Ping:
-    """With the checks of 4.3, all of which some client makes."""
+    """With the checks of 4.3; for each check there is a client that makes it."""
     version: int
     mode: int
     rate: int

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A head and its client on machines of their own (two network namespaces on one wire): how it is found, and what a wire
-that is too slow and loses does to its pings.
+"""A head and its client on two machines (network namespaces on one wire): how the client finds the head, and how a slow
+wire that loses packets affects pings.
 
     network_test.py --programs DIR [TwoMachines.test_name ...]
 """
@@ -49,8 +49,8 @@ class TwoMachines(HeadCase):
         self.view(10)
 
     def test_over_a_wire_that_loses_every_ping_that_comes_is_whole(self):
-        """A bucket of 60 Mbit/s that holds 20 kB drops what bursts beyond: TCP sends it again, and slower than pings are
-        made, so that some pings are left out."""
+        """A bucket of 60 Mbit/s that holds 20 kB drops bursts. TCP sends them again, more slowly than the head pings, so
+        some pings are skipped."""
         self.lab.tc(self.machine, "qdisc", "add", "dev", "eth0", "root", "tbf", "rate", "60mbit", "burst", "10kb", "limit",
                     "20kb")
         try:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A head recorded, told about, played back and rendered without serving: four ways to the same samples.
+"""Recorded, shown by `sonard info`, replayed and rendered offline: the same samples in all four ways.
 
     recording_test.py --programs DIR [Recording.test_name ...]
 """
@@ -26,12 +26,12 @@ HEAD = """
 """
 FIRE = messages.fire(mode=LOW, flags=0x49, range_m=5.0, gamma=255, speed=1500.0, version=2, extension=0)
 PINGS = 4
-# What two pings of one image differ in: numbers and times.
+# The fields that differ between two pings of one image: numbers and times.
 VARYING = (slice(89, 93), slice(153, 161))
 
 
 def by_number(raws):
-    """Messages of version 2. A machine that is busy makes the client too slow for some of them, which are left out."""
+    """Messages of version 2. A busy machine makes the client too slow for some of them, which are missing."""
     return {struct.unpack_from("<I", raw, 89)[0]: raw for raw in raws}
 
 
@@ -43,7 +43,7 @@ def same_but_for_times(raw):
 
 
 class Recording(HeadCase):
-    """A session of one client; all cases look at what it left."""
+    """A session of one client; all cases read its logs."""
 
     HEADS = HEAD
     MORE = "recording: {directory: logs}"

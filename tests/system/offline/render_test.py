@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`sonard render` as a user runs it: what it leaves, read without our C++ code.
+"""`sonard render` as a user runs it: its files are read without our C++ code.
 
     render_test.py --programs DIR [TestCase.test_name ...]
 """
@@ -98,7 +98,7 @@ class Case(unittest.TestCase):
         return self.write("config.yaml", CONFIG.format(world=world, dump=self.path("dump")))
 
     def way(self, seconds, start=0.0, speed=0.0):
-        """Straight ahead from the origin."""
+        """A straight line ahead from the origin."""
         return self.write("way.csv", CSV_HEADER + f"{start},0,0,0,0,0,0,1\n{start + seconds},{speed * seconds},0,0,0,0,0,1\n")
 
     def sidecar(self, folder, name):
@@ -108,7 +108,7 @@ class Case(unittest.TestCase):
 
 class Files(Case):
     def test_contract(self):
-        """No arguments beyond these; the start of the demo, for time's sake."""
+        """Only the required options; only the start of the demo, to save time."""
         with open(DEMO_WAY) as file:
             short = self.write("way.csv", "".join(file.readlines()[:4]))
         out = self.path("out")
@@ -144,7 +144,7 @@ class Files(Case):
         self.assertEqual(refused.returncode, 5, "a folder holds the frames of one setting")
 
     def test_python_of_the_documentation_runs(self):
-        """The blocks of docs/python.md, in the folder that its command fills (of a short way, for time's sake)."""
+        """The blocks of docs/python.md, in the folder that its command fills (with a short trajectory, to save time)."""
         out = self.path("out")
         with open(DEMO_WAY) as file:
             short = self.write("way.csv", "".join(file.readlines()[:2]))
@@ -161,7 +161,7 @@ class Files(Case):
         self.assertEqual(said[3].stdout, "(3, 256)\n")
 
     def test_open_water_is_noise_alone(self):
-        """For negatives of data sets: noise on both engines, with a mask that has no body."""
+        """Negatives for data sets: noise on both engines, and a mask without a body."""
         config = self.config()
         with open(config) as file:
             text = re.sub("^world:\n  file: .*$", "world: empty", file.read(), flags=re.MULTILINE)
@@ -184,7 +184,7 @@ class Files(Case):
                 self.assertEqual(self.sidecar(out, "ping_000000")["truth"]["bodies"], [])
 
     def test_log_holds_the_arrays(self):
-        """Unix times in the trajectory: those of the log."""
+        """Unix times in the trajectory are the times of the log."""
         start = 1_700_000_000.25
         out = self.path("out")
         render(self.config(), "--trajectory", self.way(1.0, start), "--out", out, "--rate", "4", "--compression", "2")
@@ -236,7 +236,7 @@ class Files(Case):
             self.assertLess(abs(bearing - math.atan2(2, 3)), half_rad)
 
     def test_vehicle_of_the_world_moves_along_unless_hidden(self):
-        # 1.1 m ahead of the sonar is the guard of the vehicle, and 1.1 m it stays while the vehicle moves.
+        # The guard of the vehicle is 1.1 m ahead of the sonar and stays there while the vehicle moves.
         basin = os.path.join(SOURCE, "configs", "worlds", "gazebo_basin.sdf")
         way = self.write("way.csv", CSV_HEADER + "0,0,0,-2.5,0,0,0,1\n1,1.5,0,-2.5,0,0,0,1\n")
         for hides, expected in (("false", {1.1}), ("true", set())):
@@ -255,7 +255,7 @@ class Files(Case):
             self.assertEqual(seen, expected)
 
     def test_clean_pictures_have_the_bearing_and_range_that_the_json_says(self):
-        """The sphere at (3, 2, 0), in the fan and its mask, by apex and scale alone; of both kinds of head."""
+        """The sphere at (3, 2, 0) in the fan and its mask, by apex and scale alone, for both kinds of head."""
         for head, stem, more in (("bow", "ping_000000", []), ("mast", "scan_000000", ["--rate", "300", "--bins", "200"])):
             out = self.path(head)
             render(self.config(), "--trajectory", self.way(1.0), "--out", out, "--head", head, "--range", "6", "--truth",
@@ -350,7 +350,7 @@ class Files(Case):
             self.assertEqual(sums(out), before, "of the frames that are there, the same bytes")
 
     def test_the_narrow_fan_of_an_oculus(self):
-        """docs/protocols/oculus.md: an M750d has 130 degrees at 750 kHz and 70 degrees at 1.2 MHz."""
+        """docs/protocols/oculus.md: the fan of an M750d is 130 degrees at 750 kHz and 70 degrees at 1.2 MHz."""
         config = os.path.join(SOURCE, "configs", "demo-oculus.yaml")
         way = self.write("way.csv", CSV_HEADER + "0,-2,-12,-25.6,0,0,0.64,0.77\n")
         for frequency, width_deg, hertz in ((None, 130, 750e3), ("low", 130, 750e3), ("high", 70, 1.2e6)):
@@ -379,7 +379,7 @@ class Files(Case):
         bearings = sidecar["geometry"]["bearings_rad"]
         self.assertAlmostEqual(bearings[0], math.pi / 4)
         self.assertAlmostEqual(bearings[-1], -math.pi / 4)
-        # From 1.2 m on the head no longer hears itself: the brightest is the sphere.
+        # From 1.2 m on, the ring-down of the head is gone: the brightest sample is the sphere.
         first = int(1.2 / sidecar["geometry"]["line_step_m"])
         brightest = samples[first:].argmax() % samples.shape[1]
         self.assertAlmostEqual(math.degrees(bearings[brightest]), 33.7, delta=6.0)
@@ -388,7 +388,7 @@ class Files(Case):
 
 
 class Stills(Case):
-    """Poses around the sphere at (3, 2, 0), each heading about towards it, in no order that a vehicle could follow."""
+    """Poses around the sphere at (3, 2, 0), each heading roughly towards it, in an order that no vehicle could follow."""
 
     POSES = 11
 
@@ -404,7 +404,7 @@ class Stills(Case):
         return self.write("random.csv", "".join(lines))
 
     def expect_sphere_where_it_is(self, out):
-        """Image and mask against the bearing of the sphere from the pose."""
+        """Compares image and mask with the bearing of the sphere from the pose."""
         for k, (x, y, heading) in enumerate(self.poses):
             name = f"ping_{k:06}"
             bearings = numpy.array(self.sidecar(out, name)["geometry"]["bearings_rad"])
@@ -443,7 +443,7 @@ class Stills(Case):
         self.expect_sphere_where_it_is(out)
 
     def test_the_mask_follows_the_motion_where_there_is_some(self):
-        """At 150 degrees per second the sonar turns by 1.2 degrees until the near side of the sphere, at 6.0 m, answers."""
+        """At 150 degrees/s the sonar turns by 1.2 degrees until the echo of the sphere's near side, at 6.0 m, arrives."""
         rate = math.radians(150)
         way = self.write("turn.csv", CSV_HEADER + "".join(
             f"{t},-3.4,2,0,0,0,{math.sin(rate * (t - 1) / 2)},{math.cos(rate * (t - 1) / 2)}\n" for t in (0.5, 1.0, 1.5)))
@@ -500,8 +500,8 @@ poses: {initial: {position_m: [0, 0, 0]}}
 
 class Levels(Case):
     def greatest(self, height_m):
-        """Of the post, whose front is 7.95 m ahead. Clients ask for 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at 120
-        (docs/protocols/gemini.md 5)."""
+        """Maxima of the post, whose front is 7.95 m ahead. Clients request 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at
+        120 (docs/protocols/gemini.md 5)."""
         self.write("post.sdf", POST.format(height_m=height_m))
         config = self.write("config.yaml", POST_CONFIG)
         greatest = []
@@ -518,8 +518,8 @@ class Levels(Case):
         self.assertLess(20 * math.log10(max(greatest) / min(greatest)), 0.5, greatest)
 
     def test_a_post_does_not_fade_under_a_longer_tone(self):
-        """Its ends are 16 mm farther away than its middle. A tone that holds all of that brightens it, by less than 2.5
-        dB: the shortest is heard over 16.3 mm (docs/physics.md 2.6)."""
+        """Its ends are 16 mm farther away than its middle. A tone that covers all of it brightens it by less than 2.5 dB:
+        the shortest tone covers 16.3 mm (docs/physics.md 2.6)."""
         greatest = self.greatest(1)
         self.assertEqual(greatest, sorted(greatest))
         self.assertLess(20 * math.log10(greatest[-1] / greatest[0]), 2.5, greatest)
@@ -531,7 +531,7 @@ class Bytes(Case):
                       *arguments)
 
     def test_three_shards_make_the_files_of_one_run(self):
-        """At the same time, while the sonar moves and its speckle goes on from ping to ping."""
+        """The shards run at the same time; the sonar moves and its speckle continues from ping to ping."""
         way = self.way(1.5, speed=0.1)
         self.one_run(self.path("one"), way)
         self.config()
@@ -570,15 +570,15 @@ class Bytes(Case):
         self.assertGreater(killed, 0)
         self.one_run(out, way)
         self.assertEqual(sums(out), sums(self.path("one")))
-        # All is there: nothing is made again.
+        # All files exist: no file is written again.
         before = {name: os.stat(os.path.join(out, name)).st_mtime_ns for name in os.listdir(out)}
         self.one_run(out, way)
         self.assertEqual({name: os.stat(os.path.join(out, name)).st_mtime_ns for name in os.listdir(out)}, before)
-        # One file is lost: it comes back with the same bytes.
+        # One file is missing: the new one has the same bytes.
         os.unlink(os.path.join(out, "ping_000005.npy"))
         self.one_run(out, way)
         self.assertEqual(sums(out), sums(self.path("one")))
-        # Everything anew.
+        # All files are rendered again.
         self.one_run(out, way, "--overwrite")
         self.assertEqual(sums(out), sums(self.path("one")))
 
@@ -623,7 +623,7 @@ class Bytes(Case):
         self.assertEqual(refused.returncode, 5, "the folder is another run's: " + refused.stderr)
 
     def test_elements_have_a_seed_of_their_own(self):
-        """Without noise an image follows from the array: as equal as the seeds of the elements."""
+        """Without noise, equal seeds of the elements give equal images."""
         quiet = self.write("quiet.yaml", CONFIG.format(world=SPHERE, dump=self.path("dump")).replace(
             "    dump:\n", "    acoustics:\n      element_amplitude_sd: 0.3\n      physical: {speckle: off, noise: false, "
             "texture_nu: 0, water_clutter: {density_per_m3: 0}}\n    dump:\n", 1))
@@ -643,7 +643,7 @@ class Bytes(Case):
         self.assertTrue((one(self.config(), "g", "--seed", "2", "--element-seed", "9") != noisy).any())
 
     def test_a_body_moves_along_a_file(self):
-        """The sphere 5 m to port goes away: it is in the first ping, and in none when it is 1 km off."""
+        """The sphere 5 m to port goes away: it is in the first ping, but not in the second, when it is 1 km off."""
         ball = self.write("ball.csv", CSV_HEADER + "0,3,3,0,0,0,0,1\n1,1000,3,0,0,0,0,1\n")
         out = self.path("out")
         arguments = [self.config(), "--trajectory", self.way(1.0), "--out", out, "--rate", "1", "--compression", "3", "--truth",
@@ -665,7 +665,7 @@ class Bytes(Case):
             return re.search('<model name="([^"]+)"', file.read()).group(1)
 
     def test_offline_equals_served(self):
-        """The same pose, seed and ping numbers: what a daemon has rendered for a client."""
+        """The same pose, seed and ping numbers give the same samples as a daemon renders for a client."""
         config = self.config()
         machine = Namespace("sonard-" + uuid.uuid4().hex[:8])
         self.addCleanup(machine.remove)

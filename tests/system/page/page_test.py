@@ -5,7 +5,7 @@ namespace).
 
     page_test.py --programs DIR --npm DIR [TestCase.test_name ...]
 
-What is looked at is in mock_test.js, daemon_test.js and foxglove_test.js, for a browser is driven in JavaScript.
+The checks are in mock_test.js, daemon_test.js and foxglove_test.js, because a browser is driven from JavaScript.
 """
 
 import argparse
@@ -30,7 +30,7 @@ PATIENCE_S = 380
 
 class Page(unittest.TestCase):
     def run_script(self, script, *arguments):
-        """Runs a script of node's test runner; its report is the message where it fails."""
+        """Runs a script of node's test runner; if it fails, its report is the message."""
         namespace = Namespace(f"sonard-page-{os.getpid()}")
         self.addCleanup(namespace.remove)
         process = subprocess.Popen(namespace.command("node", script, *arguments), cwd=NPM, stdout=subprocess.PIPE,

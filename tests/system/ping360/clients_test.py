@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What known clients do, in their order and with their own waits (docs/protocols/ping360.md 6), on the daemon's sockets.
+"""The commands of known clients in their order, with their waits (docs/protocols/ping360.md 6), on the daemon's sockets.
 
     clients_test.py --programs DIR [Clients | Clients.test_name | WholeTurn ...]
 
-Most heads here have `timing.scale: 0`: they ping as fast as is rendered, for what these clients do does not depend on the
-pace. Where a test waits for the clock it is because the client does, or because the pace is what it is about.
+Most heads here have `timing.scale: 0`: they ping as fast as they render, because the pace does not affect these clients.
+A test waits for the clock only if the client does, or if it tests the pace.
 """
 
 import dataclasses
@@ -40,7 +40,7 @@ class Clients(HeadCase):
              + head("old", OLD, "firmware_minor: 3, firmware_patch: 0", timing="")
              + head("forgetful", FORGETFUL, timing="scale: 0, idle_timeout_ms: 500"))
 
-    # ---- brping: reads what there is, and puts it together
+    # ---- brping: reads all available bytes and joins them to frames
 
     def brping_initialises(self, client):
         self.assertIsNotNone(client.ask(messages.request(PROTOCOL_VERSION), PROTOCOL_VERSION, seconds=0.5))
@@ -58,7 +58,7 @@ class Clients(HeadCase):
                 self.assertEqual(client.junk(), 0)
 
     def test_brping_reads_a_head_that_has_not_pinged_yet(self):
-        """And what it sends is what was recorded of it."""
+        """Its command equals the recorded one, too."""
         client = self.client(TIMED)
         client.write(messages.reset())  # no answer, a second of silence: a head at boot
         time.sleep(1.2)
@@ -158,7 +158,7 @@ class Clients(HeadCase):
     # ---- ping-viewer
 
     def ping_viewer_detects(self, client):
-        """The first frame of any kind is the answer to it. Returns the firmware's version."""
+        """The first frame of any kind is the answer. Returns the firmware's version."""
         client.write(b"")
         time.sleep(0.1)
         client.write(messages.request(DEVICE_INFORMATION))
@@ -175,7 +175,7 @@ class Clients(HeadCase):
     def test_ping_viewer_scans_changes_settings_and_leaves(self):
         client = self.client(BRISK)
         self.assertGreater(self.ping_viewer_detects(client), (3, 3, 0))
-        # A turn; a sector of 120 degrees about 200, its straight ahead; another gain, range and step.
+        # A turn; a sector of 120 degrees about 200, which is straight ahead; another gain, range and step.
         scans = [(AutoTransmit(), [*range(400), *range(10)]),
                  (AutoTransmit(start=134, stop=265), [*range(134, 266), *range(264, 133, -1), 135]),
                  (AutoTransmit(gain=2, duration=53, period=444, start=134, stop=265, steps=4, delay=2), [134, 138, 142])]
@@ -190,7 +190,7 @@ class Clients(HeadCase):
         self.assertEqual([got.message for got in client.all_until_quiet() if got.message != AUTO_DEVICE_DATA], 10 * [ACK])
 
     def test_ping_viewer_may_order_again_and_again(self):
-        """As it does while a setting that comes back differs: the same order lets the scan go on."""
+        """It repeats the order while a returned setting differs: the same order lets the scan go on."""
         client = self.client(TIMED)
         for _ in range(10):
             client.write(AutoTransmit().bytes())
@@ -204,12 +204,12 @@ class Clients(HeadCase):
         other.write(AutoTransmit().bytes())
         other.wait(AUTO_DEVICE_DATA)
         self.ping_viewer_detects(self.client(FAST))
-        # Its empty datagram has ended the scan, as the break of a bridge would.
+        # Its empty datagram has ended the scan, as a break from a bridge would.
         other.all_until_quiet()
         self.assertIsNone(other.next(QUIET_S))
 
     def test_ping_viewer_turns_an_older_head_by_single_commands(self):
-        """It sends one again that has no answer 200 ms after the way."""
+        """It repeats a command that has no answer 200 ms after the time of the move."""
         client = self.client(OLD)
         self.assertLessEqual(self.ping_viewer_detects(client), (3, 3, 0))
         command, angles, late = Transducer(angle=200), [], 0
@@ -224,7 +224,7 @@ class Clients(HeadCase):
             client.write(command.bytes())
         different = [angle for angle, before in zip(angles, [None, *angles]) if angle != before]
         self.assertEqual(different, [angle % 400 for angle in range(200, 200 + 10 * len(different), 10)])
-        # A command that this machine lets cross its answer costs a ping; it does so once.
+        # If a repeated command crosses its answer on this machine, it costs one ping, once.
         self.assertLessEqual(len(angles) - len(different), 1 + late)
 
     # ---- Clients that only listen, and the pace
@@ -276,12 +276,12 @@ class Clients(HeadCase):
 
 
 class WholeTurn(HeadCase):
-    """At the head's own pace, and with a client that says no more than it must."""
+    """At the head's own pace, with a client that sends as little as possible."""
 
     HEADS = head("real", FAST, timing="")
 
     def test_who_only_listens_gets_a_turn_of_50_m_as_fast_as_an_owner_did(self):
-        """37.6 s by the clock, within 5 % (docs/protocols/ping360.md 3.7), and nobody is forgotten meanwhile."""
+        """37.6 s by the clock, within 5 % (docs/protocols/ping360.md 3.7); the head does not drop the silent client."""
         client = self.client(FAST)
         scan = AutoTransmit(duration=267, period=2222)
         client.write(scan.bytes())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A daemon with heads of type ping360 on a machine of its own (a network namespace), and what talks to them."""
+"""A daemon with heads of type ping360 on a machine of its own (a network namespace), and its clients."""
 
 import argparse
 import os
@@ -33,13 +33,13 @@ heads:
 
 
 def example(name):
-    """A frame of tests/data/ping360, whose notes say where it is from."""
+    """A frame of tests/data/ping360, whose notes name its source."""
     with open(os.path.join(SOURCE, "tests", "data", "ping360", name + ".hex"), encoding="ascii") as file:
         return bytes.fromhex("".join(line.split("#")[0] for line in file))
 
 
 class Client:
-    """The end of a line: sends bytes, and takes frames one by one."""
+    """The client's end of a link: sends bytes and receives frames one by one."""
 
     def __init__(self):
         self._parser = messages.Parser()
@@ -49,11 +49,11 @@ class Client:
         raise NotImplementedError
 
     def read(self, seconds):
-        """A piece of what has come; None when nothing came in time."""
+        """Some received bytes; None after the time-out."""
         raise NotImplementedError
 
     def next(self, seconds=PATIENCE_S):
-        """The next frame of any kind; None when none came in time."""
+        """The next frame of any kind; None after the time-out."""
         deadline = Deadline(seconds)
         while not self._frames:
             piece = self.read(deadline.left())
@@ -64,7 +64,7 @@ class Client:
         return self._frames.pop(0)
 
     def wait(self, *wanted, seconds=PATIENCE_S):
-        """The next frame with one of these numbers; what comes before it is skipped, as clients do."""
+        """The next frame with one of these numbers; skips others, as clients do."""
         deadline = Deadline(seconds)
         while True:
             got = self.next(deadline.left())
@@ -76,7 +76,7 @@ class Client:
         return self.wait(*wanted, seconds=seconds)
 
     def all_until_quiet(self, seconds=QUIET_S):
-        """Everything that comes until nothing has come for so long."""
+        """All frames until no frame arrives for this time."""
         got = []
         while (one := self.next(seconds)) is not None:
             got.append(one)
@@ -93,13 +93,13 @@ class Client:
         return self._parser.junk
 
     def end(self):
-        """Stops what it has begun, whatever it has half read."""
+        """Stops its scan, and drops a half-received frame."""
         self._parser = messages.Parser()
         self.ask(messages.MOTOR_OFF_FRAME, messages.ACK, seconds=5)
 
 
 class UdpClient(Client):
-    """`buffer`: bytes that it takes of each datagram."""
+    """`buffer`: bytes of each datagram that it reads."""
 
     def __init__(self, socket, head, buffer=4096):
         super().__init__()
@@ -143,8 +143,8 @@ class SerialClient(Client):
 
 
 class HeadCase(unittest.TestCase):
-    """One daemon for all cases of a class, as it takes longer to start than they to run; each brings clients of its own
-    and leaves the heads at rest."""
+    """One daemon for all cases of a class, because it starts slower than they run; each case has its own clients and leaves
+    the heads at rest."""
 
     PROGRAMS = None  # folder of the programs under test
     HEADS = ""  # YAML
@@ -195,12 +195,12 @@ class HeadCase(unittest.TestCase):
         return self.keep(SerialClient(path))
 
     def keep(self, client):
-        """It goes when the case ends, and stops what it has begun."""
+        """Stops and closes the client when the case ends."""
         self.addCleanup(client.close)
         self.addCleanup(client.end)
         return client
 
-    # ---- What is said of frames
+    # ---- Checks of frames
 
     def assert_ack(self, got, message):
         self.assertIsNotNone(got, "no answer")
@@ -212,7 +212,7 @@ class HeadCase(unittest.TestCase):
         self.assertEqual(messages.nack(got), (message, text))
 
     def assert_ping(self, got, command, angle=None):
-        """An answer to `command`. Returns it."""
+        """Checks that it is an answer to `command`. Returns its data."""
         self.assertIsNotNone(got, "no answer")
         if got.message == messages.NACK:
             self.fail(f"refused: {messages.nack(got)}")
@@ -225,7 +225,7 @@ class HeadCase(unittest.TestCase):
 
 
 def main():
-    """Runs the cases of the script that calls this."""
+    """Runs the cases of the calling script."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
     arguments, rest = parser.parse_known_args()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The daemon as a user starts it, with configs/demo-ping360.yaml and no more: what it says, answers, refuses and stops.
+"""The daemon as a user starts it, with configs/demo-ping360.yaml alone: its answers, its refusals, and the ends of scans.
 
     head_test.py --programs DIR [Demo.test_name ...]
 """
@@ -26,7 +26,7 @@ SCAN_LIMITS = {name: limits for name, limits in TRANSDUCER_LIMITS.items() if nam
 
 
 def refused_by(command, limits):
-    """(name of the field on the wire, a command with a value that it does not take)"""
+    """(name of the field on the wire, a command with an invalid value in it)"""
     for wire_name, (name, values) in limits.items():
         for value in values:
             yield wire_name, dataclasses.replace(command, **{name: value})
@@ -62,7 +62,7 @@ class Demo(HeadCase):
     # ---- Requests
 
     def test_requests_are_answered_within_50_ms_also_while_it_scans(self):
-        """The median, as this machine may be busy; no client gives up before 500 ms."""
+        """The median must be under 50 ms, because the machine may be busy; no client gives up before 500 ms."""
         client = self.client()
         for scans in (False, True):
             if scans:
@@ -101,12 +101,12 @@ class Demo(HeadCase):
         answer = client.ask(ping.bytes(), DEVICE_DATA)
         self.assert_ping(answer, ping)
         self.assertEqual(client.all_until_quiet(), [])
-        # What it says when asked is its last ping, also while it turns for the next.
+        # The state is that of the last ping, also while the head turns for the next.
         client.write(Transducer(angle=191, samples=300).bytes())
         self.assertEqual(self.quiet_state(client), answer.bytes())
         self.assertEqual(messages.data_of(client.wait(DEVICE_DATA)).angle, 191)
 
-    # ---- What is refused
+    # ---- Refusals
 
     def test_a_value_out_of_range_gets_one_nack_that_names_it_and_changes_nothing(self):
         client = self.client()
@@ -187,7 +187,7 @@ class Demo(HeadCase):
         a.all_until_quiet(0.1)
         self.assertEqual(a.all_until_quiet(), [], "its scan is over")
 
-    # ---- What ends a scan
+    # ---- Ends of a scan
 
     def test_every_stop_is_acknowledged_and_a_break_ends_the_scan(self):
         client = self.client()
@@ -216,7 +216,7 @@ class Demo(HeadCase):
         client = self.serial_client(self.pty())
         client.write(10 * b"U" + b"\0")  # ping-cpp; brping sends one U
         self.assertIsNotNone(client.ask(messages.request(PROTOCOL_VERSION), PROTOCOL_VERSION, seconds=0.5))
-        # 'U' is 85: inside of a command it is a value.
+        # 'U' is 85: within a command it is a value.
         scan = AutoTransmit(duration=85, period=85, samples=0x155, stop=0x55)
         for stop in (b"U", 10 * b"U" + b"\0"):
             client.write(scan.bytes())
@@ -240,7 +240,7 @@ class Demo(HeadCase):
 
 
 class Log(HeadCase):
-    """What a person sees; of a daemon of its own, as what clients can cause too often is left out of the log."""
+    """The log of a daemon of its own, because messages that clients trigger too often are rate-limited."""
 
     @classmethod
     def configuration(cls):

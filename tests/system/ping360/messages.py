@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of the Ping360, written from docs/protocols/ping360.md and not from our C++ code: a second opinion.
+"""Frames of the Ping360, written from docs/protocols/ping360.md, not from our C++ code: an independent check.
 
 Section numbers are those of that page.
 """
@@ -34,7 +34,7 @@ class Frame:
 
 
 class Parser:
-    """1.1, as real clients have it: what fails is dropped whole."""
+    """1.1, as in real clients: an invalid frame is dropped whole."""
 
     def __init__(self):
         self._bytes = b""
@@ -64,7 +64,7 @@ class Parser:
         self._bytes = self._bytes[count:]
 
 
-# ---- 2: what hosts send
+# ---- 2: messages from hosts
 
 def request(wanted):
     return frame(GENERAL_REQUEST, struct.pack("<H", wanted))
@@ -72,7 +72,7 @@ def request(wanted):
 
 @dataclasses.dataclass
 class Transducer:
-    """2601. The defaults are what ping-viewer begins with."""
+    """2601. The defaults are ping-viewer's first settings."""
     mode: int = 1
     gain: int = 0
     angle: int = 0
@@ -113,11 +113,11 @@ def reset(bootloader=0):
     return frame(RESET, bytes([bootloader, 0]))
 
 
-# ---- 2: what heads send
+# ---- 2: messages from heads
 
 @dataclasses.dataclass
 class DeviceData:
-    """2300 and 2301; of the first the limits are None."""
+    """2300 and 2301; 2300 has no limits (None)."""
     mode: int
     gain: int
     angle: int
@@ -132,7 +132,7 @@ class DeviceData:
     delay: int = None
 
     def echoes(self, command):
-        """Whether all that it says of its settings is what `command` said, angle apart."""
+        """Whether its settings equal those of `command`, except the angle."""
         names = ["mode", "gain", "duration", "period", "frequency", "samples"]
         if isinstance(command, AutoTransmit):
             names += ["start", "stop", "steps", "delay"]
@@ -159,5 +159,5 @@ def data_of(got):
 
 
 def nack(got):
-    """(number of what was refused, text)"""
+    """(number of the refused message, text)"""
     return struct.unpack_from("<H", got.payload)[0], got.payload[2:].decode("ascii")

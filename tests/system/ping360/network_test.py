@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Heads and clients on machines of their own (two network namespaces on one wire): how they are found, and what a link
-that loses, doubles, swaps and delays does to them.
+"""Heads and clients on two machines (network namespaces on one wire): how clients find heads, and how a link that loses,
+duplicates, reorders and delays affects them.
 
     network_test.py --programs DIR [Discovery.test_name ...]
 """
@@ -57,7 +57,7 @@ class Discovery(TwoMachines):
         self.assertEqual(self.ask(ping_viewer, b" Discovery\r\n")[0], TEXT)
 
     def test_blueos_on_the_machine_of_the_head(self):
-        """It has the port at an address of its own; the head has it at all addresses."""
+        """It holds the port at one address; the head holds it at all addresses."""
         blueos = self.asker(HEAD_ADDRESS, DISCOVERY_PORT, self.lab.head)
         self.assertEqual(self.ask(blueos), (TEXT, (HEAD_ADDRESS, DISCOVERY_PORT)))
 
@@ -98,7 +98,7 @@ FEWER = "{loss: 0.04, duplicate: 0.1, reorder: 0.1, delay_ms: 3, jitter_ms: 2}"
 
 
 class Link(TwoMachines):
-    """The faults are those of `link`; what they did is read from what the daemon counts until its end."""
+    """The faults are set in `link`; their effects are read from the counters that the daemon prints at its end."""
 
     HEADS = (HEAD.format(name="asked", port=12345, scale=0, link=f"to_client: {EVERY_FAULT}, from_client: {EVERY_FAULT}")
              + HEAD.format(name="scans", port=12346, scale=0.1, link="to_client: " + EVERY_FAULT)
@@ -120,7 +120,7 @@ class Link(TwoMachines):
         self.check_gaps(scan, pings, stops)
 
     def counts(self, head):
-        """What the daemon counted of this head, and of the link that it is on."""
+        """The daemon's counters of this head and of its link."""
         said = " ".join(re.findall(rf"head={head} (?:ends|transport): (.*)", self.daemon.output()))
         return {name: int(value) for name, value in re.findall(r"(\w+)=(\d+)(?= |$)", said)}
 
@@ -129,8 +129,8 @@ class Link(TwoMachines):
             self.assertGreater(counts[f"{side}_{fault}"], 10)
 
     def ask_four_hundred_times(self):
-        """Commands that can be told apart by their number of samples; every eighth is a ping. No faster than they are done:
-        of those that wait the oldest are dropped."""
+        """Commands with different numbers of samples, to tell them apart; every eighth is a ping. They are sent as slowly as
+        the head works, because it drops the oldest waiting commands."""
         client = self.client_of(12345)
         sent = {}
         for number in range(400):
@@ -147,7 +147,7 @@ class Link(TwoMachines):
         self.assertEqual(counts["received"], len(sent))
         self.assertEqual(counts["commands"], counts["from_surface_passed"], "every request that arrived was understood")
         answered = counts["to_surface_passed"] - counts["to_surface_duplicated"] + counts["to_surface_lost"]
-        # A copy of a command that still waits is no second one (docs/protocols/ping360.md).
+        # A copy of a waiting command is not executed again (docs/protocols/ping360.md).
         self.assertEqual(answered, counts["commands"] - counts["commands_joined"], "and was answered once")
         self.assertEqual(counts["commands_dropped"] + counts["refused"] + counts["dropped_bytes"], 0)
         self.assertEqual(len(answers), counts["to_surface_passed"])
@@ -156,7 +156,7 @@ class Link(TwoMachines):
             self.assert_ping(got, sent[messages.data_of(got).samples])
 
     def scan_and_stop(self):
-        """The scan, all frames of it, and how often it was told to stop; less than a turn, so that angles tell pings."""
+        """The scan, all its frames, and the number of stop commands; less than a turn, so an angle identifies a ping."""
         client = self.client_of(12346)
         scan = AutoTransmit(samples=200)
         client.write(scan.bytes())
@@ -197,7 +197,7 @@ class Link(TwoMachines):
         return {name: int(value) for name, value in re.findall(r"(\w+)=(\d+)(?= |$)", viewer.lines[-1])}
 
     def view_turns(self):
-        """It asks again for what is lost, and asks no more often for what comes twice."""
+        """It repeats requests for lost frames only; duplicated frames cause no more requests."""
         summary = self.view(12347, "--auto", "--turns", "2", "--step", "4")
         self.assertEqual((summary["turns"], summary["frames_bad"], summary["bytes_dropped"]), (2, 0, 0))
         self.assertGreater(summary["pings"], 170)

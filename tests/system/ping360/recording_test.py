@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A head recorded, told about, played back and rendered without serving: four ways to the same bytes.
+"""Recorded, shown by `sonard info`, replayed and rendered offline: the same bytes in all four ways.
 
     recording_test.py --programs DIR [Recording.test_name ...]
 """
@@ -18,7 +18,7 @@ from head import DEMO, PATIENCE_S, HeadCase, UdpClient, main
 from messages import ACK, AUTO_DEVICE_DATA, DEVICE_DATA, DEVICE_INFORMATION, NACK, PROTOCOL_VERSION, AutoTransmit, Transducer
 import pcapng_reader  # head says where these are
 
-# What sonarview and `sonard render --range 10 --step 9` ask for.
+# The settings of sonarview and `sonard render --range 10 --step 9`.
 SETTINGS = dict(gain=1, duration=53, period=444, frequency=740, samples=1200)
 ORDERS = [Transducer(angle=angle, **SETTINGS) for angle in range(0, 60, 10)]
 SCAN = AutoTransmit(start=60, stop=59, steps=10, **SETTINGS)
@@ -28,7 +28,7 @@ WALLS_M = {0: 8.0, 100: 4.5, 200: 6.0, 300: 5.5}  # by angle: the tank is 14 x 1
 
 
 class Recording(HeadCase):
-    """A session of one client with the demo's head; all cases look at what it left."""
+    """A session of one client with the demo's head; all cases read its logs."""
 
     @classmethod
     def setUpClass(cls):
@@ -43,7 +43,7 @@ class Recording(HeadCase):
 
     @classmethod
     def demo_with(cls, name, head="", water="", more=""):
-        """The demo, and a little more in its sections."""
+        """The demo's configuration, with more keys in its sections."""
         with open(DEMO, encoding="utf-8") as file:
             text = file.read().replace("file: worlds", "file: " + os.path.join(os.path.dirname(DEMO), "worlds"))
         path = os.path.join(cls.folder, name + ".yaml")
@@ -57,7 +57,7 @@ class Recording(HeadCase):
 
     @classmethod
     def session(cls, head, sent=None, received=None):
-        """One client: greets, pings singly, scans, stops. Returns the frames of all pings that were asked for."""
+        """One client: greets, pings singly, scans, stops. Returns the frames of all requested pings."""
         class Noting(UdpClient):
             def write(self, data):
                 super().write(data)
@@ -97,7 +97,7 @@ class Recording(HeadCase):
             self.assert_ping(got, SCAN, angle)
 
     def pings_recorded(self):
-        """As the daemon counts them; the scan may have gone on until it was told to stop."""
+        """The daemon's count; the scan may have gone on until the stop command arrived."""
         line = self.daemon.wait_for_line("head=ping360 ends: ", 1)
         count = int(line.split("pings_sent=")[1].split()[0])
         self.assertGreaterEqual(count, len(self.live))
@@ -116,7 +116,7 @@ class Recording(HeadCase):
         self.assertEqual((head["device"], head["name"], head["id"], head["scanning"]), ("ping360", "ping360", 2, True))
 
     def test_info_draws_turns(self):
-        """Singly ordered pings and those of the scan make one turn; the next begins where it has come round."""
+        """Single pings and those of the scan make one turn; the next turn begins when an angle repeats."""
         folder = os.path.join(self.folder, "pictures")
         self.info(self.mcap, "--png", folder)
         self.assertEqual(sorted(os.listdir(folder)), ["ping360_000000.png", "ping360_000001.png"])
@@ -153,7 +153,7 @@ class Recording(HeadCase):
     # ---- sonard render
 
     def rendered(self, config):
-        """Samples by line, and the JSON, of the first turn from where the demo stands."""
+        """Samples by line, and the JSON, of the first turn at the demo's pose."""
         out = os.path.join(self.folder, "rendered-" + os.path.basename(config))
         if not os.path.isdir(out):
             way = os.path.join(self.folder, "way.csv")
@@ -170,7 +170,7 @@ class Recording(HeadCase):
         return [line.tobytes() for line in samples.T], sidecar
 
     def check_walls(self, lines, sidecar):
-        """The echo of a wall begins at its range, within a sample and the pulse's length: it is nothing before."""
+        """The echo of a wall begins at its range, within a sample and the pulse's length; before it there is no echo."""
         step_m = sidecar["geometry"]["line_step_m"]
         pulse_m = 53e-6 * sidecar["geometry"]["sound_speed_mps"] / 2
         for angle, range_m in WALLS_M.items():
@@ -191,7 +191,7 @@ class Recording(HeadCase):
         self.check_walls(lines, sidecar)
 
     def test_walls_are_at_their_range_in_water_of_another_speed(self):
-        """Fresh water of 15 degrees has 1466 m/s: a client that counts in 1500 m/s sees walls 2 % too far."""
+        """Fresh water of 15 degrees has 1466 m/s: a client that assumes 1500 m/s shows walls 2 % too far."""
         lines, sidecar = self.rendered(self.demo_with("computed", water="sound_speed_mps: computed"))
         self.assertAlmostEqual(sidecar["geometry"]["sound_speed_mps"], 1466, delta=1)
         self.assertAlmostEqual(sidecar["geometry"]["line_step_m"], 444 * 25e-9 * 1466 / 2, delta=1e-5)

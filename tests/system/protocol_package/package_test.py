@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Installs the protocol libraries into a temporary folder and builds programs against them, as users do.
 
-What the example has to say is in section 10 of docs/protocols/gemini.md, whose bytes it is given.
+The example must print section 10 of docs/protocols/gemini.md, whose bytes it reads.
 """
 
 import argparse
@@ -21,7 +21,7 @@ CMAKE = COMPILER = BUILD = None
 
 
 def run(*command, **options):
-    """What a command prints; its output is in the failure if it fails."""
+    """Returns the command's output, or fails with it."""
     result = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=100, **options)
     if result.returncode:
         raise AssertionError(f"{command} ended with {result.returncode}:\n{result.stdout}{result.stderr}")
@@ -34,7 +34,7 @@ class Package(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         run(CMAKE, "--install", BUILD, "--component", "protocol", "--prefix", self.folder / "first")
-        # What is installed may be moved, and knows nothing of the tree that it was built in.
+        # An installed package can be moved and does not depend on its build tree.
         self.prefix = self.folder / "prefix"
         (self.folder / "first").rename(self.prefix)
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""clients/python against the daemon, on a machine of its own (a network namespace).
+"""clients/python with the daemon, on a machine of its own (a network namespace).
 
     python_client_test.py --programs DIR [TestCase.test_name ...]
 
-Pings are compared by CRC-32 with what the renderer handed over, and by range and bearing with the world: a sphere of
-0.5 m at (3, 2, 0), tests/data/system/sphere_to_port.sdf.
+Pings are compared by CRC-32 with the renderer's output, and by range and bearing with the world: a sphere of 0.5 m at
+(3, 2, 0), tests/data/system/sphere_to_port.sdf.
 """
 
 import argparse
@@ -58,7 +58,7 @@ class PythonClient(OwnMachine):
         return daemon
 
     def expect_rendered(self, ping):
-        """As the renderer handed it over, bit by bit."""
+        """The renderer's output, bit by bit."""
         with open(os.path.join(self.folder.name, "bow.csv"), encoding="utf-8") as file:
             rendered = {int(row["transmit_us"]): row["crc32"] for row in csv.DictReader(file)}
         samples = ping.samples if ping.samples.dtype == numpy.uint8 else ping.samples.astype(">u2")
@@ -77,7 +77,7 @@ class PythonClient(OwnMachine):
 
     def test_readme_in_a_virtual_environment(self):
         self.start()
-        # Building leaves files beside the source.
+        # Building writes files into the source folder, so it uses a copy.
         shutil.copytree(os.path.join(SOURCE, "clients", "python"), os.path.join(self.folder.name, "source"))
         venv = os.path.join(self.folder.name, "venv")
         for command in ([sys.executable, "-m", "venv", "--system-site-packages", venv],
@@ -145,7 +145,7 @@ class PythonClient(OwnMachine):
         self.expect_damage(log, written, most_lost=3)  # they share a chunk
 
     def expect_damage(self, log, written, most_lost):
-        """A log with a wrong bit: what is lost at most, and that the reader says so."""
+        """The largest loss for a log with a wrong bit; the reader must warn of any loss."""
         with open(log, "rb") as file:
             whole = file.read()
         for at in [*range(0, 200, 3), *range(200, len(whole) - 400, len(whole) // 40), *range(len(whole) - 400, len(whole), 5)]:
@@ -198,7 +198,7 @@ heads:
 
 
 class MicronBytes(unittest.TestCase):
-    """Against frames that public drivers sent and read (tests/data/micron/notes.md)."""
+    """Uses frames that public drivers sent and read (tests/data/micron/notes.md)."""
 
     def fixture(self, name):
         with open(os.path.join(SOURCE, "tests", "data", "micron", name + ".hex"), encoding="utf-8") as file:

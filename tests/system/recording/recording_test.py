@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the daemon records, against what its clients received, by readers that share no code with it.
+"""Compares the daemon's logs with the data that its clients received, with readers that share no code with the daemon.
 
     recording_test.py --programs DIR --npm DIR --slow-disk FILE [--kills N] [--seconds N] [TestCase.test_name ...]
 """
@@ -37,8 +37,8 @@ NPM = None
 SLOW_DISK = None
 KILLS = 50
 SECONDS = 10
-# What a client has for so long is off the recorder's queue, however busy the machine (docs/logs.md 5): a few milliseconds
-# are usual.
+# Data that a client received this long ago has left the recorder's queue even on a busy machine (docs/logs.md 5). A few
+# milliseconds are usual.
 QUEUE_S = 0.5
 START_S = 60
 PATIENCE_S = 60
@@ -105,7 +105,7 @@ def rle_decode(data, beams):
 
 
 class WirePing:
-    """A ping put together from its datagrams, of any width and coding (docs/protocols/gemini.md 6)."""
+    """A ping from its datagrams, of any width and coding (docs/protocols/gemini.md 6)."""
 
     def __init__(self, head, time_ns):
         self.head = wire.Ping(head)
@@ -145,8 +145,8 @@ def pings_of(packets):
 
 
 def collect(packets):
-    """The head and the lines of every ping of a capture of less than 256 pings, whatever was lost, doubled or came out of
-    order; by ping ID."""
+    """The head and the lines of every ping, by ping ID, of a capture of less than 256 pings that may have lost, duplicated
+    and reordered datagrams."""
     heads, lines = {}, collections.defaultdict(dict)
     for packet in packets:
         kind = wire.message_type(packet.payload)
@@ -174,7 +174,7 @@ class RecordingTest(unittest.TestCase):
     # ---- Set-up ----
 
     def start_daemon(self, recording="", seed=513, noisy=True, more="", play=None, wrapper=()):
-        """Runs the configuration, or plays a log with it."""
+        """Runs the configuration, or replays a log with it."""
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(CONFIG.format(world=WORLD, directory=self.logs, recording=recording, head=HEAD_ADDRESS, seed=seed,
@@ -192,14 +192,14 @@ class RecordingTest(unittest.TestCase):
                               str(PATIENCE_S), "--range", str(range_m), *options)
 
     def start_scan(self, raw, *options, way=None):
-        """A client of the Micron; its lines as they came go to a file."""
+        """A client of the Micron; writes its received lines to a file."""
         way = way or ["--tcp", f"{HEAD_ADDRESS}:4001"]
         where = self.lab.topside if way[0] == "--tcp" else self.lab.head
         return self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--raw", raw, "--quiet", "--wait",
                               "30", *options)
 
     def scanned(self, raw):
-        """What the client got."""
+        """The lines that the client received."""
         with open(raw, encoding="utf-8") as file:
             return [json.loads(text) for text in file]
 
@@ -208,7 +208,7 @@ class RecordingTest(unittest.TestCase):
         self.assertEqual(code, 0, daemon.tail())
 
     def received(self, viewer):
-        """What the client says of its complete pings."""
+        """The complete pings in the client's log."""
         pings = [key_values(line) for line in viewer.output().splitlines() if line.startswith("ping ")]
         return [ping for ping in pings if ping["lines_lost"] == "0" and "crc32" in ping]
 
@@ -218,7 +218,7 @@ class RecordingTest(unittest.TestCase):
         return sorted(glob.glob(os.path.join(self.logs, "*" + suffix)))
 
     def check_folder(self):
-        """Everything is closed, and nothing else is there."""
+        """All files are closed, and there are no other files."""
         for name in os.listdir(self.logs):
             self.assertRegex(name, r"^log_\d{4}-\d\d-\d\d-\d{6}(_bow)?(-\d+)?\.(glf|mcap|pcapng)$")
 
@@ -230,20 +230,20 @@ class RecordingTest(unittest.TestCase):
         return images
 
     def mcap_files(self):
-        """The messages of each."""
+        """The messages of each file."""
         output = subprocess.run(["node", "--max-old-space-size=1500", "read_mcap.js", *self.files(".mcap")], cwd=NPM,
                                 check=True, capture_output=True).stdout
         return [file["messages"] for file in json.loads(output)]
 
     def mcap_messages(self):
-        """Of all files, by kind."""
+        """The messages of all files, by kind."""
         by_kind = collections.defaultdict(list)
         for message in sum(self.mcap_files(), []):
             by_kind[message["kind"]].append(message)
         return by_kind
 
     def frames_with(self, condition):
-        """Numbers of the frames that tshark shows."""
+        """Numbers of the frames that match in tshark."""
         scripts = [f"-Xlua_script:{os.path.join(DISSECTORS, name)}" for name in ("sonard_gemini.lua", "sonard_micron.lua")]
         # From 4.4 on, Wireshark runs no scripts for root.
         as_nobody = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
@@ -260,7 +260,7 @@ class RecordingTest(unittest.TestCase):
 
 class Logs(RecordingTest):
     def check_pings(self, viewer, daemon, count):
-        """Every ping that was received is in every log, once, with its pixels, bearings, times and pose."""
+        """Every received ping is in every log, once, with its pixels, bearings, times and pose."""
         received = self.received(viewer)
         self.assertEqual(len(received), count)
         images, messages = self.glf_images(), self.mcap_messages()
@@ -315,12 +315,12 @@ class Logs(RecordingTest):
         self.assertAlmostEqual(image.header.unix_s, unix_ns / 1e9, delta=2e-6)
         self.assertAlmostEqual(image.header.time_s - first[1], (transmit_us - first[0]) / 1e6, delta=3e-6)
         self.assertLess(abs(time.time() - unix_ns / 1e9), 120 + 2 * SECONDS)
-        # The head of a ping leaves after the pulse, and is noted when it has left.
+        # The head of a ping leaves after the pulse, and its time in the log is when it left.
         self.assertGreaterEqual(on_wire.time_ns, unix_ns)
         self.assertLess(on_wire.time_ns - unix_ns, 2e9)
 
     def check_pose(self, message, logged):
-        """The pose in the log of the daemon is the one that was rendered."""
+        """The pose in the daemon's log is the rendered one."""
         position = [float(part) for part in logged.split("position_m=[")[1].split("]")[0].split(", ")]
         for said, rendered in zip(message["sonar"], position):
             self.assertAlmostEqual(said, rendered, delta=0.00051)
@@ -346,7 +346,7 @@ class Logs(RecordingTest):
         for image in messages["image"]:
             self.assertEqual(posed[image["transmit_ns"]], image["vehicle"])
         self.assertIn("dropped_images=0 dropped_wire_pieces=0", daemon.output())
-        # Both directions, byte for byte the same in MCAP and capture.
+        # Both directions have the same bytes in MCAP and capture.
         self.assertEqual(
             [(message["to_client"], message["log_time"], message["crc32"]) for message in messages["wire"]],
             [(packet.target[1] == REPORT_PORT, str(packet.time_ns), zlib.crc32(packet.payload))
@@ -367,7 +367,7 @@ class Logs(RecordingTest):
                 self.check_pings(viewer, daemon, 8)
 
     def test_target_to_port_is_on_the_port_side(self):
-        """A sphere of radius 0.5 m at (3, 2) m, x forward and y to port: 33.69 degrees to port, 8 to either side."""
+        """A sphere of radius 0.5 m at (3, 2) m, x forward and y to port: 33.69 degrees to port, 8 degrees to either side."""
         daemon = self.start_daemon(noisy=False)
         viewer = self.start_viewer("--pings", "2", "--gain", "100")
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
@@ -382,7 +382,7 @@ class Logs(RecordingTest):
                 self.assertAlmostEqual(math.degrees(table[beam]), 33.69, delta=9)
 
     def test_an_mcap_file_without_wire_bytes_that_is_compressed(self):
-        """It has every ping, sonard reads it, and a client gets the same images when it is replayed."""
+        """It has every ping, sonard reads it, and its replay gives a client the same images."""
         daemon = self.start_daemon(recording=", mcap_wire_bytes: false, mcap_compression: zstd")
         viewer = self.start_viewer("--pings", "6")
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
@@ -426,7 +426,7 @@ class Logs(RecordingTest):
                 self.assertTrue(any((bits, bins, bearing) in recorded for bearing in ways_round), line["number"])
         transports = {message["transport"] for message in messages["wire"] if "/stern/" in message["topic"]}
         self.assertEqual(transports, {"TRANSPORT_TCP", "TRANSPORT_SERIAL"})
-        # The streams of the capture are those of the MCAP file.
+        # The streams of the capture equal those of the MCAP file.
         for transport, port, server in (("TRANSPORT_TCP", 4001, HEAD_ADDRESS), ("TRANSPORT_SERIAL", 4001, "192.0.2.1")):
             said = "".join(message["data"] for message in messages["wire"]
                            if message["transport"] == transport and message["to_client"])
@@ -452,7 +452,7 @@ class Logs(RecordingTest):
         self.assertGreaterEqual(len(self.frames_with("micron_sonar.head_data.bearing")), 10)
 
     def test_a_run_of_both_heads(self):
-        """As long as one likes: all that was received is in logs that every reader takes."""
+        """A run of any length: all received data is in the logs, and every reader accepts them."""
         need("tshark")
         daemon = self.start_daemon(more=MICRON)
         raw = os.path.join(self.folder.name, "raw")
@@ -484,14 +484,14 @@ class Logs(RecordingTest):
 
 
 class Replays(RecordingTest):
-    """A log of both heads is played back as both heads, and recorded again."""
+    """A log of both heads is replayed as both heads, and recorded again."""
 
     SAME = ("bins", "bits", "bearing_rad", "metres_per_bin", "gain_percent", "device_id", "wire_line")
     ON_THE_WIRE = ("bearing", "bins", "range_scale", "control", "sweep", "gain", "ad_span", "ad_low", "ad_interval",
                    "left_limit", "right_limit", "step", "status")
 
     def record(self, number, scan_options, pings=0, play=None):
-        """Serves and records until the clients have what they want; what the Micron's client got, and the log's messages."""
+        """Serves and records until the clients are done. Returns the daemon, the Micron client's lines, the logs' messages."""
         self.logs = os.path.join(self.folder.name, f"logs{number}")
         raw = os.path.join(self.folder.name, f"raw{number}")
         daemon = self.start_daemon(more=MICRON, play=play)
@@ -512,7 +512,7 @@ class Replays(RecordingTest):
         self.assertEqual([[line[key] for key in self.SAME] for line in played],
                          [[line[key] for key in self.SAME] for line in lines])
         self.assertEqual([image["crc32"] for image in again["image"]], [image["crc32"] for image in first["image"]])
-        # On time, but for what a busy machine adds to some.
+        # On time, except for the delays of a busy machine.
         shifts_ms = sorted((int(now["transmit_ns"]) - int(then["transmit_ns"])) / 1e6 for now, then in zip(played, lines))
         self.assertLess(shifts_ms[len(shifts_ms) // 4] - shifts_ms[0], 10)
 
@@ -574,7 +574,7 @@ class Faults(RecordingTest):
         head = key_values(next(line for line in daemon.lines if "head=bow ends:" in line))
         recorder = key_values(next(line for line in daemon.lines if "recording ends:" in line))
 
-        # Every ping that was begun, by the count of the daemon: of those that it did not finish each client left one at most.
+        # The daemon counts every ping that began; each client left at most one unfinished.
         count = len(messages["image"])
         self.assertEqual(int(recorder["images"]), count)
         self.assertEqual(recorder["dropped_images"], "0")
@@ -597,8 +597,8 @@ class Faults(RecordingTest):
             if len(lines[number]) == image.lines:
                 whole.add(rendered[number])
         self.assertLessEqual(set(heads), set(numbers))
-        # The link loses a head in twenty, a client that is gone asks for none again, and one that is there may lose what it
-        # asks for until the next ping begins. What has been compared above is nearly every ping.
+        # The link loses one head in twenty. A client that has gone requests no lost head again, and a connected client may lose
+        # the repeated head until the next ping begins. So nearly all pings were compared above.
         self.assertGreaterEqual(len(heads), 0.9 * count)
         self.assertLessEqual(set(received), whole)
         self.assertGreaterEqual(len(received), 45)
@@ -606,9 +606,9 @@ class Faults(RecordingTest):
 
 class Kills(RecordingTest):
     def end_lives(self, live, lives, daemon_options):
-        """kill -9 at moments drawn from a seed. What a life leaves is recovered by the daemon of the next, which is killed in
-        its turn, also while it recovers and packs. `live` waits until there is something to kill, says what its client got
-        when that is over, and gives all that up."""
+        """kill -9 at random times from a seed. The daemon of the next life recovers the logs, and is killed itself, also
+        while it recovers and packs. `live` starts a life and waits until there is something to kill. It returns the daemon,
+        a client, and a function that returns the client's data."""
         moments = random.Random(20261120)
         seen = []
         for life in range(lives):
@@ -629,7 +629,7 @@ class Kills(RecordingTest):
         return seen
 
     def check_kept(self, kind, recorded, seen):
-        """In a log of this kind is the beginning of every life, and at least what a client had long before the kill."""
+        """A log of this kind holds the beginning of every life, at least up to the data that a client had long before."""
         recorded = set(recorded)
         lost = []
         for life, (pings, long_before) in enumerate(seen):
@@ -640,7 +640,7 @@ class Kills(RecordingTest):
         print(f"{kind}: {len(recorded)}, lost of a life: {collections.Counter(lost)}")
 
     def test_every_log_opens_and_holds_every_ping_but_those_in_the_queue(self):
-        """From before the first ping to some thirty pings later."""
+        """From before the first ping to about 30 pings later."""
         def live(life):
             viewer = self.start_viewer("--continuous", "15", "--compression", "2")  # hears the first status
             daemon = self.start_daemon(seed=life + 1)  # so that no two lives make one image
@@ -656,7 +656,7 @@ class Kills(RecordingTest):
             self.check_kept(kind, recorded, seen)
 
     def test_every_log_opens_and_holds_every_line_but_those_in_the_queue(self):
-        """From before the first line of a Micron to some tens of lines later."""
+        """From before the first line of a Micron to tens of lines later."""
         def live(life):
             raw = os.path.join(self.folder.name, f"raw{life}")
             daemon = self.start_daemon(seed=life + 1, more=MICRON)
@@ -713,7 +713,7 @@ class FullDisk(RecordingTest):
         self.assertGreater(int(ends["logs_failed"]), 0)
         self.assertGreater(int(ends["images_lost"]), 0)
 
-        # With room again the next daemon ends what this one could not.
+        # When there is room again, the next daemon finishes the files of this one.
         subprocess.run(["mount", "-o", "remount,size=400m", self.logs], check=True)
         self.end_daemon(self.start_daemon())
         self.check_folder()
@@ -727,7 +727,7 @@ class FullDisk(RecordingTest):
 class SlowDisk(RecordingTest):
     def end_with_a_disk_of(self, bytes_per_s, deadline_s):
         """@return the daemon, and how long it took to end"""
-        # A sanitizer would else insist that its own library comes first.
+        # Without this option of ASan, its own library would have to be the first.
         wrapper = ["env", f"LD_PRELOAD={SLOW_DISK}", f"SLOW_DISK_BYTES_PER_S={bytes_per_s}",
                    "ASAN_OPTIONS=verify_asan_link_order=0"]
         daemon = self.start_daemon(f", stop_deadline_s: {deadline_s}", wrapper=wrapper)
@@ -748,7 +748,7 @@ class SlowDisk(RecordingTest):
         self.check_folder()
 
     def test_a_disk_that_is_fast_enough_gets_everything(self):
-        # A busy machine may be seconds behind with compressing.
+        # On a busy machine, compression may lag by seconds.
         daemon = self.end_with_a_disk_of(1_000_000_000, deadline_s=PATIENCE_S)
         self.assertNotIn("not on the disk", daemon.output())
         self.assertIn("slow disk: exit()", daemon.output(), "it ends as programs do")

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A simulator for tests: a vehicle that moves evenly along x by its own clock, told by TCP or UDP.
+"""A simulator for tests: a vehicle that moves evenly along x by its own clock, and sends its poses by TCP or UDP.
 
     publish_stamps.py --modules DIR --to HOST:PORT [--udp] STEP ...
 
 Steps, one after the other:
     stand:SECONDS       the clock stands still, and the last pose is sent again and again
     silent:SECONDS      nothing is sent
-    run:SECONDS@RATE    so many seconds of the clock, RATE times as fast as real time (0: as fast as it goes)
-    set:SECONDS         the clock is set; the next step sends from there on
-Ends when all steps are done and, by TCP, taken.
+    run:SECONDS@RATE    seconds of the clock, RATE times as fast as real time (0: as fast as possible)
+    set:SECONDS         sets the clock; the next step continues from there
+Ends when all steps are done and, by TCP, received.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Pings by the clock of a simulator that is slow, fast, paused, reset or set: the same stamps give the same images.
+"""Pings by the clock of a simulator that is slow, fast, paused, reset or set: equal stamps give equal images.
 
     simulated_time_test.py --programs DIR --modules DIR [TestCase.test_name ...]
 """
@@ -57,7 +57,7 @@ MICRON = """
 
 
 def first_echo_m(path):
-    """Range of the first bin above half of the maximum in the beam ahead, of an image of 8 bit."""
+    """Range of the first bin above half of the maximum in the beam ahead, of an 8-bit image."""
     image = numpy.load(path)
     column = image[:, image.shape[1] // 2]
     return (column > column.max() / 2).argmax() * wire.line_step_m(1500.0)
@@ -67,8 +67,8 @@ class SimulatedTime(link_test.LinkTest):
     life = 0  # daemons started by this test
 
     def run_daemon(self, steps, clock="lock_step", noisy=True, transport="tcp", posecast=()):
-        """A daemon and a client that listens; then a simulator that takes these steps, after a stand at time 0 in which the
-        client asks for its pings, or posecast with these arguments. Returns [(time of the pose in ns, CRC-32)] of the pings."""
+        """A daemon and a client that listens; then a simulator with these steps, after standing at time 0 while the client
+        requests its pings, or posecast with these arguments. Returns [(time of the pose in ns, CRC-32)] of the pings."""
         head = self.head_config(noisy=False).replace(f"directory: {self.folder.name}", f"directory: {self.next_dump()}")
         if noisy:
             head = head.replace("speckle: off", "speckle: ou").replace("noise: false", "noise: true")
@@ -119,7 +119,7 @@ class SimulatedTime(link_test.LinkTest):
         self.wait_for_last_ping()
 
     def wait_while_pinging(self, publisher):
-        """A slow machine takes as long as it takes; one that makes no ping for a long time has stopped."""
+        """Waits as long as pings arrive; a daemon without a ping for a long time has stopped."""
         deadline, seen = Deadline(PATIENCE_S), 0
         while publisher.running() and not deadline.over():
             time.sleep(0.2)
@@ -127,7 +127,7 @@ class SimulatedTime(link_test.LinkTest):
                 deadline, seen = Deadline(PATIENCE_S), len(self.pings())
 
     def wait_for_last_ping(self):
-        """The publisher is done when its last pose is taken; a few pings may be on their way."""
+        """The publisher ends when its last pose is received; a few pings may still come."""
         seen = -1
         while seen != len(self.pings()):
             seen = len(self.pings())
@@ -141,13 +141,13 @@ class SimulatedTime(link_test.LinkTest):
             return []
 
     def check_grid(self, pings, first_ms, last_ms):
-        """A ping every period, none left out."""
+        """A ping every period, without gaps."""
         times = [time_ns for time_ns, _ in pings]
         self.assertEqual(times, list(range(first_ms * 1_000_000, last_ms * 1_000_000 + 1, PERIOD_MS * 1_000_000)))
 
     def test_the_same_stamps_give_the_same_images_however_fast(self):
         real_time = self.run_daemon(["run:1.5@1"])
-        # The last echo of 7 m is back after 9.3 ms, so the last ping of 1.5 s is that of 1.44 s.
+        # The last echo of 7 m is back after 9.3 ms, so the last ping in 1.5 s is at 1.44 s.
         self.check_grid(real_time, 0, 1440)
         self.assertEqual(len({crc for _, crc in real_time}), len(real_time), "noise and motion change every image")
         self.assertLessEqual({crc for _, crc in real_time}, self.received, "the client has them all")
@@ -166,7 +166,7 @@ class SimulatedTime(link_test.LinkTest):
         self.assertEqual(self.run_daemon([], posecast=[*cast, "--speed", "1000"]), slow)
 
     def test_a_publisher_by_tcp_waits_for_the_pings(self):
-        """45 s of simulated time at once are 4500 poses, of which 4096 are kept."""
+        """45 s of simulated time at once are 4500 poses; the history keeps 4096."""
         pings = self.run_daemon(["run:45@0"], noisy=False)
         self.check_grid(pings, 0, 44940)
         self.assertNotIn("left out", self.daemon.output())
@@ -175,7 +175,7 @@ class SimulatedTime(link_test.LinkTest):
         for time_ns, _ in self.run_daemon(["run:2@2"], noisy=False)[::6]:
             number = [t for t, _ in self.pings()].index(time_ns)
             range_m = first_echo_m(os.path.join(self.dump, f"bow-{number:08}.npy"))
-            # One line, and what the footprint of a sample adds.
+            # One line, plus the footprint of a sample.
             self.assertAlmostEqual(range_m, WALL_M - SPEED_MPS * time_ns * 1e-9, delta=0.02)
 
     def test_paused_it_says_nothing_but_its_status(self):
@@ -206,7 +206,7 @@ class SimulatedTime(link_test.LinkTest):
     def test_a_micron_keeps_the_same_time(self):
         slow = self.run_micron(["run:2@0.5"])
         times = [time_ns for time_ns, _ in slow]
-        # 300 bins of 23 mm, one line after the other on a line of 115200 baud (docs/protocols/micron.md 8.4).
+        # 300 bins of 23 mm, one line after another over a serial line of 115200 baud (docs/protocols/micron.md 8.4).
         self.assertGreater(len(slow), 40)
         self.assertEqual(len({b - a for a, b in zip(times, times[1:])}), 1, "evenly")
         self.assertEqual(self.run_micron(["run:2@4"]), slow)
@@ -217,7 +217,7 @@ class SimulatedTime(link_test.LinkTest):
 
 
 class LockStepExample(OwnMachine):
-    """clients/examples/lock_step.py beside configs/lock-step.yaml, as docs/ci.md has it."""
+    """clients/examples/lock_step.py with configs/lock-step.yaml, as in docs/ci.md."""
 
     def one_run(self):
         daemon = Program([os.path.join(link_test.PROGRAMS, "sonard"), "run", os.path.join(SOURCE, "configs", "lock-step.yaml")], "sonard")

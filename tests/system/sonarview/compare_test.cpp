@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sonarview compare` as a user meets it: what it prints, what it refuses, how it ends.
+// `sonarview compare` as a process: its output, its errors and its exit codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -30,7 +30,7 @@ FakeHead::FakeHead(server::SerialLinkConfig link, Settings settings)
       settings_(std::move(settings)),
       device_(settings_.device, clock_.now() - seconds{20}) {
   open();
-  // The line comes back where it was.
+  // After vanishing, the line comes back at the same addresses.
   for (std::size_t i = 0; i < link_config_.tcp.size(); ++i) {
     link_config_.tcp[i].bind = link_->addresses().tcp[i];
     tcp_ = endpoint_text(link_config_.tcp[i].bind);
@@ -41,7 +41,7 @@ FakeHead::FakeHead(server::SerialLinkConfig link, Settings settings)
   for (const std::string& path : link_->addresses().pty) {
     tty_ = link_config_.pty.front().link.empty() ? path : link_config_.pty.front().link.string();
   }
-  const Actions unheard = device_.step(clock_.now(), TimePassed{});  // said before anybody could hear it
+  const Actions unheard = device_.step(clock_.now(), TimePassed{});  // no client is connected yet
   arm_timer(unheard.wake_at);
   thread_ = std::thread([this] { io_.run(); });
 }

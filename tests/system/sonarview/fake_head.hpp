@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Micron on a real serial line, whose echoes the test makes up.
+// A Micron on a real serial line; the test supplies its echoes.
 #pragma once
 
 #include <atomic>
@@ -20,8 +20,8 @@
 
 namespace sonard::test {
 
-/// The head of protocol/micron on one end of a SerialLink, on a thread of its own. It was powered up long
-/// ago, so it is centred, and it pings as fast as it is asked to.
+/// The head of protocol/micron on one end of a SerialLink, on its own thread. It has been powered for long,
+/// so it is centred. It pings as fast as clients request.
 class FakeHead {
  public:
   using Bytes = std::vector<std::uint8_t>;
@@ -30,11 +30,11 @@ class FakeHead {
     micron::DeviceConfig device = quick();
     /// One sample, 0..255. Called on the head's thread.
     std::function<std::uint8_t(int bearing, int bin)> echo;
-    /// What becomes of a frame of the head on its way: pieces, which then come a millisecond apart.
+    /// Splits a frame of the head on the line; the parts arrive a millisecond apart.
     std::function<std::vector<Bytes>(const Bytes& frame)> carry = [](const Bytes& frame) {
       return std::vector<Bytes>{frame};
     };
-    /// Before this ping the line vanishes, and comes back `away` later.
+    /// Before this ping the line vanishes; it comes back after `away`.
     std::optional<std::uint64_t> vanish_at_ping = std::nullopt;
     std::chrono::milliseconds away{1500};
   };

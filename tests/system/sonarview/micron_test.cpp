@@ -30,12 +30,12 @@ using testing::Not;
 
 constexpr int bins = 40;
 
-/// Differs from bin to bin and from step to step of 32 units.
+/// Changes with each bin and each step of 32 units.
 std::uint8_t echo(int bearing, int bin) {
   return static_cast<std::uint8_t>(bearing / 32 + 3 * bin);
 }
 
-/// Pieces of 1 to 60 bytes, and now and then bytes that nobody sent, many of them looking like frames.
+/// Parts of 1 to 60 bytes, and sometimes additional bytes, many of which look like frames.
 std::function<std::vector<FakeHead::Bytes>(const FakeHead::Bytes&)> poor_line() {
   return [random = std::mt19937(7)](const FakeHead::Bytes& frame) mutable {
     std::vector<FakeHead::Bytes> pieces;
@@ -105,7 +105,7 @@ class SonarviewMicron : public testing::Test {
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  /// Every sample of a picture whose column k is the line at `from + k * step`.
+  /// Checks every sample of a picture whose column k is the line at `from + k * step`.
   static void expect_polar(const std::string& file, int columns, int from, int step) {
     const cv::Mat polar = cv::imread(file, cv::IMREAD_UNCHANGED);
     ASSERT_EQ(polar.type(), CV_8UC1) << file;
@@ -186,7 +186,7 @@ TEST_F(SonarviewMicron, a_sector_through_astern_by_udp) {
                                                             "162", "-162", "--out", path("out")} +
                                    forty_bins_);
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  // 162 degrees to starboard is 3200 + 2880 units, 36 degrees on is 320; 640 units are 20 steps.
+  // 162 degrees to starboard is 3200 + 2880 units; 36 degrees further is 320. 640 units are 20 steps.
   EXPECT_EQ(values_of(result.out, "scan").at("lines_per_turn"), "21");
   EXPECT_EQ(values_of(result.out, "summary").at("turns"), "2");
   expect_polar(path("out/polar-last.png"), 21, 6080, 32);
@@ -249,7 +249,7 @@ TEST_F(SonarviewMicron, goes_on_where_it_was_when_a_tcp_server_comes_back) {
   EXPECT_EQ(summary.at("reconnects"), "1");
   EXPECT_EQ(summary.at("turns"), "2");
   EXPECT_EQ(summary.at("head_commands"), "1") << "the head had kept its parameters";
-  // What was on the way when the line went is gone, and said to be missing.
+  // Lines in transit when the serial line vanished are lost, and reported as missing.
   EXPECT_GE(std::stoi(summary.at("lines_missed")), 1);
   EXPECT_EQ(std::stoi(summary.at("lines")) + std::stoi(summary.at("lines_missed")), 400);
   EXPECT_EQ(result.exit_code, 4);
@@ -295,7 +295,7 @@ TEST_F(SonarviewMicron, a_line_that_is_not_there_has_no_head) {
 
 TEST_F(SonarviewMicron, reboots_a_head_first) {
   FakeHead::Settings settings{.echo = echo};
-  settings.device.least_centring_time = 2s;  // long enough to be said
+  settings.device.least_centring_time = 2s;  // long enough for the message
   const FakeHead head(by_tcp(), settings);
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--reboot", "--lines", "10"} + forty_bins_);

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the page's server answers to monitors and viewers, on a machine of its own (a network namespace).
+"""Answers of the page's server to monitors and viewers, on a machine of its own (a network namespace).
 
     web_test.py --programs DIR [TestCase.test_name ...]
 
-Requests are written byte by byte, and viewers are those of another implementation (python3-websockets).
+Requests are written byte by byte, and the viewers use another implementation (python3-websockets).
 """
 
 import argparse
@@ -92,7 +92,7 @@ class Web(OwnMachine):
         status, text, _ = self.ask("GET", "/api/world")
         body = json.loads(text)["bodies"][0]
         self.assertEqual(body["name"], "sphere")
-        # A sphere of 0.5 m at (3, 2, 0): its outline is as wide as that.
+        # The box around a sphere of 0.5 m at (3, 2, 0).
         self.assertAlmostEqual(body["min_m"][0], 2.5, delta=0.01)
         self.assertAlmostEqual(body["max_m"][1], 2.5, delta=0.01)
         self.assertEqual(self.ask("HEAD", "/")[0], 200)
@@ -222,7 +222,7 @@ class Web(OwnMachine):
         self.assertEqual(self.ask("GET", "/health")[0], 200)
 
     def raw_answer(self, request):
-        """The first line of the answer to these bytes, though more of them wait to be read."""
+        """The first line of the answer to these bytes, even if the server has not read all of them."""
         with socket.create_connection(("127.0.0.1", PORT), timeout=PATIENCE_S) as raw:
             raw.sendall(request)
             answer = b""
@@ -286,7 +286,7 @@ class Web(OwnMachine):
                     seen[index] = header["number"]
 
         async def deaf(seconds):
-            """Asks for a thousand pings and reads none of them."""
+            """Requests a thousand pings and reads none."""
             async with websockets.connect(f"ws://127.0.0.1:{PORT}/api/live", max_queue=1, close_timeout=0.1) as live:
                 for _ in range(1000):
                     await live.send('{"type": "want", "head": 0, "max_rows": 4000}')
@@ -305,7 +305,7 @@ class Web(OwnMachine):
         self.assertRegex(client.output(), r"summary pings_complete=[1-9].* lines_missing=0 ")
 
     def test_health_beside_128_idle_sockets_and_twenty_viewers(self):
-        """Two peers have all places of viewers, and one of them wants pings and pictures besides."""
+        """Two peers take all places for viewers, and one of them also requests pings and pictures."""
         self.start()
         self.client(600)
 
@@ -402,7 +402,7 @@ class Web(OwnMachine):
             time.sleep(0.2)
 
     def test_sigterm_does_not_wait_for_sixty_viewers(self):
-        """Of pictures for Foxglove; half of the viewers never read."""
+        """Viewers of pictures for Foxglove; half of them never read."""
         daemon = self.start()
         self.client(600)
 
