@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A daemon in the world of two walls and a floor, and what its image says about where the vehicle is."""
+"""A daemon in a world of two walls and a floor; its image shows the pose of the vehicle."""
 
 import math
 import os
@@ -36,7 +36,7 @@ UDP_POSES = """
 """
 
 PORT_MOST, AHEAD, STARBOARD_MOST = 0, 128, 255  # beams
-# Bearings between which the outermost beams hear (docs/frames-and-units.md).
+# Bearings of the outer and inner edges of the outermost beams (docs/frames-and-units.md).
 OUTER_RAD = math.radians(60)
 INNER_RAD = math.asin(254 / 256 * math.sin(OUTER_RAD))
 
@@ -55,7 +55,7 @@ class WallTest(link_test.LinkTest):
         self.addCleanup(self.topside.close)
 
     def ranges(self, beams):
-        """Of the first echo in each beam, metres, 0 without one; None without a ping: there is no pose yet."""
+        """Range of the first echo in each beam, metres; 0 without an echo. None without a ping, as there is no pose yet."""
         self.topside.send(wire.ping_config(513, lines=1200, spreading=293))  # 10 m
         try:
             ping = self.topside.next_ping(seconds=2)
@@ -65,13 +65,13 @@ class WallTest(link_test.LinkTest):
         return [next((i * step_m for i in range(ping.count) if ping.lines[i][beam] > 0), 0) for beam in beams]
 
     def check_ranges(self, expected_m):
-        """{beam: metres, 0 for open water}. The first pings may still be of the pose before."""
+        """{beam: metres, 0 for open water}. The first pings may still show the pose before."""
         beams, wanted = list(expected_m), list(expected_m.values())
         deadline = Deadline(link_test.PATIENCE_S)
         seen = []
         while not deadline.over():
             seen.append(self.ranges(beams))
-            # Two lines, and what the footprint of a sample and the width of a beam add.
+            # Two lines, plus the footprint of a sample and the width of a beam.
             if len(seen) >= 3 and all(ranges and all(abs(a - b) < 0.04 for a, b in zip(ranges, wanted))
                                       for ranges in seen[-3:]):
                 return

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Poses in the axes of other simulators, through the publishers of clients/examples and clients/ros2, up to ranges in the image.
+"""Poses in the axes of other simulators, through the publishers of clients/examples and clients/ros2, to ranges in the image.
 
     examples_test.py --programs DIR --modules DIR [--unity FILE] [Examples.test_name ...]
 """
@@ -21,7 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 PORT = "14600"
 UNITY = None  # unity.exe
 
-# Where the vehicle is, always 1 m deep, and what follows for the image from where the walls are.
+# Places of the vehicle, always at 1 m depth, and the ranges of the walls in the image.
 PLACES = (
     # Heading north from 1.5 m north of the origin.
     ("north", {AHEAD: 2.5}),
@@ -31,12 +31,12 @@ PLACES = (
     ("east", {AHEAD: 3.25}),
     # Nose straight down at the origin.
     ("down", {AHEAD: 4}),
-    # Heading north at the origin, rolled by 90 degrees to starboard: the fan stands, starboard beams look down at the floor,
-    # port beams over the wall.
+    # Heading north at the origin, rolled by 90 degrees to starboard: the fan is vertical, starboard beams see the floor, port
+    # beams look over the wall.
     ("rolled", {PORT_MOST: 0, STARBOARD_MOST: 4 / math.sin(OUTER_RAD)}),
 )
 
-# One message with a twist; the daemon carries the vehicle on for 300 ms: a quarter of a circle, 1.5 m long.
+# One message with a twist: the daemon extrapolates for 300 ms, over a quarter of a circle, 1.5 m long.
 TURN = math.pi / 2 / 0.3
 AWAY = 1.5 / (math.pi / 2)  # how far a quarter of a circle leads, along and across
 TWISTS = (
@@ -51,7 +51,7 @@ TWISTS = (
 
 class Examples(walls.WallTest):
     def follow(self, command, **states):
-        """`states`: 12 numbers in the simulator's own terms for each place and twist."""
+        """`states`: 12 numbers for each place and twist, in the simulator's axes and units."""
         self.start_walls()
         for name, expected in PLACES:
             vehicle = self.lab.start(self.lab.head, *command, PORT, "0", *map(str, states[name]), *["0"] * 6)
@@ -78,21 +78,21 @@ class Examples(walls.WallTest):
         return [sys.executable, "-B", os.path.join(HERE, "python_simulators.py"), simulator]
 
     def test_ros2(self):
-        """East, north, up; roll, pitch, yaw; velocities on board."""
+        """East, north, up; roll, pitch, yaw; velocities in the vehicle's axes."""
         self.follow(self.python("ros2"), north=(0, 1.5, -1, 0, 0, 90), middle=(0, 0, -1, 0, 0, 90),
                     east=(2.75, 0.5, -1, 0, 0, 0), down=(0, 0, -1, 0, 90, 90), rolled=(0, 0, -1, 90, 0, 90),
                     turning=(0, 0, -1, 0, 0, 0, 0, 5, 0, 0, 0, TURN), diving=(0, 0, -1, 0, 0, 90, 5, 0, 0, 0, TURN, 0),
                     rolling=(0, 0, -1, 0, 0, 90, 0, 0, 5, TURN, 0, 0))
 
     def test_holoocean(self):
-        """The same, but velocities in the world."""
+        """East, north, up; roll, pitch, yaw; velocities in the world's axes."""
         self.follow(self.python("holoocean"), north=(0, 1.5, -1, 0, 0, 90), middle=(0, 0, -1, 0, 0, 90),
                     east=(2.75, 0.5, -1, 0, 0, 0), down=(0, 0, -1, 0, 90, 90), rolled=(0, 0, -1, 90, 0, 90),
                     turning=(0, 0, -1, 0, 0, 0, 0, 5, 0, 0, 0, TURN), diving=(0, 0, -1, 0, 0, 90, 0, 5, 0, 0, TURN, 0),
                     rolling=(0, 0, -1, 0, 0, 90, 0, 0, 5, TURN, 0, 0))
 
     def test_holoocean_rotations(self):
-        """Half turns and nearly so, which the places above do not have, and a rotation without any symmetry."""
+        """Half turns and nearly half turns, which are not among the places above, and rotations without symmetry."""
         from holoocean_pose import quaternion
         for q in ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0.1, 0.9, -0.3, 0.2), (0.1, -0.2, 0.9, 0.3), (-0.1, 0.3, 0.2, 0.9),
                   (0.8, -0.1, 0.3, -0.2)):
@@ -103,15 +103,15 @@ class Examples(walls.WallTest):
             self.assertAlmostEqual(abs(sum(a * b for a, b in zip(found, (w, x, y, z)))), 1, places=12, msg=q)
 
     def test_stonefish(self):
-        """North, east, down; roll, pitch, yaw; velocities on board."""
+        """North, east, down; roll, pitch, yaw; velocities in the vehicle's axes."""
         self.follow(self.program("stonefish_example"), north=(1.5, 0, 1, 0, 0, 0), middle=(0, 0, 1, 0, 0, 0),
                     east=(0.5, 2.75, 1, 0, 0, 90), down=(0, 0, 1, 0, -90, 0), rolled=(0, 0, 1, 90, 0, 0),
                     turning=(0, 0, 1, 0, 0, 90, 0, -5, 0, 0, 0, -TURN), diving=(0, 0, 1, 0, 0, 0, 5, 0, 0, 0, -TURN, 0),
                     rolling=(0, 0, 1, 0, 0, 0, 0, 0, -5, TURN, 0, 0))
 
     def test_unreal(self):
-        """East, south, up in cm; pitch, yaw, roll; velocities in the world. A turn about up is to starboard, about right the
-        nose goes down, and about forward starboard goes up."""
+        """East, south, up in cm; pitch, yaw, roll; velocities in the world's axes. A positive turn about up is to starboard,
+        about right the nose goes down, and about forward starboard goes up."""
         self.follow(self.program("unreal_example"), north=(0, -150, -100, 0, -90, 0), middle=(0, 0, -100, 0, -90, 0),
                     east=(275, -50, -100, 0, 0, 0), down=(0, 0, -100, -90, -90, 0), rolled=(0, 0, -100, 0, -90, 90),
                     turning=(0, 0, -100, 0, 0, 0, 0, -500, 0, 0, 0, -TURN),
@@ -119,14 +119,14 @@ class Examples(walls.WallTest):
                     rolling=(0, 0, -100, 0, -90, 0, 0, 0, 500, 0, TURN, 0), body=(0, -75, 0, 0, 0, 0))
 
     def test_unity(self):
-        """East, up, north; angles about these axes; velocities in the world. A turn about up is to starboard, about right the
-        nose goes down, and about forward starboard goes up."""
+        """East, up, north; angles about these axes; velocities in the world's axes. A positive turn about up is to starboard,
+        about right the nose goes down, and about forward starboard goes up."""
         need("mono")
         self.follow(["mono", UNITY], north=(0, -1, 1.5, 0, 0, 0), middle=(0, -1, 0, 0, 0, 0),
                     east=(2.75, -1, 0.5, 0, 90, 0), down=(0, -1, 0, 90, 0, 0), rolled=(0, -1, 0, 0, 0, -90),
                     turning=(0, -1, 0, 0, 90, 0, 0, 0, 5, 0, -TURN, 0), diving=(0, -1, 0, 0, 0, 0, 0, 0, 5, TURN, 0, 0),
                     rolling=(0, -1, 0, 0, 0, 0, 0, 5, 0, 0, 0, -TURN),
-                    # Forward is x of the model, as of the vehicle: it heads east where the world file has it.
+                    # The model's forward axis is x, as for the vehicle: in the world file it heads east.
                     body=(0, 0, 0.75, 0, 90, 0))
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Stands in for ROS 2 and for HoloOcean: 50 messages a second, or a few, through its publisher for sonard.
+"""Stands in for ROS 2 and for HoloOcean: sends 50 messages a second, or a few, through the simulator's publisher for sonard.
 
     python_simulators.py ros2|holoocean PORT COUNT X Y Z ROLL PITCH YAW VX VY VZ WX WY WZ      COUNT 0: until it is ended
 
-Both count metres, x forward, y left, z up, and turn by yaw, pitch, roll. ROS 2 gives velocities on board, HoloOcean in the
-world's axes, and turn rates on board.
+Both use metres, x forward, y left, z up, and rotate by yaw, pitch, roll. ROS 2 gives velocities in the vehicle's axes,
+HoloOcean in the world's axes, and turn rates in the vehicle's axes.
 """
 import itertools
 import math
@@ -45,7 +45,7 @@ def state(seconds, position, angles, velocity, turn_rate):
 
 
 def states(count, numbers, observe):
-    """What the simulator says, in time."""
+    """The simulator's states, at its rate."""
     position, angles, velocity, turn_rate = numbers[:3], [math.radians(angle) for angle in numbers[3:6]], numbers[6:9], numbers[9:]
     for i in itertools.count():
         if count and i >= count:

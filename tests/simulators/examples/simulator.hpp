@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every stand-in for a simulator here does: it says where the vehicle is, 50 times a second, or once.
+// Shared code of the stand-ins for simulators: sends the vehicle's state 50 times a second, COUNT times.
 //   PROGRAM PORT COUNT X Y Z A B C VX VY VZ WX WY WZ [X Y Z A B C]      COUNT 0: until it is ended
 // Position, three angles in degrees, velocity and turn rate, all in the simulator's own axes, units and
 // order; then position and angles of the body "walls".
@@ -32,7 +32,7 @@ struct SimulatedState {
   std::array<double, 3> body_angles_rad{};
 };
 
-/// Calls `step` in time with the state of the command line. @return the exit status.
+/// Calls `step` every 20 ms with the state of the command line. @return the exit status.
 inline int simulate(int argc, char** argv,
                     const std::function<void(const SimulatedState&, std::uint16_t port)>& step) {
   if (argc != 15 && argc != 21) {

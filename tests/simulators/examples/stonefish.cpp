@@ -9,7 +9,7 @@
 
 namespace {
 
-/// The part of sf::Sample that counts: 13 numbers and a time.
+/// The part of sf::Sample in use: 13 numbers and a time.
 struct Sample {
   std::array<double, 13> values;
   double time_s;
@@ -17,7 +17,7 @@ struct Sample {
   double getValue(std::size_t dimension) const { return values.at(dimension); }
 };
 
-/// Yaw, then pitch, then roll, each about the axis that the ones before have turned; x, y, z, w.
+/// Yaw, then pitch, then roll, each about the axes as rotated so far; x, y, z, w.
 std::array<double, 4> quaternion(const std::array<double, 3>& rpy_rad) {
   const double cr = std::cos(rpy_rad[0] / 2), cp = std::cos(rpy_rad[1] / 2), cy = std::cos(rpy_rad[2] / 2);
   const double sr = std::sin(rpy_rad[0] / 2), sp = std::sin(rpy_rad[1] / 2), sy = std::sin(rpy_rad[2] / 2);

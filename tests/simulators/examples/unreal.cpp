@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stands in for Unreal: centimetres, x forward, y right, z up; angles pitch (up), yaw (clockwise), roll
 // (clockwise as seen from behind), applied to the vehicle in the order roll, pitch, yaw. Velocities are in
-// the world's axes, as the engine gives them, and turn rates have the sign of its quaternions ("left-handed",
-// as the page of TRotator says).
+// the world's axes, as in the engine. Turn rates have the sign of its quaternions (left-handed, see the
+// documentation of TRotator).
 #include "clients/examples/unreal/SonardPose.h"
 #include "tests/simulators/examples/simulator.hpp"
 
@@ -25,14 +25,14 @@ struct FQuat {
   }
 };
 
-/// A positive angle takes x to y, y to z, z to x, whatever the handedness of the axes.
+/// A positive angle rotates x to y, y to z, z to x, whatever the handedness of the axes.
 FQuat about(double x, double y, double z, double angle_rad) {
   const double s = std::sin(angle_rad / 2);
   return {s * x, s * y, s * z, std::cos(angle_rad / 2)};
 }
 
-/// Yaw takes forward (x) to the right (y); pitch takes forward to up (z to x backwards); roll takes up to the
-/// right (y to z backwards).
+/// Yaw rotates forward (x) to the right (y); pitch rotates forward to up (z to x backwards); roll rotates up
+/// to the right (y to z backwards).
 FQuat rotator(double pitch, double yaw, double roll) {
   return about(0, 0, 1, yaw) * about(0, 1, 0, -pitch) * about(1, 0, 0, -roll);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The image of the daemon follows what Ignition Transport carries: ranges of walls whose places are known. The
+"""The daemon's image follows poses by Ignition Transport: the test compares ranges of walls whose places are known. The
 publishers are a program on the stock library, and its command line tool.
 
     gazebo_test.py --programs DIR --publisher PROGRAM --tool PROGRAM [TestCase.test_name ...]
@@ -78,7 +78,7 @@ class Gazebo(link_test.LinkTest):
         self.addCleanup(self.topside.close)
 
     def publish(self, *entities, kind="ignition.msgs.Pose_V"):
-        """Until the test ends, or this is called again. An entity is (name, x, y, z, roll, pitch, yaw), in degrees."""
+        """Publishes until the test ends, or until the next call. An entity is (name, x, y, z, roll, pitch, yaw), in degrees."""
         if self.publisher:
             self.publisher.kill()
         words = [str(word) for entity in entities for word in entity]
@@ -87,7 +87,7 @@ class Gazebo(link_test.LinkTest):
     # ---- Checks ----
 
     def range_ahead(self, sonar_id, address):
-        """Of the first echo in the middle beam, metres; None without one, or without a ping: there is no pose yet."""
+        """Range of the first echo in the middle beam, metres. None without an echo, or without a ping (no pose yet)."""
         self.topside.send(wire.ping_config(sonar_id, lines=840, spreading=293), address)  # 7 m
         try:
             ping = self.topside.next_ping(seconds=2)
@@ -97,13 +97,13 @@ class Gazebo(link_test.LinkTest):
         return None if first is None else first * wire.line_step_m(1500.0)
 
     def check_range(self, expected_m, again=lambda: None, head=(513, HEAD_ADDRESS)):
-        """The first pings may still be of the pose before. `again` is done before each."""
+        """The first pings may still show the pose before. `again` is called before each ping."""
         deadline = Deadline(link_test.PATIENCE_S)
         seen = []
         while not deadline.over():
             again()
             seen.append(self.range_ahead(*head))
-            # Two lines, and what the footprint of a sample adds.
+            # Two lines, plus the footprint of a sample.
             if len(seen) >= 3 and all(range_m and abs(range_m - expected_m) < 0.03 for range_m in seen[-3:]):
                 return
         self.fail(f"expected {expected_m} m three times in a row, saw {seen[-8:]}; {self.daemon.tail()}")
@@ -112,7 +112,7 @@ class Gazebo(link_test.LinkTest):
 
     def follow(self, kind):
         self.start()
-        # Nose to the north, sonar at y = 1.5. A mix-up of axes would give another wall, 4.6 m or more away.
+        # Nose to the north, sonar at y = 1.5. If axes were swapped, another wall would be seen, 4.6 m or more away.
         self.publish(("rov", -1, 1.1, -2.3, 0, 0, 90), kind=kind)
         self.check_range(2.5)
         # Nose to the east, rolled, sonar at x = 2.75.
@@ -146,7 +146,7 @@ class Gazebo(link_test.LinkTest):
 
     def test_pose_of_the_command_line_tool(self):
         self.start()
-        # One publication of it may be lost (gazebosim/gz-transport#586), so each ping has one of its own.
+        # One publication of the tool may be lost (gazebosim/gz-transport#586), so it publishes again for each ping.
         self.time_s = 0
 
         def publish_once():
@@ -165,7 +165,7 @@ class Gazebo(link_test.LinkTest):
         # In front of the sonar, which is at y = 0.4 and z = -2.7: the near face is at y = 1.75.
         self.publish(rov, ("crate", 0, 2, -2.7, 0, 0, 0))
         self.check_range(1.35)
-        # Turned by half a right angle, its edge is nearest: half a diagonal before its middle.
+        # Turned by half a right angle, its edge is nearest, half a diagonal before its middle.
         self.publish(rov, ("crate", 0, 2, -2.7, 0, 0, 45))
         self.check_range(1.6 - 0.25 * 2 ** 0.5)
         self.publish(rov, ("crate", 3, 3, -4.75, 0, 0, 0))
@@ -173,7 +173,7 @@ class Gazebo(link_test.LinkTest):
 
     def test_vehicle_is_shown_and_moves_along(self):
         self.start(more=FROM_WORLD.format(hides="false"))
-        # The near face of the guard is 1.5 m ahead of the vehicle's origin, 1.1 m ahead of the sonar: wherever it is.
+        # The near face of the guard is 1.5 m ahead of the vehicle's origin and 1.1 m ahead of the sonar, at any place.
         self.publish(("rov", -1, 1.1, -2.3, 0, 0, 90))
         self.check_range(1.1)
         self.publish(("rov", 2.35, 0.5, -2.5, 0, 0, 180))
@@ -199,7 +199,7 @@ class Gazebo(link_test.LinkTest):
         self.end_daemon(self.daemon)
 
     def publish_from_elsewhere(self, relay):
-        """Another machine, which sends discovery to the group, or to `relay` alone."""
+        """Publishes from another machine, which sends discovery to the group, or only to `relay`."""
         return self.lab.start(self.lab.topside, "env", f"IGN_RELAY={relay}", PUBLISHER, TOPIC, "200", "1",
                               "ignition.msgs.Pose_V", "rov", "-1", "1.1", "-2.3", "0", "0", "90")
 
@@ -213,13 +213,13 @@ class Gazebo(link_test.LinkTest):
         elsewhere = self.publish_from_elsewhere(relay=HEAD_ADDRESS)  # nothing routes the group to the head yet
         time.sleep(4)  # discovery takes less than two
         elsewhere.kill()
-        # To the group, which a simulator here joins on all interfaces unless IGN_IP names an address.
+        # To the multicast group, which a simulator on this machine joins on all interfaces unless IGN_IP sets an address.
         self.lab.topside.ip("route", "add", "239.0.0.0/8", "dev", "eth0")
         self.lab.start(self.lab.head, PUBLISHER, "/bystander", "200", "1", "ignition.msgs.Pose_V", "rov", *["0"] * 6)
         self.publish_from_elsewhere(relay="")
         time.sleep(4)
         self.assertNotIn("the vehicle is entity", self.daemon.output())
-        # A simulator of this machine, likewise.
+        # A simulator on this machine.
         self.publish(("rov", 2, 0, -2.5, 0, 0, 0))
         self.daemon.wait_for_line(r"first at \(2.000, 0.000, -2.500\)", link_test.PATIENCE_S)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses from programs of others that speak Ignition Transport: one with the stock library, and its command
-// line tool. They meet in a network of this test process alone, with multicast on its loopback.
+// Poses by Ignition Transport from independent programs: one with the stock library, and its command line
+// tool. They run in a network of this test process alone, with multicast on its loopback.
 #include "server/pose/gazebo_pose_source.hpp"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,7 @@ using test::ChildProcess;
 
 class GazeboPoseSourceTest : public SourceTest {
  protected:
-  // Before the library opens its sockets, which it does once in a process and never closes.
+  // Before the library opens its sockets: it opens them once per process and never closes them.
   static void SetUpTestSuite() {
     const int flags = geteuid() == 0 ? CLONE_NEWNET : CLONE_NEWNET | CLONE_NEWUSER;
     ASSERT_EQ(unshare(flags), 0) << "no network namespace to be had";
@@ -121,7 +121,7 @@ TEST_F(GazeboPoseSourceTest, DeliversNothingOnceStopped) {
   EXPECT_EQ(delivered_.size(), count);
 }
 
-// One publication of the tool may be lost (gazebosim/gz-transport#586): it is run until one arrives.
+// One publication of the tool may be lost (gazebosim/gz-transport#586), so it runs until one arrives.
 TEST_F(GazeboPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
   const auto source = started("/tool");
   const auto deadline = std::chrono::steady_clock::now() + seconds{60};
@@ -137,7 +137,7 @@ TEST_F(GazeboPoseSourceTest, TakesAPoseOfTheCommandLineTool) {
   EXPECT_EQ(delivered_.back().sample.time_ns, 7'000'000'005);
 }
 
-// Names that are no UTF-8, 50 in a second: libprotobuf prints about each.
+// Names that are invalid UTF-8, 50 per second: libprotobuf prints a line for each.
 TEST_F(GazeboPoseSourceTest, LinesOfLibrariesGoToTheLogAndAreLimited) {
   const auto ring = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(1000);
   const auto before = spdlog::default_logger();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulator's share of a pose topic, by the stock library: entities at rest, for some seconds, 50 times a
-// second. The stamp runs at a rate of simulated time. gazebo_publisher TOPIC SECONDS TIME_RATE TYPE NAME X Y
+// A simulator's pose topic, by the stock library: publishes entities at rest 50 times a second, for some
+// seconds. The stamp runs at a rate of simulated time. gazebo_publisher TOPIC SECONDS TIME_RATE TYPE NAME X Y
 // Z ROLL PITCH YAW [NAME X ...] Metres, and degrees about the fixed axes x, y and z, in this order.
 #include <ignition/msgs/pose_v.pb.h>
 

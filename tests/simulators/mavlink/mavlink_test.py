@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The image of the daemon follows what node-mavlink publishes: ranges of walls whose places are known.
+"""The daemon's image follows poses from node-mavlink: the test compares ranges of walls whose places are known.
 
     mavlink_test.py --programs DIR --publisher DIR [TestCase.test_name ...]
 """
@@ -22,7 +22,7 @@ PUBLISHER = None  # folder with publish.js and node_modules
 
 
 class Mavlink(walls.WallTest):
-    """Every vehicle here begins its clock anew, so each change of publisher is a reboot, too."""
+    """Every vehicle here starts its own clock, so each change of publisher is also a reboot."""
 
     def setUp(self):
         super().setUp()
@@ -30,17 +30,17 @@ class Mavlink(walls.WallTest):
         self.start_walls(f"  mavlink:\n    bind: 127.0.0.1:{PORT}")
 
     def publish(self, kind, version, *numbers):
-        """Until the test, or the caller, ends it."""
+        """Publishes until the test or the caller ends it."""
         return self.lab.start(self.lab.head, "node", os.path.join(PUBLISHER, "publish.js"), PORT, str(version), kind,
                               *(str(number) for number in numbers))
 
     def reboot(self, vehicle):
-        """A clock that goes back by less than 250 ms was not begun anew: a message was late."""
+        """The daemon takes a clock that goes back by less than 250 ms for a late message, not for a reboot."""
         time.sleep(1)
         vehicle.kill()
 
     def follow(self, kind, version):
-        # Heading north from 1.5 m north of the origin: the north wall. A mix-up of axes would give 4 or 5.5 m.
+        # Heading north from 1.5 m north of the origin: the north wall. If axes were swapped, it would be 4 or 5.5 m.
         vehicle = self.publish(kind, version, 1.5, -1, 1, 0, 0, 0)
         self.check_ranges({AHEAD: 2.5})
         self.reboot(vehicle)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pose source hears node-mavlink over loopback: numbers of the poses themselves, which mavlink_test.py
-// then sees in the image.
+// The pose source receives poses from node-mavlink over loopback. This compares their numbers;
+// mavlink_test.py compares the image.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -22,8 +22,8 @@ using testing::HasSubstr;
 
 class MavlinkPublisherTest : public SourceTest {
  protected:
-  /// What a vehicle at 1.5 m north, -2.5 m east, 3 m down, that looks east, 30 degrees up, and is rolled by
-  /// 10 gives.
+  /// Checks the poses of a vehicle at 1.5 m north, -2.5 m east, 3 m down, heading east, pitched up by 30
+  /// degrees and rolled by 10.
   void follow(const std::string& kind, const std::string& version) {
     MavlinkPoseInput input;
     input.bind = {localhost, 0};
@@ -36,7 +36,7 @@ class MavlinkPublisherTest : public SourceTest {
     for (const Delivery& delivery : delivered_) {
       expect_pose(delivery.sample);
     }
-    // Stamps go on as arrivals do; both are far from even where a processor is shared.
+    // Stamps advance as arrivals do; both are uneven on a shared processor.
     const double stamped_s =
         1e-9 * static_cast<double>(delivered_.back().sample.time_ns - delivered_[0].sample.time_ns);
     EXPECT_NEAR(stamped_s, 0.4, 0.3);
@@ -51,7 +51,7 @@ class MavlinkPublisherTest : public SourceTest {
     const pose::Quat& q = sample.T_world_vehicle.orientation;
     EXPECT_THAT(sample.T_world_vehicle.position_m, IsVec3(Vec3{-2.5, 1.5, -3}, 1e-6));
     EXPECT_THAT(rotate(q, {1, 0, 0}), IsVec3(Vec3{std::cos(up), 0, std::sin(up)}, 1e-6));
-    // Port is north without the roll, which lifts it towards the vehicle's own top.
+    // Without the roll, port is north; the roll lifts port towards the vehicle's own top.
     EXPECT_THAT(rotate(q, {0, 1, 0}), IsVec3(Vec3{-std::sin(rolled) * std::sin(up), std::cos(rolled),
                                                   std::sin(rolled) * std::cos(up)},
                                              1e-6));

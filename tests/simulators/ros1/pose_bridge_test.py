@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the bridge makes of messages: frames, stamps, trees. ros1_test.py follows poses up to the image.
+"""The bridge's output for messages: frames, stamps, trees. ros1_test.py compares the images.
 
     pose_bridge_test.py --modules DIR [PoseBridgeTest.test_name ...]
 """

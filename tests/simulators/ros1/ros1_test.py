@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""roscast between ROS's own tools and the daemon: the image follows, and what is wrong is said.
+"""roscast between ROS's own tools and the daemon: the image follows the poses, and errors are logged.
 
     ros1_test.py --programs DIR --modules DIR [Ros1.test_name ...]
 """
@@ -60,7 +60,7 @@ class Ros1(walls.WallTest):
         self.lab = None
 
     def start_lab(self):
-        """Without a daemon: this process is where the poses go."""
+        """Without a daemon: this process receives the poses."""
         self.lab = self.make_lab()
         self.poses = self.lab.head.udp_socket("127.0.0.1", POSE_PORT)
         self.addCleanup(self.poses.close)
@@ -72,7 +72,7 @@ class Ros1(walls.WallTest):
         return pose_pb2.PoseUpdate.FromString(got[0])
 
     def start_master(self):
-        """One that answers: rostopic does not wait."""
+        """Starts a master and waits until it answers, because rostopic does not wait."""
         master = self.lab.start(self.lab.head, "rosmaster", "--core", "-p", "11311")
         deadline = Deadline(link_test.PATIENCE_S)
         while self.lab.start(self.lab.head, "bash", "-c", ": </dev/tcp/127.0.0.1/11311").wait(5) != 0:
@@ -81,7 +81,7 @@ class Ros1(walls.WallTest):
         return master
 
     def publish(self, topic, kind, message, *options):
-        """50 times a second, until the test, or the caller, ends it."""
+        """Publishes 50 times a second, until the test or the caller ends it."""
         return self.lab.start(self.lab.head, "rostopic", "pub", "-s", *(options or ("-r", "50")), topic, kind,
                               json.dumps(message))
 
@@ -101,7 +101,7 @@ class Ros1(walls.WallTest):
         self.start_walls()
         self.start_master()
         bridge = self.cast("--odometry", "/odom")
-        # Heading north from 1.5 m north of the origin. A mix-up of axes would give 4 or 5.5 m.
+        # Heading north from 1.5 m north of the origin. If axes were swapped, it would be 4 or 5.5 m.
         vehicle = self.publish_odometry((0, 1.5, -1), quaternion((0, 0, 1), 90))
         self.check_ranges({AHEAD: 2.5})
         vehicle.kill()
@@ -109,7 +109,7 @@ class Ros1(walls.WallTest):
         vehicle = self.publish_odometry((2.75, 0.5, -1), LEVEL)
         self.check_ranges({AHEAD: 3.25})
         vehicle.kill()
-        # Heading north at the origin: the beam far to starboard meets the east wall before the north one.
+        # Heading north at the origin: the beam farthest to starboard meets the east wall before the north wall.
         vehicle = self.publish_odometry((0, 0, -1), quaternion((0, 0, 1), 90))
         self.check_ranges({PORT_MOST: 4 / math.cos(walls.INNER_RAD), STARBOARD_MOST: 6 / math.sin(walls.OUTER_RAD)})
         vehicle.kill()
@@ -118,7 +118,7 @@ class Ros1(walls.WallTest):
         bridge.wait_for_line("wrong_frame=0 no_stamp=0 bad_value=0 clock_resets=0", 1)
 
     def test_odometry_in_ned_over_tcp(self):
-        """As Stonefish's own bridge publishes it."""
+        """As from Stonefish's own bridge."""
         self.start_walls("  tcp:\n    bind: 127.0.0.1:14601")
         self.start_master()
         self.cast("--odometry", "/odom", "--axes", "ned_frd", "--world-frame", "world_ned", "--tcp", "--to",
@@ -131,13 +131,13 @@ class Ros1(walls.WallTest):
         self.check_ranges({AHEAD: 4})
 
     def test_twist_carries_on(self):
-        """One message only: sonard carries the vehicle on for extrapolation_limit_ms, 300, and holds it there."""
+        """One message only: sonard extrapolates for extrapolation_limit_ms, 300, and then holds the pose."""
         self.start_walls()
         self.start_master()
         bridge = self.cast("--odometry", "/odom")
         bridge.wait_for_line("listening to /odom", link_test.PATIENCE_S)
-        # From the origin, where it heads north, at 5 m/s to its own starboard (-y), while it turns by 90 degrees to
-        # starboard: a quarter of a circle, 1.5 m long, first to the east and in the end to the south.
+        # From the origin, heading north, at 5 m/s to its own starboard (-y), while it turns by 90 degrees to starboard: a
+        # quarter of a circle, 1.5 m long, first to the east and finally to the south.
         turned = math.pi / 2
         self.lab.start(self.lab.head, "rostopic", "pub", "-s", "-1", "/odom", "nav_msgs/Odometry", json.dumps(
             odometry((0, 0, -1), quaternion((0, 0, 1), 90), linear=(0, -5, 0), angular=(0, 0, -turned / 0.3))))
@@ -152,7 +152,7 @@ class Ros1(walls.WallTest):
             transform("odom", "base_link", (0.5, 0, -1), LEVEL),
             transform("map", "barrier", (0, 0.75, 0), LEVEL)]})
         bridge = self.cast("--vehicle-frame", "base_link", "--world-frame", "/map", "--body", "barrier=walls")
-        # 1.5 m north heading north, in front of a wall that is 0.75 m further away than the world file has it.
+        # 1.5 m north heading north, before a wall that is 0.75 m further away than in the world file.
         self.check_ranges({AHEAD: 3.25})
         tree.kill()
         self.end(bridge)
@@ -170,7 +170,7 @@ class Ros1(walls.WallTest):
         self.assertEqual((update.vehicle.position_m.x, update.vehicle.position_m.y, update.vehicle.position_m.z), (1, 2, 3))
         self.assertEqual(update.twist.linear_mps.x, 1)
 
-    # ---- What goes wrong is said ----
+    # ---- Errors are logged ----
 
     def test_master_comes_late_and_goes(self):
         self.start_lab()

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Classes of ROS 2 messages, made from their definitions, that accept what rosidl's classes accept and no more: known fields
-alone, values of the type and within the range of the field."""
+"""Classes of ROS 2 messages, made from their definitions. They accept the same values as rosidl's classes: known fields only,
+of the right type and within the range of the field."""
 
 import copy
 import sys
 from array import array
 from types import ModuleType
 
-# Fields by their types, and constants, of the interfaces of ROS 2 (Humble to Jazzy) and of marine_acoustic_msgs.
+# Types and fields, and constants, of the interfaces of ROS 2 (Humble to Jazzy) and of marine_acoustic_msgs.
 DEFINITIONS = {
     "builtin_interfaces/Time": "int32 sec; uint32 nanosec",
     "std_msgs/Header": "builtin_interfaces/Time stamp; string frame_id",
@@ -34,7 +34,7 @@ DEFINITIONS = {
     "marine_acoustic_msgs/ProjectedSonarImage": "std_msgs/Header header; marine_acoustic_msgs/PingInfo ping_info;"
                                                 "geometry_msgs/Vector3[] beam_directions; float32[] ranges;"
                                                 "marine_acoustic_msgs/SonarImageData image",
-    # Of its fields those that the nodes use.
+    # Only the fields that the nodes use.
     "rcl_interfaces/ParameterDescriptor": "string name; uint8 type; string description; bool read_only; bool dynamic_typing",
 }
 

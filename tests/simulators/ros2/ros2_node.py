@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node of clients/ros2 as a process, with stand-ins for rclpy; its log goes to standard output.
 
-    ros2_node.py pose_bridge|sonar_bridge [NAME=VALUE ...]      parameters, as YAML would have them
+    ros2_node.py pose_bridge|sonar_bridge [NAME=VALUE ...]      parameters, as in YAML
 """
 
 import importlib

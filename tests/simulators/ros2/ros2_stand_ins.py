@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The few names of rclpy, tf2_ros, launch and launch_ros that clients/ros2 uses. Import this before sonard_ros2.
+"""The names of rclpy, tf2_ros, launch and launch_ros that clients/ros2 uses. Import this before sonard_ros2.
 
-One "ROS" for the process: `ros.parameters` are those that a node is started with, `ros.published` what was published by
-topic, `ros.log` what was logged, and publish() hands a message to the subscribers of a topic.
+One "ROS" for the process: `ros.parameters` are the start parameters of a node, `ros.published` the published messages by
+topic, `ros.log` the log lines. publish() passes a message to the subscribers of a topic.
 """
 
 import inspect
@@ -58,7 +58,7 @@ class Ros:
             print(f"[{level}] {text}", flush=True)
 
     def wait(self, condition, seconds):
-        """What condition() returns, once it is true; fails after `seconds`."""
+        """Waits until condition() is true and returns its value; fails after `seconds`."""
         with self.news:
             if not self.news.wait_for(condition, seconds):
                 raise AssertionError(f"nothing within {seconds} s; the log has {self.log}, "
@@ -155,7 +155,7 @@ class StaticTransformBroadcaster:
 
 
 def _spin(node):
-    """As rclpy does: SIGINT and SIGTERM shut ROS down, which ends this."""
+    """As in rclpy, SIGINT and SIGTERM shut ROS down, which ends this."""
     if threading.current_thread() is threading.main_thread():
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: ros.stopped.set())
@@ -165,7 +165,7 @@ def _spin(node):
 
 
 class _Made:
-    """An action or substitution of launch: what it was made with, after a look at the names of its arguments."""
+    """An action or substitution of launch; stores its arguments after checking their names."""
 
     def __init__(self, *arguments, **named):
         known = inspect.signature(self.signature).parameters

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""clients/ros2 with stand-ins for rclpy, whose messages are as strict as those of ROS 2, against the daemon.
+"""clients/ros2 with stand-ins for rclpy, whose messages are as strict as those in ROS 2, against the daemon.
 
     ros2_test.py --programs DIR [TestCase.test_name ...]
 
@@ -84,13 +84,13 @@ def odometry(x, y, yaw_deg, **of_header):
 
 
 def rotated(quaternion, vector):
-    """By the textbook: v + 2 q x (q x v + w v)."""
+    """v rotated by the unit quaternion: v + 2 q x (q x v + w v)."""
     axis = numpy.array([quaternion.x, quaternion.y, quaternion.z])
     return vector + 2 * numpy.cross(axis, numpy.cross(axis, vector) + quaternion.w * numpy.array(vector))
 
 
 class StandIns(unittest.TestCase):
-    """What rosidl's classes refuse, those of these tests refuse, too."""
+    """The stand-ins reject the same values as rosidl's classes."""
 
     def test_unknown_fields(self):
         with self.assertRaises(AttributeError):
@@ -190,7 +190,7 @@ class Parameters(unittest.TestCase):
 
 class Stamps(unittest.TestCase):
     def stamp(self, now_ns):
-        """Of a ping whose last bin is at 15 m, 20 ms there and back, that is complete at `now_ns`."""
+        """The stamp of a ping with its last bin at 15 m (20 ms there and back), if it is complete at `now_ns`."""
         ros.reset(device="micron")
         node = SonarBridge()
         self.addCleanup(node.destroy_node)
@@ -217,7 +217,7 @@ class PackageFiles(unittest.TestCase):
         nodes = [entity for entity in entities if hasattr(entity, "executable")]
         self.assertEqual([(node.package, node.executable) for node in nodes],
                          [("sonard_ros2", "pose_bridge"), ("sonard_ros2", "sonar_bridge")])
-        # Of each node what it declares, from arguments whose defaults are those of the node.
+        # Each node gets all its parameters from arguments with the node's own defaults.
         for node, kind in zip(nodes, (PoseBridge, SonarBridge)):
             ros.reset(device="micron")
             kind().destroy_node()
@@ -268,7 +268,7 @@ class PackageFiles(unittest.TestCase):
 
 
 class Ros2(OwnMachine):
-    """Nodes in this process, sonard beside it."""
+    """Nodes in this process, and sonard as a second process."""
 
     def start(self, head=GEMINI):
         path = os.path.join(self.folder.name, "sonard.yaml")
@@ -285,8 +285,8 @@ class Ros2(OwnMachine):
             self.addCleanup(kind().destroy_node)
 
     def expect_sphere(self, send, distance_m, bearing_deg):
-        """The brightest sample of a ping is on the near side of the sphere, whose middle is `distance_m` away, positive
-        bearings to port. `send` publishes the pose once."""
+        """The brightest sample of a ping is on the near side of the sphere, whose centre is `distance_m` away. Positive
+        bearings are to port. `send` publishes the pose once."""
         seen = None
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
@@ -319,7 +319,7 @@ class Ros2(OwnMachine):
         self.nodes(PoseBridge, SonarBridge, range_m=6.0, frame_id="bow", compression=0)
         begin_ns = time.time_ns()
         message = self.expect_sphere(lambda: ros.publish("/odom", odometry(1, 0, 0)), math.sqrt(8), 45)
-        # 120 degrees, evenly in the sine: the outermost beams are half a step within.
+        # 120 degrees, evenly in the sine: the outermost beams are half a step inside.
         outermost = 255 / 256 * math.sin(math.radians(60))
         first, last = message.beam_directions[0], message.beam_directions[-1]
         numpy.testing.assert_allclose((first.x, first.y, last.y), (0, -outermost, outermost), atol=1e-9)
@@ -354,7 +354,7 @@ class Ros2(OwnMachine):
                                                                  pose=pose(3, -1, 0, turned(90)))), 3, 0)
 
     def test_ned(self):
-        """North is y of sonard's world and east x; the nose points north when nothing is turned."""
+        """North is y of sonard's world and east x; without rotation, the nose points north."""
         self.start()
         self.nodes(PoseBridge, SonarBridge, range_m=6.0, source="pose", topic="/pose", world_frame="world_ned", axes="ned_frd")
         self.expect_sphere(lambda: ros.publish("/pose", make("geometry_msgs/PoseStamped", header=header("world_ned"),
