@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docker/Dockerfile and docker/compose.yaml: built, and run as containers that know each other by their network alone.
+"""docker/Dockerfile and docker/compose.yaml: builds the image and runs containers connected by their network only.
 
     sudo containers_test.py [--keep DIR] [TestCase.test_name ...]
 
-buildah builds and podman runs, with a storage of their own that is removed at the end; --keep DIR leaves it there, and takes
-the image that is in it. The base image is made by debootstrap from this machine's mirror. Needs root and what section
-[containers] of docker/packages.txt names.
+buildah builds and podman runs, with their own storage, which is removed at the end. --keep DIR keeps it, and uses the
+image in it. The base image is made by debootstrap from this machine's mirror. Needs root and the packages in section
+[containers] of docker/packages.txt.
 """
 
 import argparse
@@ -46,7 +46,7 @@ def podman(*arguments, **others):
 
 
 def set_up_engines(folder):
-    """A storage and networks below `folder`, and settings that need neither systemd nor a kernel's overlays."""
+    """Storage and networks below `folder`, and settings that need neither systemd nor a kernel with overlays."""
     (folder / "storage.conf").write_text(f'[storage]\ndriver = "vfs"\ngraphroot = "{folder}/storage"\nrunroot = "{folder}/run"\n')
     (folder / "containers.conf").write_text(
         '[containers]\ndefault_ulimits = ["nofile=1024:1024", "nproc=20000:20000"]\nlog_driver = "k8s-file"\n'
@@ -67,7 +67,7 @@ def build_image(folder):
 
 
 class Containers(unittest.TestCase):
-    """Cases leave no container and no network behind."""
+    """Test cases remove their containers and networks."""
 
     @classmethod
     def setUpClass(cls):
@@ -83,7 +83,7 @@ class Containers(unittest.TestCase):
             shutil.rmtree(cls.folder)
 
     def network(self, name="vehicle"):
-        """By the lines of the compose file: podman-compose 1.0 makes networks without their addresses and their edge."""
+        """Makes the network of the compose file, because podman-compose 1.0 ignores its addresses and `internal`."""
         vehicle = yaml.safe_load(COMPOSE.read_text())["networks"]["vehicle"]
         [addresses] = vehicle["ipam"]["config"]
         podman("network", "create", *(["--internal"] if vehicle["internal"] else []), "--subnet", addresses["subnet"],
@@ -115,7 +115,7 @@ class Containers(unittest.TestCase):
         return network["IPAddress"]
 
     def view(self, network, *arguments):
-        """What a client in a container of its own says at its end."""
+        """Output of a client in a container of its own."""
         options, arguments = (arguments[0], arguments[1:]) if arguments and isinstance(arguments[0], list) else ([], arguments)
         return podman("run", "--rm", *HARDENED, "--network", network, *options, "--entrypoint", "/usr/bin/sonarview", "sonard",
                       "--range", 10, "--pings", 20, "--quiet", *arguments)

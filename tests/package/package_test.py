@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Debian package, as a user has it: lintian, then installed, used and purged on a fresh system.
+"""The Debian package: checked by lintian, then installed, used and purged on a fresh system.
 
     sudo package_test.py PACKAGE.deb
 
-The system is a folder made by debootstrap from this machine's mirror, for this machine's release. What runs there has mount,
-process and network namespaces of its own. Needs root, debootstrap, lintian, iproute2, and systemd for its opinion of the unit.
+The system is a folder made by debootstrap from this machine's mirror, for this machine's release. Its programs run in mount,
+process and network namespaces of their own. Needs root, debootstrap, lintian, iproute2, and systemd to check the unit.
 """
 
 import json
@@ -29,7 +29,7 @@ PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 
 
 def system_calls(name):
-    """Those of a set of systemd ("@system-service"), or the one of a name."""
+    """The system calls of a set of systemd ("@system-service"), or the one with this name."""
     if not name.startswith("@"):
         return {name}
     lines = subprocess.run(["systemd-analyze", "syscall-filter", "--no-pager", name], check=True, stdout=subprocess.PIPE, text=True).stdout.split("\n")[1:]
@@ -44,7 +44,7 @@ class System:
         make_fresh_system(root)
 
     def run(self, command, network=True, expected=0, timeout=600):
-        """What a shell prints there, both ways together."""
+        """Output of a shell command in the system, standard error included."""
         inside = shlex.join(["chroot", str(self.root), "env", "-i", f"PATH={PATH}", "HOME=/root", "DEBIAN_FRONTEND=noninteractive",
                              "sh", "-c", command])
         setup = (f"mount -t proc proc {shlex.quote(str(self.root / 'proc'))} && mount --bind /dev {shlex.quote(str(self.root / 'dev'))} && "
@@ -56,7 +56,7 @@ class System:
         return done.stdout
 
     def files(self):
-        """Those that a package could have left."""
+        """Files that the package may have left behind."""
         return {str(path.relative_to(self.root)) for folder in ("etc", "usr", "opt", "var", "srv")
                 for path in (self.root / folder).rglob("*") if "sonar" in path.name or "posecast" in path.name}
 
@@ -116,7 +116,7 @@ class Package(unittest.TestCase):
         self.assertRegex(line, "Overall exposure level for .*: [0-2]\\.")
 
     def test_7_the_unit_allows_each_system_call_of_the_service(self):
-        """Under strace the service loads its world, serves, records and ends; none of its calls is outside of the filter."""
+        """Under strace the service loads its world, serves, records and ends; the filter must allow each of its calls."""
         self.system.run("apt-get install --yes --no-install-recommends strace")
         printed = self.system.run(
             "cd /tmp && sed 's/^heads:/recording: {directory: rec}\\nheads:/' /etc/sonard/sonard.yaml >/etc/sonard/recorded.yaml && "
@@ -131,7 +131,7 @@ class Package(unittest.TestCase):
         for line in re.findall("^SystemCallFilter=(.*)$", unit, re.MULTILINE):
             calls = {call for word in line.lstrip("~").split() for call in system_calls(word)}
             allowed = allowed - calls if line.startswith("~") else allowed | calls
-        # Libraries ask for these and go on without them.
+        # Libraries try these calls and continue without them.
         self.assertEqual(sorted(made - allowed - {"sched_setaffinity", "mbind", "set_mempolicy"}), [])
 
     def test_8_programs_are_hardened_and_their_parts_are_listed(self):

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Whether the same commit makes the same package: two clones in folders of their own, built without a cache, which would
-# give the one what the other made.
+# Checks that the same commit makes the same package: two clones in different folders, built without a cache, because the
+# second build would reuse files of the first.
 set -euo pipefail
 repository=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 folder=$(mktemp -d "${TMPDIR:-/tmp}/sonard-same-bytes-XXXXXX")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docker/kubernetes: against the published schemas, and its commands as a cluster would run them.
+"""Checks docker/kubernetes with the published schemas, and runs its commands as a cluster would.
 
     manifests_test.py --programs DIR --npm DIR [TestCase.test_name ...]
 
-No cluster is started. Needs the right to make network namespaces.
+No cluster is started. Needs permission to make network namespaces.
 """
 
 import argparse
@@ -69,7 +69,7 @@ class Schemas(Files):
 
 
 class IndexedJob(Files):
-    """The rules of Kubernetes' documentation of Jobs that no schema says, and what the pods do."""
+    """Rules of Kubernetes' documentation of Jobs that are in no schema, and the results of the pods."""
 
     def setUp(self):
         super().setUp()
@@ -77,7 +77,7 @@ class IndexedJob(Files):
         [self.log] = of_kind("log.yaml", "Job")
 
     def run_pod(self, job, index=None, expected=0, **changes):
-        """What a pod of the job does, with /data here."""
+        """Runs the command of a pod of the job, with this machine's folder as /data."""
         arguments = [text.replace("$(JOB_COMPLETION_INDEX)", str(index)).replace("/data", str(self.folder))
                      for text in container_of(job)["args"]]
         arguments = [changes.get(text, text) for text in arguments]
@@ -108,7 +108,7 @@ class IndexedJob(Files):
         disrupted, mistake = spec["podFailurePolicy"]["rules"]
         self.assertEqual((disrupted["action"], disrupted["onPodConditions"]), ("Ignore", [{"type": "DisruptionTarget", "status": "True"}]))
         self.assertEqual((mistake["action"], mistake["onExitCodes"]["containerName"]), ("FailJob", container_of(self.job)["name"]))
-        # 137 is SIGKILL, as by lack of memory; 143 the SIGTERM of a node that is drained.
+        # 137 is SIGKILL, for example if memory runs out; 143 is the SIGTERM of a node that is drained.
         self.assertEqual(mistake["onExitCodes"]["values"], [2, 5, 64])
 
     def test_mistakes_end_with_the_exit_codes_that_fail_the_job(self):
@@ -121,7 +121,7 @@ class IndexedJob(Files):
 
 
 class Fleet(OwnMachine):
-    """A pod as its own machine: its address is 127.0.0.2."""
+    """A pod is a machine (namespace) of its own with address 127.0.0.2."""
 
     def test_a_pod_serves_its_heads_and_says_that_it_is_well(self):
         [vehicle] = of_kind("fleet.yaml", "StatefulSet")

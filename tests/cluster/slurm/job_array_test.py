@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docker/slurm on Slurm itself: slurmctld, slurmd and munged on loopback, with folders and ports of their own.
+"""docker/slurm with Slurm itself: slurmctld, slurmd and munged on loopback, with their own folders and ports.
 
     job_array_test.py --programs DIR [TestCase.test_name ...]
 
-The truth is what one process makes of the same arguments. Needs Debian's slurm-wlm and munge, no rights, no network.
+The expected files are those of one process with the same arguments. Needs Debian's slurm-wlm and munge; neither root nor a
+network.
 """
 
 import argparse
@@ -73,7 +74,7 @@ def free_ports(count):
 
 
 def wait_for(what, holds, seconds=PATIENCE_S):
-    """What `holds` returns as soon as that is true."""
+    """Waits until holds() is true and returns its value."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         if value := holds():
@@ -135,23 +136,23 @@ class Slurm:
         return "".join(file.read_text()[-2000:] for file in sorted(self.folder.glob("*.log")) + sorted(self.folder.glob("*.out")))
 
     def submit(self, tasks, *arguments, options=()):
-        """@return numbers of the array and of the job that makes the log"""
+        """@return numbers of the array and of the job that writes the log"""
         said = self.run(RENDER, tasks, *options, "--", *arguments).stdout
         print("   ", said.strip().split(";")[0])
         return re.fullmatch(r"array (\d+) of \d+ tasks, then (\d+);.*\n", said).groups()
 
     def jobs(self, number):
-        """What Slurm knows of a job, of an array: of each of its tasks."""
+        """Slurm's state of a job; for an array, of each task."""
         lines = self.run("scontrol", "show", "job", number, "--oneliner").stdout.strip().splitlines()
         return [dict(re.findall(r"(\S+?)=(\S*)", line)) for line in lines]
 
     def end(self, number):
-        """@return its jobs when all have ended"""
+        """Waits until all jobs of the number have ended. @return these jobs"""
         over = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL")
         return wait_for(f"job {number}", lambda: (jobs := self.jobs(number)) and all(job["JobState"] in over for job in jobs) and jobs)
 
     def processes(self, array, task):
-        """{name: pid} of what runs of a task."""
+        """{name: pid} of a task's running processes."""
         found = {}
         marks = {f"SLURM_CONF={self.environment['SLURM_CONF']}".encode(), f"SLURM_ARRAY_JOB_ID={array}".encode(),
                  f"SLURM_ARRAY_TASK_ID={task}".encode()}
@@ -176,7 +177,7 @@ class JobArray(Files):
         return (self.folder / f"{out}.tasks" / f"{task}.log").read_text()
 
     def expect_whole(self, out):
-        """The bytes of one process, all frames once in files and log, and nothing beside them."""
+        """Files equal those of one process: all frames once in files and log, and no other files."""
         if not (self.folder / "whole").exists():
             self.render_whole(PROGRAMS)
         self.assertEqual(sums(self.folder / out), sums(self.folder / "whole"))
@@ -201,7 +202,7 @@ class JobArray(Files):
                 self.assertEqual(said.splitlines()[0], f"{FRAMES} of {FRAMES} frames")
 
     def signal_each(self, number, out, array, tasks, names):
-        """To the processes of these names of each task ({task: its first frame}), as soon as that is there."""
+        """Signals the processes with these names of each task ({task: its first frame}), as soon as that frame exists."""
         todo = dict(tasks)
 
         def reached_all():
@@ -215,7 +216,7 @@ class JobArray(Files):
         wait_for(f"the frames {tasks}", reached_all)
 
     def start_and_kill(self, out, victims):
-        """Two tasks; SIGKILL to these processes of the second, which bears the number of the array, in the middle of its frames."""
+        """Starts two tasks, and kills these processes of the second, whose number is the array's, in the middle of its frames."""
         array, log = self.slurm.submit(2, *self.arguments(out))
         self.signal_each(signal.SIGKILL, out, array, {2: 0}, victims)
         before = frames(self.folder / out)
@@ -247,7 +248,7 @@ class JobArray(Files):
 
     def test_a_task_that_is_preempted_goes_on(self):
         array, log = self.slurm.submit(4, *self.arguments("preempted"))
-        # They stop, so that none is done before it is pre-empted.
+        # SIGSTOP, so that no task ends before it is pre-empted.
         self.signal_each(signal.SIGSTOP, "preempted", array, {1: 1, 2: 2, 3: 3, 4: 0}, ["sonard"])
         urgent = self.slurm.run("sbatch", "--parsable", "--partition=urgent", f"--ntasks={CORES}", "--output=/dev/null",
                                 "--wrap=true").stdout.strip()
