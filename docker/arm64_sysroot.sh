@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Unpacks the packages of Debian arm64 that sonard is built with, for cmake/toolchains/debian_arm64.cmake:
+# Unpacks the packages of Debian arm64 for building sonard, for cmake/toolchains/debian_arm64.cmake:
 #   docker/arm64_sysroot.sh FOLDER
-# From the mirrors of this machine, for its release. Nothing is installed, so it needs no emulator and no rights.
+# Uses this machine's mirrors and release. It installs no package, so it needs neither an emulator nor root.
 set -euo pipefail
 (($# == 1)) || { echo "Usage: docker/arm64_sysroot.sh FOLDER" >&2; exit 64; }
 here=$(dirname "$(realpath "$0")")
@@ -11,7 +11,7 @@ apt=$root.apt
 mkdir -p "$root" "$apt"/{etc,lists/partial,archives/partial}
 touch "$apt/status"
 
-# The first name of each line of the sections [build] and [test] that arm64 has; tools run on this machine.
+# The first name in each line of section [build] that arm64 has, libraries only; tools run on this machine.
 export APT_CONFIG=$apt/etc/apt.conf
 cat > "$APT_CONFIG" <<END
 APT::Architecture "arm64";
@@ -38,7 +38,7 @@ for package in "$apt"/archives/*.deb; do
   dpkg-deb -x "$package" "$root"
 done
 
-# What scripts of packages would have done, and absolute paths that are meant from the root of an arm64 system.
+# Does the work of the packages' scripts, and makes absolute paths relative to the arm64 root.
 libraries=$root/usr/lib/aarch64-linux-gnu
 ln -sf lapack/liblapack.so.3 blas/libblas.so.3 "$libraries"
 find "$root/usr/lib" "$root/lib" -type l | while read -r link; do

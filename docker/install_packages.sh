@@ -1,15 +1,15 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs sections of docker/packages.txt: install_packages.sh build runtime test. Does nothing, and needs no
-# rights, when all is there. "run", "test" and the Dockerfile call this, so the list is the only one.
+# Installs sections of docker/packages.txt: install_packages.sh build runtime test. If all packages are installed, it does
+# nothing and needs no root. "run", "test" and the Dockerfile call this, so there is only one list.
 set -euo pipefail
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
 
-# What is installed under its own name, or provided by a package of another: where node is not Debian's it brings npm.
+# Names of installed packages, and names that they provide: a nodejs that is not Debian's includes npm.
 installed=$(dpkg-query -W -f '${db:Status-Status},${Package},${Provides}\n' | sed -n 's/^installed,//p' | tr ',' '\n' |
   sed 's/^ *//; s/ .*//' | sort -u)
 
-# The lines of which no name is installed.
+# The lines without an installed package.
 missing=()
 for section in "$@"; do
   grep -qx "\[$section\]" "$list" || { echo "$list has no section [$section]" >&2; exit 64; }
@@ -25,7 +25,7 @@ if ((EUID != 0)); then
   as_root=(sudo)
 fi
 
-# The first name of each line that this release has.
+# The first name in each line that this release has.
 choose() {
   local line name
   chosen=() left_out=()

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Pages of the manual, from what the programs print for --help, and the changelog, both compressed.
+# Makes the manual pages from the programs' --help, and the changelog, both compressed.
 #   make_pages.sh PROGRAMS PACKAGING CHANGELOG OUT CONTACT
-# Called by at_commit_time.sh, whose time is that of the pages.
+# at_commit_time.sh calls it, so that the pages have the commit's time.
 set -euo pipefail
 programs=$1 packaging=$2 changelog=$3 out=$4 contact=$5
 rm -rf "$out"

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import time
 
-# Libraries of headers alone; their code is part of the programs.
+# Libraries of headers only; their code is part of the programs.
 COMPILED_IN = {"libboost-dev": "Boost", "libcli11-dev": "CLI11", "libglm-dev": "GLM", "nlohmann-json3-dev": "JSON for Modern C++"}
 LICENCE = "Apache-2.0"
 
@@ -33,7 +33,7 @@ def linked_libraries(program):
 
 
 def owner(path):
-    """The Debian package of a file. Links of merged /usr are tried in both forms."""
+    """The Debian package of a file. Because /usr is merged, it tries both forms of a path."""
     for candidate in (path, os.path.realpath(path), path.removeprefix("/usr"), "/usr" + path):
         done = subprocess.run(["dpkg-query", "--search", candidate], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         if done.returncode == 0:

@@ -43,7 +43,7 @@ submit() {
   task=$(dirname "$(realpath "$0")")/task.sh
   options+=(--parsable --job-name="sonard:$out")
   array=$(sbatch "${options[@]}" --array="1-$tasks" --output="$out.tasks/%a.log" "$task" "$tasks" "$@")
-  # Not "afterok": what a task has left undone is rendered by this job.
+  # Not "afterok": this job renders the frames that tasks have not finished.
   log=$(sbatch "${options[@]}" --dependency="afterany:$array" --output="$out.tasks/log.log" "$task" 1 "$@")
   echo "array $array of $tasks tasks, then $log; progress: $0 progress $out; to end: scancel $array $log"
 }

@@ -10,10 +10,10 @@ set -uo pipefail
 tasks=$1
 shift
 
-# Slurm queues a task again when it is pre-empted or its node fails, and we when the program fails in a way that
-# another node or another time may mend. Whole frames stay, and the task goes on with the next one.
+# Slurm queues a task again if it is pre-empted or its node fails. This script does so if the program fails in a way
+# that another node or a later try may not repeat. Whole frames are kept, and the task continues with the next one.
 again() {
-  # SLURM_JOB_ID of one of the tasks is the number of the whole array, which would be queued again.
+  # In one task, SLURM_JOB_ID is the number of the whole array; requeuing it would queue all tasks.
   local task=${SLURM_ARRAY_JOB_ID:-$SLURM_JOB_ID}${SLURM_ARRAY_TASK_ID:+_$SLURM_ARRAY_TASK_ID}
   if ((${SLURM_RESTART_COUNT:-0} < 5)); then
     echo "task $task: $1; queued again"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For mkdocs: README is the first page, and what links to the repository outside of docs/ is plain text on the site."""
+"""For mkdocs: README is the first page; links to the repository outside of docs/ become plain text on the site."""
 
 import pathlib
 import posixpath
@@ -20,7 +20,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, config, files):
-    # Places are those in the repository, from its root.
+    # Paths are relative to the repository's root.
     folder = "" if page.file.src_path == "index.md" else posixpath.join(DOCS, posixpath.dirname(page.file.src_path))
 
     def on_the_site(link):
