@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A recording of a Gemini and a Micron shows itself in Foxglove: the file is looked at by check_foxglove.js.
+"""A recording of a Gemini and a Micron as Foxglove displays it; check_foxglove.js reads the file.
 
     foxglove_test.py --programs DIR --npm DIR [TestCase.test_name ...]
 """
@@ -38,7 +38,7 @@ heads:
 
 class Foxglove(OwnMachine):
     def record(self, options=""):
-        """Pings of both heads; the path of the file."""
+        """Records pings of both heads. Returns the path of the file."""
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
             file.write(CONFIG.format(world=os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf"), options=options))

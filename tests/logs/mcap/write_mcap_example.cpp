@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes an MCAP file to standard output: twenty pings of two heads with their wire bytes and poses, in
-// chunks. "recovered" cuts it in the middle of a chunk first and finishes what is left. check_mcap.js knows
-// what is in it.
+// chunks. "recovered" cuts it in the middle of a chunk and then repairs it. check_mcap.js has the expected
+// content.
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
@@ -76,7 +76,7 @@ log::PoseUsed pose_of(std::uint32_t ping) {
   return used;
 }
 
-/// @param finished false: still being written, with the last chunk as far as it is
+/// @param finished false: without the file's end and with an incomplete last chunk
 mcap::Bytes example(bool finished, mcap::Compression compression) {
   mcap::Writer writer{"sonard tests", 1000, compression};
   mcap::testing::FileInMemory file;
@@ -104,7 +104,7 @@ mcap::Bytes example(bool finished, mcap::Compression compression) {
   return file.bytes;
 }
 
-/// As a writer that was killed in the middle of its third chunk from the end leaves it, and then made whole.
+/// A file whose writer was killed in the middle of the third chunk from the end, after its repair.
 mcap::Bytes recovered(const mcap::Bytes& whole) {
   const auto summary = mcap::read_summary(whole);
   const mcap::ChunkIndex& hit = summary->chunks[summary->chunks.size() - 3];

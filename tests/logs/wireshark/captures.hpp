@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures for tshark, and what it makes of them.
+// Captures for tshark, and its output for them.
 #pragma once
 
 #include <chrono>
@@ -11,12 +11,11 @@
 
 namespace sonard::testing {
 
-/// The values of one packet by field; of a field that is there several times, all of them with commas
-/// between.
+/// The values of one packet by field; repeated values of a field are separated by commas.
 using Row = std::map<std::string, std::string>;
 
-/// Writes `packets`, `apart` from each other, and has tshark read them with all dissectors and all
-/// checksums checked. @return one row for each packet. Fails the test when tshark cannot, or complains.
+/// Writes `packets`, `apart` from each other, and runs tshark on them with all dissectors, checking all
+/// checksums. @return one row for each packet. Fails the test if tshark fails or prints an error.
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
                          const std::vector<std::string>& options = {},
                          std::chrono::nanoseconds apart = std::chrono::microseconds{1});
@@ -25,7 +24,7 @@ std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::v
 pcapng::Bytes to_head(pcapng::ByteView payload);
 pcapng::Bytes from_head(pcapng::ByteView payload);
 
-/// What Wireshark and the dissectors complain about.
+/// The field with the warnings of Wireshark and the dissectors.
 inline const std::string expert_field = "_ws.expert.message";
 
 }  // namespace sonard::testing

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Gemini through the dissector. What each field holds is read off
-// docs/protocols/gemini.md (sections 5, 6, 10) and tests/data/gemini/notes.md by hand.
+// Byte examples of the Gemini through the dissector. Expected values are read off docs/protocols/gemini.md
+// (sections 5, 6, 10) and tests/data/gemini/notes.md by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -142,7 +142,7 @@ TEST(GeminiDissector, fields_of_examples) {
   }
 }
 
-// All of them but the two that are only the front of a longer datagram.
+// All examples except two, which are only the beginnings of longer datagrams.
 TEST(GeminiDissector, no_example_is_malformed) {
   std::vector<std::string> names = hex_fixture_names("gemini");
   std::erase_if(names, [](const std::string& name) { return name.ends_with("_start"); });
@@ -159,7 +159,7 @@ TEST(GeminiDissector, no_example_is_malformed) {
   }
 }
 
-// The header alone says nothing in any of them but one, and half a header never does.
+// The header alone is complete for status requests only, and half a header never is.
 TEST(GeminiDissector, every_example_cut_short_is_shown_as_malformed) {
   std::vector<pcapng::Bytes> packets;
   std::vector<std::string> names;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Examples with wrong bytes and cut ends: a dissector may complain, but not fail. Wireshark shows what fails
-// in Lua as an expert info of its own.
+// Examples with wrong bytes and cut ends: a dissector may warn, but not fail. Wireshark shows a failure in
+// Lua as an expert info of its own.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -62,7 +62,7 @@ void expect_no_failure(const std::vector<pcapng::Bytes>& packets) {
   }
 }
 
-// Broken frames behind each other, in datagrams that cut them anywhere: one goes on with the last.
+// Consecutive broken frames in datagrams that cut them anywhere.
 TEST(HostileBytes, ping360_stream) {
   const auto names = hex_fixture_names("ping360");
   std::mt19937 random{2};
@@ -78,7 +78,7 @@ TEST(HostileBytes, ping360_stream) {
   expect_no_failure(packets);
 }
 
-// The same broken messages in one stream, whose pieces Wireshark puts together.
+// The same kind of broken messages in one stream, which Wireshark reassembles.
 TEST(HostileBytes, oculus_stream) {
   const auto names = hex_fixture_names("oculus");
   std::mt19937 random{3};
@@ -92,8 +92,8 @@ TEST(HostileBytes, oculus_stream) {
   expect_no_failure(packets);
 }
 
-// Every four bytes begin a frame of the longest payload, and none has a right checksum. The time that tshark
-// is given is the limit.
+// Every four bytes begin a frame of the longest payload with a wrong checksum. tshark must finish within its
+// time limit.
 TEST(HostileBytes, ping360_frames_within_frames) {
   Bytes payload;
   while (payload.size() + 4 <= pcapng::max_udp_payload) {

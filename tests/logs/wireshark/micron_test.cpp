@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Micron through the dissector, over TCP and UDP. What each field holds is read off
+// Byte examples of the Micron through the dissector, over TCP and UDP. Expected values are read off
 // docs/protocols/micron.md (sections 5, 6, 10) by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -145,7 +145,7 @@ const std::vector<std::string> complaints{prefix + "malformed",    prefix + "bad
                                           prefix + "no_frame",     prefix + "wrong_count",
                                           prefix + "unknown_type", "_ws.malformed"};
 
-/// All examples of one direction, one behind the other.
+/// All examples of one direction, one after another.
 Bytes stream(bool commands) {
   Bytes all;
   for (const std::string& name : hex_fixture_names("micron")) {
@@ -157,7 +157,7 @@ Bytes stream(bool commands) {
   return all;
 }
 
-/// The types of those examples in the same order.
+/// The types of these examples in the same order.
 std::string types_of(bool commands) {
   std::string types;
   for (const std::string& name : hex_fixture_names("micron")) {
@@ -167,8 +167,8 @@ std::string types_of(bool commands) {
   return types;
 }
 
-/// Both streams through one TCP connection between the ends of a serial line, in pieces of `piece` bytes that
-/// begin and end anywhere in frames. @return what the dissector found and complained about, by field
+/// Both streams through one TCP connection between the ends of a serial line, in parts of `piece` bytes that
+/// begin and end anywhere in frames. @return the dissector's frames and warnings, by field
 Row through_tcp(std::size_t piece) {
   pcapng::TcpConversation line{pcapng::serial_client, pcapng::serial_head};
   std::vector<pcapng::Bytes> packets = line.open();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Oculus through the dissector. What each field holds is read off
-// docs/protocols/oculus.md (section 10) by hand.
+// Byte examples of the Oculus through the dissector. Expected values are read off docs/protocols/oculus.md
+// (section 10) by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

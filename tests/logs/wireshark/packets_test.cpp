@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets and times of a capture, as tshark reads them.
+// Packets and times of a capture in tshark.
 #include <gtest/gtest.h>
 
 #include "tests/logs/wireshark/captures.hpp"
@@ -24,7 +24,7 @@ TEST(Capture, addresses_ports_times_and_interface) {
   EXPECT_EQ(row.at("udp.checksum.status"), "1");
 }
 
-// A long piece becomes several segments, and an odd number of bytes has a checksum too.
+// Long data become several segments; the padding of an odd number of bytes counts in the checksum.
 TEST(Capture, long_pieces_and_long_datagrams) {
   pcapng::TcpConversation conversation{{0x7F000001, 40'000}, {0x7F000002, 40'001}};
   std::vector<pcapng::Bytes> packets = conversation.open();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Ping360 through the dissector, over UDP and TCP. What each field holds is read off
+// Byte examples of the Ping360 through the dissector, over UDP and TCP. Expected values are read off
 // docs/protocols/ping360.md (sections 1, 2, 5) by hand; bearings are 0.9 degrees for each gradian (2.2).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ constexpr pcapng::Endpoint host{0x7F000001, 50'000};
 constexpr pcapng::Endpoint head{0x7F000002, 12'345};
 constexpr pcapng::Endpoint discovery{0x7F000002, 30'303};
 
-/// In all examples the host is 0, and the head 2.
+/// In all examples the host's number is 0, and the head's 2.
 bool is_command(const Bytes& frame) {
   return frame[6] == 0;
 }
@@ -45,7 +45,7 @@ void append(Bytes& bytes, const Bytes& more) {
   bytes.insert(bytes.end(), more.begin(), more.end());
 }
 
-/// A frame with a right checksum (1).
+/// A frame with a correct checksum (1).
 Bytes frame(std::uint16_t id, std::uint8_t source, const Bytes& payload) {
   const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFFU); };
   Bytes bytes{'B', 'R', low(payload.size()), low(payload.size() >> 8), low(id), low(id >> 8), source, 0};
@@ -204,7 +204,8 @@ TEST(Ping360Dissector, fields_of_examples) {
   }
 }
 
-// What only one side sends tells the direction, of all else the number of the sender (1, 2).
+// If only one side sends a message, its number gives the direction; otherwise the sender's number does (1,
+// 2).
 TEST(Ping360Dissector, directions_and_requests_in_the_older_spelling) {
   const auto rows = dissect({datagram_of(frame(2000, 5, {5, 0})), datagram_of(frame(2601, 9, Bytes(14))),
                              datagram_of(frame(2300, 0, {})), datagram_of(frame(4, 0, {}))},
@@ -221,7 +222,7 @@ TEST(Ping360Dissector, directions_and_requests_in_the_older_spelling) {
   }
 }
 
-// ping-viewer's straight ahead is 200, and 400 means 0 (2.3, 6).
+// In ping-viewer straight ahead is 200, and 400 means 0 (2.3, 6).
 TEST(Ping360Dissector, straight_ahead_is_a_preference) {
   Bytes settings(14);
   const auto at = [&](std::uint8_t low, std::uint8_t high) {
@@ -247,7 +248,7 @@ const std::vector<std::string> complaints{
     prefix + "bad_checksum", prefix + "malformed",      prefix + "too_long",   prefix + "no_frame",
     prefix + "unfinished",   prefix + "between_frames", prefix + "unknown_id", "_ws.malformed"};
 
-/// All examples of one direction, one behind the other.
+/// All examples of one direction, one after another.
 Bytes stream(bool commands) {
   Bytes all;
   for (const std::string& name : hex_fixture_names("ping360")) {
@@ -259,7 +260,7 @@ Bytes stream(bool commands) {
   return all;
 }
 
-/// The numbers of those examples in the same order.
+/// The numbers of these examples in the same order.
 std::string ids_of(bool commands) {
   std::string ids;
   for (const std::string& name : hex_fixture_names("ping360")) {
@@ -277,7 +278,7 @@ std::vector<pcapng::ByteView> pieces_of(const Bytes& bytes, std::size_t size) {
   return pieces;
 }
 
-/// What the dissector found in all of `packets` and complained about, by field.
+/// The dissector's frames and warnings in all of `packets`, by field.
 Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& options = {}) {
   std::vector<std::string> fields{prefix + "frame.message_id"};
   fields.insert(fields.end(), complaints.begin(), complaints.end());
@@ -292,7 +293,7 @@ Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::s
   return all;
 }
 
-/// Both streams in a TCP connection, in pieces that begin and end anywhere in frames.
+/// Both streams in a TCP connection, in parts that begin and end anywhere in frames.
 std::vector<pcapng::Bytes> over_tcp(pcapng::TcpConversation line, std::size_t piece) {
   std::vector<pcapng::Bytes> packets = line.open();
   const Bytes commands = stream(true);
@@ -307,7 +308,7 @@ std::vector<pcapng::Bytes> over_tcp(pcapng::TcpConversation line, std::size_t pi
   return packets;
 }
 
-/// The same in datagrams.
+/// Both streams in datagrams.
 std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
   std::vector<pcapng::Bytes> packets;
   const Bytes commands = stream(true);
@@ -321,7 +322,7 @@ std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
   return packets;
 }
 
-// The serial line of a recording is on a port that the dissector of the Micron has, too.
+// A recording's serial line uses a port that the Micron's dissector has, too.
 TEST(Ping360Dissector, a_stream_over_tcp_is_put_together_from_any_pieces) {
   for (const std::size_t piece : {2000U, 50U, 3U}) {
     for (const std::uint16_t port : {std::uint16_t{12'345}, pcapng::serial_head.port}) {
@@ -335,8 +336,8 @@ TEST(Ping360Dissector, a_stream_over_tcp_is_put_together_from_any_pieces) {
   }
 }
 
-// Datagrams hold several frames, and cut them anywhere (1.1). tshark's second pass sees what its first has
-// noted.
+// Datagrams contain several frames, and cut them anywhere (1.1). tshark's second pass uses the state of the
+// first.
 TEST(Ping360Dissector, datagrams_are_put_together_from_any_pieces) {
   for (const std::size_t piece : {2000U, 100U, 7U, 1U}) {
     for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"-2"}}) {
@@ -365,7 +366,7 @@ TEST(Ping360Dissector, a_frame_in_pieces_names_the_packet_where_it_began) {
   EXPECT_EQ(rows[2].at(prefix + "message"), "device_data");
 }
 
-// 1.1: after 100 ms the rest of a frame is none. A whole frame is not taken for the rest of another.
+// 1.1: after 100 ms, bytes no longer complete a frame. A whole frame never completes another.
 TEST(Ping360Dissector, frames_that_are_never_finished) {
   const Bytes data = load_hex_fixture("ping360", "device_data");
   const auto front = pcapng::ByteView{data}.first(12);
@@ -387,11 +388,11 @@ TEST(Ping360Dissector, frames_that_are_never_finished) {
   EXPECT_NE(anew[1].at(prefix + "unfinished"), "");
 }
 
-// ---- What is wrong, and what is between frames
+// ---- Errors, and bytes between frames
 
 TEST(Ping360Dissector, a_wrong_checksum_is_said) {
   Bytes wrong = load_hex_fixture("ping360", "transducer");
-  wrong.at(10) = 0xC9;  // angle 201, which makes the sum one more than the 0x03a7 that is there
+  wrong.at(10) = 0xC9;  // angle 201, so the sum is one more than the checksum 0x03a7
   append(wrong, load_hex_fixture("ping360", "motor_off"));
   const auto row = dissect({datagram_of(wrong)}, {prefix + "message", prefix + "transducer.angle",
                                                   prefix + "bad_checksum", expert_field, "_ws.col.Info"})[0];
@@ -402,7 +403,7 @@ TEST(Ping360Dissector, a_wrong_checksum_is_said) {
   EXPECT_THAT(row.at("_ws.col.Info"), HasSubstr("1200 samples, wrong checksum; motor_off"));
 }
 
-// A length that is wrong would hide the frames behind it (1.1).
+// A wrong length must not hide the frames after it (1.1).
 TEST(Ping360Dissector, frames_inside_of_a_broken_one_are_found) {
   Bytes bytes = load_hex_fixture("ping360", "request_protocol_version");
   bytes.at(2) = 30;
@@ -464,7 +465,7 @@ TEST(Ping360Dissector, frames_are_found_on_any_port) {
   std::vector<pcapng::Bytes> packets = line.from_client(request);
   packets.push_back(pcapng::udp_packet(host, elsewhere, request));
   packets.push_back(pcapng::udp_packet(elsewhere, host, {}));
-  // A length of no message, a number of no message, and what begins as a frame does not.
+  // A wrong length for its number, an unknown number, and text that begins like a frame are not dissected.
   const pcapng::Endpoint other{0x7F000003, 40'002};
   packets.push_back(pcapng::udp_packet(host, other, frame(6, 0, {1, 2, 3})));
   packets.push_back(pcapng::udp_packet(host, other, frame(1001, 0, {})));
