@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark run on a small fan over the plane, whose echo is known.
+// A run of the benchmark on a small fan over the plane, whose echo is known.
 #include "tests/bench/campaign.hpp"
 
 #include <memory>

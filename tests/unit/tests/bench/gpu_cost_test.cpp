@@ -10,7 +10,7 @@ namespace {
 
 constexpr double attained = assumed::attained_share;
 
-/// So fast that nothing but what a test slows down takes any time.
+/// A card that takes no time, except for the properties that a test slows down.
 GpuCard instant() {
   return {"instant", "-", 1e30, 1e30, 1e30, 1e30, 1e30, 1e30, 1e30, 0, "nowhere", "everything"};
 }
@@ -125,7 +125,7 @@ TEST(GpuCost, AnEngineWithoutPassesHasNoWork) {
   EXPECT_EQ(format_work(results), "");
 }
 
-// ---- the page
+// ---- the web page
 
 GpuReport report_of(const std::string& gpu) {
   GpuReport report;

@@ -28,7 +28,8 @@ TEST(ImageError, IsZeroForTheReferenceItself) {
 }
 
 TEST(ImageError, PoolsLoudBinsOfAllBeams) {
-  // Loud are 100, 50 (beam 0) and 1, 1 (beam 1); 0.9 is below 1e-2 of its beam's 100. Errors .1, 0, .3, 0.
+  // Loud bins are 100, 50 (beam 0) and 1, 1 (beam 1); 0.9 is below 1e-2 of its beam's 100. Errors .1, 0, .3,
+  // 0.
   const auto error =
       compare_images(image_of(2, {110, 50, 5, 1.3F, 1, 0}), image_of(2, {100, 50, 0.9F, 1, 1, 0}));
   ASSERT_TRUE(error);
@@ -39,7 +40,7 @@ TEST(ImageError, PoolsLoudBinsOfAllBeams) {
 TEST(ImageError, TrimmingDropsTheWorstHundredth) {
   std::vector<float> truth(200, 1.0F), measured(200, 1.01F);
   measured[17] = 9;
-  measured[101] = 0;  // two of 200: exactly what is dropped
+  measured[101] = 0;  // two of 200: the share that is dropped
   const auto error = compare_images(image_of(1, measured), image_of(1, truth));
   ASSERT_TRUE(error);
   EXPECT_NEAR(error->bin_rms_trim, 0.01, 1e-6);
@@ -52,7 +53,7 @@ TEST(ImageError, FirstEchoIsFoundInsideABin) {
   const render::EchoImage truth = image_of(1, {0, 0, 100, 50, 0});
   EXPECT_NEAR(compare_images(image_of(1, {0, 50, 100, 0, 0}), truth)->first_echo_bins, 2.01 - 1.02, 1e-9);
   EXPECT_NEAR(compare_images(image_of(1, {0, 0, 0, 0, 2}), truth)->first_echo_bins, 4.5 - 2.01, 1e-9);
-  // Never heard: the end of the beam.
+  // Without an echo: the end of the beam.
   EXPECT_NEAR(compare_images(image_of(1, {0, 0, 0, 0, 0}), truth)->first_echo_bins, 5 - 2.01, 1e-9);
 }
 
@@ -62,8 +63,8 @@ TEST(ImageError, TheWorstBeamGivesTheFirstEcho) {
 }
 
 TEST(ImageError, CountsHolesAmongLoudAndFaintBins) {
-  // Loud: 1, 1; faint as well: 1e-3, 1e-5; beyond: 1e-7. A bin of 1e-4 of its truth is as good as empty, 1e-2
-  // is not.
+  // Loud: 1, 1; faint: also 1e-3, 1e-5; beyond: 1e-7. A bin of 1e-4 of its truth counts as empty, 1e-2 does
+  // not.
   const render::EchoImage truth = image_of(1, {1, 1, 1e-3F, 1e-5F, 1e-7F});
   const auto error = compare_images(image_of(1, {1, 1e-4F, 1e-5F, 0, 0}), truth);
   EXPECT_EQ(error->hole_fraction, 1.0 / 2);

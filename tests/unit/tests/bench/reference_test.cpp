@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A NumPy file of version 1.0, laid out by hand from the format's description: magic, version, length of the
-/// header, header padded to a multiple of 64, data.
+/// A NumPy file of version 1.0, written from the format's description: magic, version, length of the header,
+/// header padded to a multiple of 64, data.
 std::string npy(std::string header, const std::vector<float>& values) {
   while ((10 + header.size() + 1) % 64 != 0) {
     header += ' ';
@@ -115,9 +115,9 @@ TEST(PlaneReference, IsTheSeabedOfTheClosedForm) {
   EXPECT_EQ(image.at(0, 500), 0);  // 25 m: above the lowest ray, which meets the bed at 28.8 m
 }
 
-// Against the midpoint rule with so many nodes that kinks do not matter: a wall at the side of the fan, where
-// the first echo sweeps over 35 lines within a beam, an oblique slope, and the benchmark's own plane at its
-// fan's edge.
+// Compared with the midpoint rule, with so many nodes that kinks do not matter: a wall at the side of the
+// fan, whose first echo sweeps over 35 lines within a beam, an oblique slope, and the benchmark's own plane
+// at the edge of its fan.
 TEST(PlaneReference, QuadratureFindsTheKinks) {
   const double limit = 10 * std::numbers::pi / 180, tilt = 20 * std::numbers::pi / 180;
   const test::PlaneTruth wall{10, 1, 0, 0, limit};

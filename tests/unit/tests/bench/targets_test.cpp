@@ -54,7 +54,7 @@ TEST(Verdict, WithoutAnAimTheMustIsAll) {
 }
 
 TEST(SamplesNeeded, FollowsThePowerLaw) {
-  // error = 100 / samples: 1e-3 takes 1e5.
+  // error = 100 / samples: 1e-3 needs 1e5.
   const std::vector<SamplesAndError> first_order{{1e4, 1e-2}, {1e3, 1e-1}, {1e2, 1}};
   EXPECT_NEAR(*samples_needed(first_order, 1e-3), 1e5, 1);                        // beyond the last
   EXPECT_NEAR(*samples_needed(first_order, std::sqrt(1e-3)), std::sqrt(1e7), 1);  // between two
@@ -62,8 +62,8 @@ TEST(SamplesNeeded, FollowsThePowerLaw) {
 }
 
 TEST(SamplesNeeded, UsesTheSlopeWhereTheErrorLies) {
-  // First order down to .01, then half: from 1e4 on, a hundredth of the error takes ten thousand times the
-  // samples.
+  // First order down to .01, then half order: from 1e4 on, a hundredth of the error needs ten thousand times
+  // the samples.
   const std::vector<SamplesAndError> curve{{1e3, 1e-1}, {1e4, 1e-2}, {1e6, 1e-3}};
   EXPECT_NEAR(*samples_needed(curve, 1e-4), 1e8, 1e3);
   EXPECT_NEAR(*samples_needed(curve, 0.05), 2e3, 1);
@@ -108,7 +108,7 @@ TEST(Targets, AreReadFromTheMeasurementsOfTheirEngine) {
   EXPECT_NEAR(*ping.measured, 10, 1e-12);
   EXPECT_NEAR(ping.must, 20, 1e-12) << "15 of 75 ms";
   EXPECT_EQ(ping.verdict(), Verdict::aim_met);
-  // First order: .009 takes 1e7 points, a hundred times as many.
+  // First order: .009 needs 1e7 points, a hundred times as many.
   EXPECT_NEAR(*row_named(rows, "samples at equal error, points / default, swell100k").measured, 100, 1e-6);
   EXPECT_EQ(row_named(target_rows(m, "gpu"), "default swell100k, % of points").verdict(), Verdict::missed);
 }

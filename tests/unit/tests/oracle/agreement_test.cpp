@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two integrators share the echo law and nothing else. On a bed that shadows itself, with things on it,
-// they must tell the same, and each must know how far it may be off.
+// The two integrators share the echo law only. For a bed that shadows itself, with objects on it, they must
+// agree, and each must know its own error.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST_F(OracleAgreement, RaysWithFootprints) {
 }
 
 TEST_F(OracleAgreement, PointsInRangeWithoutAnyFootprint) {
-  // Some 130 rows pass a line of 40 mm, so that a point more or less is a percent in each of 16 columns.
+  // Some 130 rows cross a line of 40 mm, so one point more or less is a percent in each of 16 columns.
   RayOptions options;
   options.footprint = false;
   options.refinements = 0;
@@ -133,7 +133,7 @@ TEST_F(OracleAgreement, SameBitsForAnyNumberOfThreads) {
 
 TEST(OracleCorners, ThinPipeThatStandsInTheHalfPlanesOfTheSlices) {
   // 1 cm wide at 40 m, a thirtieth of a beam, upright: its sides are jumps in azimuth, and two slices of a
-  // coarse division can pass on either side of it. Divided at its corners the beam knows of it at once.
+  // coarse division can miss it on either side. A beam divided at its corners finds it at once.
   render::World world = world_of({test::make_tube({0, 0, -1}, {0, 0, 1}, 0.005, 12, 1)});
   world.bodies[0].T_world_body.position_m = {40, 0.05, 0};
   const EchoLaw law(ping(1, 0.47 * degree, 4 * degree, 20, 60));
@@ -148,7 +148,7 @@ TEST(OracleCorners, ThinPipeThatStandsInTheHalfPlanesOfTheSlices) {
   const EchoTruth by_corners = integrate_slices(facets, law, options);
   EXPECT_LT(by_corners.rays, fine.rays);
   EXPECT_LT(difference(by_corners, fine).rms, 1e-4);
-  // Far away each facet sends back its area times cos^2 / r^4; their normals are 30 degrees apart.
+  // Far away each facet reflects its area times cos^2 / r^4; their normals are 30 degrees apart.
   double truth = 0;
   for (const double turned : {-75, -45, -15, 15, 45, 75}) {
     const double area = 2 * 0.005 * std::sin(15 * degree) * 2.0;

@@ -22,7 +22,8 @@ glm::dvec3 random_direction(std::mt19937& random) {
   return glm::normalize(glm::dvec3(std::abs(normal(random)) + 0.3, normal(random), normal(random)));
 }
 
-/// Range to the triangle by solving for the crossing of its plane and the shares of its corners there.
+/// Range to the triangle by solving for the intersection with its plane and the barycentric coordinates
+/// there.
 double range_by_cramer(const Facet& facet, const glm::dvec3& d) {
   const glm::dvec3 e1 = facet.corners[1] - facet.corners[0];
   const glm::dvec3 e2 = facet.corners[2] - facet.corners[0];
@@ -66,7 +67,7 @@ TEST(OracleBvh, TriangleSoupAsTestingEveryTriangle) {
 }
 
 TEST(OracleBvh, NoRaySlipsThroughAnEdgeOrACorner) {
-  // From inside a closed ball every ray hits, those through its corners and the middles of its edges too.
+  // From inside a closed ball every ray hits, even through its corners and the middles of its edges.
   const Facets facets(world_of({test::make_ball({0.1, 0.05, -0.02}, 2.0, 24, 12)}), {}, law);
   const Bvh bvh(facets);
   for (const Facet& facet : facets.all()) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both integrators against what can be written down (docs/physics.md 3.2): the truth that makes them a
-// reference.
+// Both integrators compared with closed forms (docs/physics.md 3.2), which make them references.
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -49,7 +48,7 @@ EchoTruth rays_of(const Surface& surface, const EchoLaw& law, const std::vector<
   return integrate_rays(surface, law, ray_options(beams, doublings));
 }
 
-/// Within 1e-4, and within what the integrator says of itself; `slack` is that of the closed form.
+/// Within 1e-4, and within the integrator's own error; `slack` is the error of the closed form.
 void expect_reference(const EchoTruth& measured, const EchoTruth& truth) {
   const RelativeError error = difference(measured, truth);
   const RelativeError claim = estimated_error(measured);
@@ -156,7 +155,7 @@ TEST(OracleClosedForm, T6TwoWallsThatMeetInsideABeam) {
   const EchoLaw law(settings);
   const std::vector<double>& edges = law.beam_edges_rad();
   const double corner = edges[16] + 0.3 * (edges[15] - edges[16]);  // inside beam 15
-  // Left of it (psi greater) a wall at 10 m, right of it one at 13 m: the near one ends at the corner.
+  // Left of it (larger psi) a wall at 10 m, right of it one at 13 m: the near one ends at the corner.
   const double edge_y = 10 * std::tan(corner);
   const std::vector<render::TriangleMesh> walls = {quad({10, edge_y + 50, 0}, {0, 50, 0}, {0, 0, 50}),
                                                    quad({13, 0, 0}, {0, 100, 0}, {0, 0, 50})};
@@ -180,7 +179,7 @@ TEST(OracleClosedForm, T6TwoWallsThatMeetInsideABeam) {
   shapes.push_back(make_thin_wall({10, edge_y + 50, 0}, {0, 50, 0}, {0, 0, 50}, white));
   shapes.push_back(make_plane({13, 0, 0}, {1, 0, 0}, white));
   const EchoTruth rays = rays_of(*make_group(std::move(shapes)), law, beams, 3);
-  // The corner is no edge of a cell: its beam converges with first order, by half a cell at the finest.
+  // The corner is not at a cell's edge: its beam converges with first order, by half of the finest cell.
   const RelativeError error = difference(rays, truth);
   EXPECT_LT(error.rms, 1.0 / (4 * 8 * 8));
   EXPECT_LT(error.rms, estimated_error(rays).rms + 1e-4);
@@ -202,7 +201,7 @@ TEST(OracleClosedForm, T7WallAndItsShadow) {
                                                     quad(centre, {0, 40, 0}, {0, 0, 0.75})};
   const EchoTruth slices = slices_of(world_of(meshes), law, beams);
   expect_reference(slices, truth);
-  // In beam 16, beside the axis: nothing between the foot of the wall (13.0 m) and the end of the shadow.
+  // In beam 16, beside the axis: no echo between the foot of the wall (13.0 m) and the end of the shadow.
   for (int k = 0; k < settings.range.count; ++k) {
     const double r1 = k * settings.range.step_m;
     if (r1 > 13.01 && r1 + settings.range.step_m < 17.857) {
@@ -237,7 +236,7 @@ TEST(OracleClosedForm, PaperModeIsTheSigmoidOfTheIncidence) {
   const glm::dvec3 foot(2.5, 0.5, -3.0);
   const EchoTruth slices = slices_of(plane_world(foot), law, chosen);
   const EchoTruth rays = rays_of(*make_plane(foot, glm::normalize(foot), white), law, chosen, 2);
-  constexpr int ends = 8;  // lines at the ends of the fan, which the plane does not fill
+  constexpr int ends = 8;  // lines at the ends of the fan, which the plane fills only partly
   int compared = 0;
   for (const int beam : chosen) {
     for (int k = ends; k + ends < settings.range.count; ++k) {
@@ -254,7 +253,7 @@ TEST(OracleClosedForm, PaperModeIsTheSigmoidOfTheIncidence) {
 }
 
 TEST(OracleClosedForm, SincPatternWeighsTheElevations) {
-  // A wall seen by a sliver of azimuth: E per radian = integral of b(theta) cos^4(theta) / d^2 over the fan.
+  // A wall in a sliver of azimuth: E per radian = integral of b(theta) cos^4(theta) / d^2 over the fan.
   render::SonarSettings settings = ping(1, 1e-3 * degree, 20 * degree, 60, 12);
   settings.aperture.elevation = render::Aperture::Elevation::sinc;
   const EchoLaw law(settings);

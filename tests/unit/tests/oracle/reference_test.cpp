@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stored images: what they are made of, and that they still belong to the scenes as built today.
+// The stored images: their format, and whether they still belong to the present scenes.
 #include "tests/oracle/reference.hpp"
 
 #include <algorithm>
@@ -106,7 +106,7 @@ TEST(OracleReference, IsReadAsItWasWritten) {
   EXPECT_THROW(read_reference(folder, "no_such_scene"), std::runtime_error);
 }
 
-/// The reference's beams alone, as an image to compare with.
+/// The chosen beams of the reference as an image, for comparison.
 EchoTruth as_truth(const Reference& reference, const std::vector<int>& beams) {
   EchoTruth truth;
   truth.beams = reference.beams;
@@ -128,7 +128,7 @@ TEST_P(StoredReference, BelongsToTheSceneAsBuiltToday) {
   ASSERT_EQ(scene_hash(scene.world, scene.T_world_sonar, scene.settings), reference.scene_sha256)
       << "the reference is stale; run: " << reference.command;
   EXPECT_LT(reference.error.rms, 1e-4);
-  // Rays, which share nothing with the slices but the echo law, came out the same as far as they know.
+  // Rays, which share only the echo law with the slices, agreed within their errors.
   EXPECT_LT(reference.ray_check.rms, reference.ray_error.rms + reference.error.rms);
   EXPECT_GT(reference.ray_check_stride, 0);
 

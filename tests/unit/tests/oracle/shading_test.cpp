@@ -18,7 +18,7 @@ namespace sonard::oracle {
 
 namespace {
 
-/// A wall at 10 m that a sliver of a beam sees dead ahead.
+/// A sliver of a beam, dead ahead at a wall at 10 m.
 const render::SonarSettings sliver = ping(1, 1e-3 * degree, 10 * degree, 50, 12.5);
 
 double wall_echo(const render::World& world, const render::SonarSettings& settings = sliver) {
@@ -26,7 +26,7 @@ double wall_echo(const render::World& world, const render::SonarSettings& settin
   return total(integrate_slices(Facets(world, {}, law), law));
 }
 
-/// Faces the sonar: seen from it, y to the left is texture u, z is v.
+/// Faces the sonar. From there, texture u is y to the left, and v is z.
 render::TriangleMesh wall() {
   return quad({10, 0, 0}, {0, -4, 0}, {0, 0, 4});
 }
@@ -46,7 +46,7 @@ TEST(OracleShading, BilinearTextureRepeats) {
 }
 
 TEST(OracleShading, VertexNormalsInsteadOfTheTrianglesOwn) {
-  // Turned by beta about z, seen at psi = 0: cos(phi) is cos(beta) times that of the wall at every elevation.
+  // Rotated by beta about z, at psi = 0: cos(phi) is cos(beta) times the wall's value at every elevation.
   const double beta = 40 * degree;
   render::TriangleMesh turned = wall();
   turned.normals.assign(4, glm::vec3(-std::cos(beta), std::sin(beta), 0));
@@ -54,7 +54,7 @@ TEST(OracleShading, VertexNormalsInsteadOfTheTrianglesOwn) {
 }
 
 TEST(OracleShading, VertexNormalsAreInterpolatedAndMadeUnit) {
-  // From -a at one side to +a at the other: dead ahead the normal is straight and as long as it should be.
+  // From -a at one side to +a at the other: dead ahead the normal is perpendicular and has unit length.
   render::TriangleMesh curved = wall();
   for (const glm::vec3& p : curved.positions) {
     const double a = p.y / 4 * 60 * degree;
@@ -74,13 +74,13 @@ TEST(OracleShading, NormalMapTurnsTheNormalInTheFrameOfItsTangent) {
   map->height_px = 1;
   map->rgb = {230, 128, 200};
   world.bodies[0].parts[0].normal_map = map;
-  // (m.x, m.y, m.z) along tangent, bitangent and normal; only the normal's share faces the sonar at psi =
-  // theta = 0. The bitangent is cross(n, t) = (-1, 0, 0) x (0, -1, 0) = +z: seen from theta, it adds m.y
-  // tan(theta), which the symmetric fan takes away again.
+  // (m.x, m.y, m.z) along tangent, bitangent and normal; at psi = theta = 0 only the normal's share faces the
+  // sonar. The bitangent is cross(n, t) = (-1, 0, 0) x (0, -1, 0) = +z: at theta, it adds m.y tan(theta),
+  // which cancels over the symmetric fan.
   const glm::dvec3 m = glm::dvec3(230, 128, 200) / 255.0 * 2.0 - 1.0;
   EXPECT_NEAR(wall_echo(world) / wall_echo(world_of({wall()})), m.z / glm::length(m), 1e-5);
 
-  // Upper and lower half of the fan tell the sign of the bitangent.
+  // The upper and the lower half of the fan reveal the sign of the bitangent.
   map->rgb = {128, 230, 200};
   const glm::dvec3 up = glm::dvec3(128, 230, 200) / 255.0 * 2.0 - 1.0;
   const EchoLaw law(ping(1, 1e-3 * degree, 1 * degree, 50, 12.5));
@@ -118,7 +118,7 @@ TEST(OracleShading, RaysAndSlicesReadANormalMapAlike) {
   EXPECT_LT(difference(rays, slices).rms, 1e-3);
 }
 
-/// The sphere of T4 as triangles, fine enough that a facet's sag is a thousandth of a line.
+/// The sphere of T4 as triangles, so fine that a facet's sag is a thousandth of a line.
 TEST(OracleShading, SphereOfTrianglesIsTheSphere) {
   render::World world = world_of({test::make_ball({0, 0, 0}, 0.5, 512, 256)});
   world.bodies[0].T_world_body.position_m = {8, 0, 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Worlds and pings that are small enough to be rendered to the last digit in a test.
+// Worlds and pings small enough for a test to render them to the last digit.
 #pragma once
 
 #include <cmath>
@@ -53,8 +53,8 @@ inline render::TriangleMesh quad(const glm::dvec3& centre, const glm::dvec3& hal
   return mesh;
 }
 
-/// Two triangles on the plane of that foot point, large enough for any fan. The body's pose, in double
-/// precision, puts them there: corners in single precision would miss the plane by 1e-5 m.
+/// Two triangles on the plane with this foot point, large enough for any fan. The body's pose, in double
+/// precision, places them: corners in single precision would miss the plane by 1e-5 m.
 inline render::World plane_world(const glm::dvec3& foot) {
   const glm::dvec3 normal = glm::normalize(foot);
   render::World world = world_of({quad({0, 0, 0}, {500, 0, 0}, {0, 500, 0})});
@@ -65,7 +65,7 @@ inline render::World plane_world(const glm::dvec3& foot) {
   return world;
 }
 
-/// Closed form of the chosen beams: density(psi, r1, r2) integrated over each, the others 0.
+/// Closed form: density(psi, r1, r2) integrated over each chosen beam; 0 in the other beams.
 inline EchoTruth closed_form(const render::SonarSettings& settings, const std::vector<int>& beams,
                              const std::function<double(int beam, double r1, double r2)>& beam_echo) {
   EchoTruth truth;

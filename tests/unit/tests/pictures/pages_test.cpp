@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/acoustics.md and docs/gallery.md, their pictures and the tables that pictures are drawn from name the
-// same things.
+// docs/acoustics.md and docs/gallery.md, their pictures, and the tables that define the pictures have the
+// same names.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,7 +64,7 @@ TEST(AcousticsPage, HasASectionForEachRow) {
     }
     sections.insert(title);
   }
-  sections.erase("how-real-it-is");  // of all of them
+  sections.erase("how-real-it-is");  // about all rows
   EXPECT_EQ(matches("acoustics.md", R"(\n\| \[[^\]]+\]\(#([^)]+)\) \|)"), sections);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What write_png() writes, read by OpenCV.
+// write_png()'s files, read by OpenCV.
 #include "tests/pictures/png_file.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 TEST(PngFile, KeepsTheColoursOfPictures) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "picture.png";
-  // The whole palette, and what lies between ground and labels: within half a step of 6 codes.
+  // The whole palette, and colours between ground and labels: within half a step of 6 codes.
   cv::Mat picture(3, 256, CV_8UC3);
   picture::amber::palette(picture::amber::Samples::decibels).copyTo(picture.row(0));
   for (int x = 0; x < 256; ++x) {

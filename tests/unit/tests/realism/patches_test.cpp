@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The estimator of spikiness, on images whose distribution has a closed form: Rayleigh amplitudes have
+// The estimator of spikiness on images whose distribution has a closed form: Rayleigh amplitudes have
 // a coefficient of variation of sqrt(4 / pi - 1) = 0.5227 and an intensity index of 1; K distributed ones an
 // index of 1 + 2 / nu.
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace sonard::realism {
 namespace {
 
-/// One patch to a beam column, 60 rows of patches.
+/// One patch for each beam column, 60 rows of patches.
 AmplitudeImage image_of(const std::function<double(int line, int beam)>& amplitude, int columns = 6) {
   AmplitudeImage image{60 * patch_lines, columns * patch_beams, 1e9, {}};
   for (int line = 0; line < image.lines; ++line) {
@@ -48,7 +48,7 @@ TEST(HomogeneousPatches, RayleighEchoesHaveAnIndexOfOne) {
   }
 }
 
-// The median of the index of 640 samples lies a little below its mean, the more the heavier the tail.
+// The median of the index of 640 samples is a little below its mean, and more so for a heavier tail.
 TEST(HomogeneousPatches, KDistributedEchoesHaveOnePlusTwoOverNu) {
   for (const double nu : {2.0, 4.0, 10.0}) {
     const std::vector<Patch> patches = homogeneous_patches(image_of(speckle(nu)));
@@ -64,7 +64,7 @@ TEST(HomogeneousPatches, ASlopeIsNotPicked) {
       return z(line, beam) * (1 + change * ((beam % patch_beams) / (patch_beams - 1.0) - 0.5));
     };
   };
-  // A quadrant mean is off by a quarter of the change across the patch, the standard deviation is 0.52 and
+  // A quadrant mean differs by a quarter of the change across the patch; the standard deviation is 0.52 or
   // more.
   EXPECT_EQ(homogeneous_patches(image_of(sloping(1.9))).size(), 0u);
   const std::vector<Patch> gentle = homogeneous_patches(image_of(sloping(0.2)));
@@ -101,7 +101,7 @@ TEST(HomogeneousPatches, ClippedPatchesAreNotPicked) {
       image.full_scale = 5;
       for (int line = 0; line < image.lines; ++line) {
         for (int beam = 0; beam < patch_beams; ++beam) {
-          // Spread over the patch, so that all quadrants have their share.
+          // Spread over the patch, so that all quadrants have a share.
           const int place = (line % patch_lines * patch_beams + beam) * 49 % 640;
           if (place < clipped) {
             image.amplitude[static_cast<std::size_t>(line * patch_beams + beam)] = code;

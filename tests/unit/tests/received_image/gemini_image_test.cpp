@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statistics of speckle and noise on the 8-bit image as a client has it: the head's job makes the settings,
-// the receiver the samples, the head sends them, and a topside puts the image together (T12 of
-// docs/physics.md 3.2). Expected values are those of 2.8 and 2.16.
+// Statistics of speckle and noise on the 8-bit image in the client: the head's job gives the settings, the
+// receiver the samples, the head sends them, and a topside assembles the image (T12 of docs/physics.md 3.2).
+// Expected values are from 2.8 and 2.16.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace {
 
 using Image = test::GeminiImage;
 
-/// Head and topside with nothing lost between them; the world is an even echo.
+/// Head and topside without losses between them; the world is an even echo.
 class Client {
  public:
   Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)
@@ -40,15 +40,15 @@ class Client {
   gemini::PingConfig config_;
 };
 
-/// The head's own settings but for a gain that is the same at all ranges. Where the echo or the noise is the
-/// intensity `level` its root is 57 codes: 255 are exceeded once in 5e8, and rounding to whole codes adds
-/// 1e-4 to the variance.
+/// The head's own settings, but with the same gain at all ranges. If the echo or the noise has the intensity
+/// `level`, its root is 57 codes: 255 is exceeded once in 5e8, and rounding to whole codes adds 1e-4 to the
+/// variance.
 constexpr double level = 0.05;
 
 render::SonarSettings even_gain() {
   render::SonarSettings settings = server::gemini_acoustics();
   settings.physical.pulse = render::PhysicalModel::Pulse::point;  // lines are independent
-  settings.physical.texture_nu = 0;                               // and Rayleigh
+  settings.physical.texture_nu = 0;                               // and have a Rayleigh distribution
   settings.physical.tvg_log_coefficient = 0;
   settings.physical.tvg_absorption_db_per_m = 0;
   settings.physical.gain_db = 0;
@@ -91,8 +91,8 @@ double covariance(const Part& part, int lag) {
   return sum / n;
 }
 
-/// Largest distance between the distribution of codes and Rayleigh's with the same mean power; a code stands
-/// for the amplitudes up to half a code away.
+/// Largest distance between the distribution of codes and Rayleigh's with the same mean power. A code means
+/// the amplitudes within half a code.
 double distance_from_rayleigh(const Part& part) {
   std::vector<double> count(256, 0.0);
   double power = 0, n = 0;
@@ -110,8 +110,8 @@ double distance_from_rayleigh(const Part& part) {
   return worst;
 }
 
-// About 2000 lines of 112 beams, of which a fourth are independent: the standard error of CV is 0.002, of a
-// correlation 0.004.
+// About 2000 lines of 112 beams, of which a fourth are independent. Standard errors: CV 0.002, correlation
+// 0.004.
 void expect_speckle_of_the_array(const Image& image) {
   const Part part{image};
   std::printf("CV %.4f, Kolmogorov-Smirnov %.4f, correlation %.3f %.3f %.3f\n",
@@ -151,7 +151,7 @@ double correlation(const Image& a, const Image& b) {
   return sum / std::sqrt(square_a * square_b);
 }
 
-// A sonar at rest before a scene at rest, noise 20 dB below the echo: the pattern stays, the noise does not.
+// A sonar and a scene at rest, noise 20 dB below the echo: the pattern repeats, the noise does not.
 TEST(GeminiImage, EchoesOfASonarAtRestRepeatAndNoiseDoesNot) {
   render::SonarSettings settings = even_gain();
   settings.physical.noise_level_db -= 20;
@@ -175,7 +175,7 @@ double mean_level_db(const Image& image, double from_m, double to_m) {
   return 10 * std::log10(power / n);
 }
 
-// The head as it comes, in empty water, at 50 m: noise rises by the law of the TVG, and then no more.
+// The head's default settings, in empty water, at 50 m: noise rises with the TVG, then stays flat.
 TEST(GeminiImage, NoiseFloorRisesWithTheTvgAndIsFlatOverTheLastQuarterOf50m) {
   const Image image = Client(server::gemini_acoustics(), 6028, 2).images(1, 0).front();
   EXPECT_NEAR(image.lines * image.line_m, 50, 0.1);

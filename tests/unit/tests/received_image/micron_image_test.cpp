@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a client of a Micron finds in its lines, through the settings of a job, the receiver and the codec
-// (docs/physics.md 2.16).
+// A client's lines from a Micron, through the settings of a job, the receiver and the codec (docs/physics.md
+// 2.16).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -21,7 +21,7 @@ using test::decibels_of;
 using test::MicronClient;
 
 constexpr int bins = 500;
-constexpr double range_m = 25;  // in bins of 50 mm, if nothing else is said
+constexpr double range_m = 25;  // in bins of 50 mm, by default
 
 std::size_t bin_at(double wanted_m) {
   return static_cast<std::size_t>(wanted_m / range_m * bins);
@@ -45,9 +45,9 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
   EXPECT_EQ(*seen.rbegin(), 191);
 }
 
-// Blank first row; a peak at 0.2 to 0.35 m, gone by 0.8 to 1 m. At a gain of 58 % it comes to 20 to 25 dB, at
-// 88 % to 52, with a standard deviation of 1.5 to 3 dB from ping to ping. Behind it the vehicle reverberates
-// for 2 to 4 m: at 88 % more than 20 dB at 1.5 m, and as good as none at 4 m.
+// Blank first row; a peak at 0.2 to 0.35 m, gone by 0.8 to 1 m. It reaches 20 to 25 dB at a gain of 58 %, and
+// 52 at 88 %, with a standard deviation of 1.5 to 3 dB from ping to ping. Behind it the vehicle reverberates
+// for 2 to 4 m: at 88 % more than 20 dB at 1.5 m, and almost 0 at 4 m.
 TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.interference.probability = 0;
@@ -96,8 +96,8 @@ TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
   EXPECT_LT(decibels_of(client.line(0, false)[bin_at(0.3)]), 12);  // noise: 5 dB and two standard deviations
 }
 
-// Empty water to 50 m in bins of 64 mm at a gain of 28 %: 29 % zeros, some everywhere else, and from 34 m on
-// a floor of 4 to 6 dB, where levels have a standard deviation of 2.5 to 3.2 dB.
+// Empty water to 50 m in bins of 64 mm at a gain of 28 %: 29 % zeros, spread over all ranges. From 34 m on a
+// floor of 4 to 6 dB, with a standard deviation of levels of 2.5 to 3.2 dB.
 TEST(MicronImage, EmptyWaterAlwaysShowsSomething) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.interference.probability = 0;
@@ -129,8 +129,8 @@ TEST(MicronImage, EmptyWaterAlwaysShowsSomething) {
 
 // docs/physics.md 2.16: recorded levels to 50 m in 794 bins have a standard deviation of 2.9 dB and share
 // 0.38 to 0.49 with the next bin. A level is a weighted mean of the decibels of independent half bins, each
-// with a standard deviation of 5.57 dB (Rayleigh): o 1 1 o, so that neighbours share 2 o / (2 + 2 o^2), and
-// bins farther apart nothing. Of noise and of an even echo 25 dB over the noise.
+// with a standard deviation of 5.57 dB (Rayleigh): o 1 1 o. So neighbours share 2 o / (2 + 2 o^2), and bins
+// farther apart share 0. For noise, and for an even echo 25 dB over the noise.
 TEST(MicronImage, NeighbouringBinsOverlap) {
   for (const double overlap : {0.25, 0.55, 1.0}) {
     for (const bool echo : {false, true}) {
@@ -168,8 +168,8 @@ TEST(MicronImage, NeighbouringBinsOverlap) {
   }
 }
 
-// docs/physics.md 2.16: from sweep to sweep of a vehicle at rest echoes repeat by about 0.95, noise does not.
-// An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
+// docs/physics.md 2.16: from sweep to sweep of a vehicle at rest, echoes repeat by about 0.95; noise does
+// not. An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
 TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
@@ -198,9 +198,9 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   EXPECT_LT(std::abs(of_noise), 0.05);
 }
 
-// docs/physics.md 2.16: lines 1.8 degrees apart share .47 of an echo as recorded, with what all beds have in
-// common; of an even one a field of exp(-(d / 3 degrees)^2) leaves .40 behind the mean of four decibels, and
-// nothing of the noise, whose mean level differs between bearings by up to 7 dB and stays.
+// docs/physics.md 2.16: recorded lines 1.8 degrees apart share .47 of an echo, including the structure that
+// all beds have. For an even echo, a field of exp(-(d / 3 degrees)^2) leaves .40 after the mean of four
+// decibels. Noise shares 0; its mean level differs between bearings by up to 7 dB and is constant.
 TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
   server::HeadConfig head = server::micron_kind().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
@@ -251,8 +251,8 @@ TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
   EXPECT_LT(std::abs(shared(sweep(even, 0), 1)), 0.02);
 }
 
-// Noise of 40 dB in every bin, and bursts of 10 dB, so that each is seen: 14 to 18 % of the lines have one,
-// of a median length of 3 to 5 m. To the end of the 25 m last the one in ten that does so anyway, and of the
+// Noise of 40 dB in every bin, and bursts of 10 dB, so that each is visible: 14 to 18 % of the lines have
+// one, of a median length of 3 to 5 m. One burst in ten lasts to the end of the 25 m anyway, and of the
 // others 4 m * 3 / (4 ln 2) / 25 m = 17.3 %: 25.6 % in all (at 60 m one in six).
 TEST(MicronImage, OnePingOfSixIsHitByABurstOfInterference) {
   server::HeadConfig head = server::micron_kind().make_default();

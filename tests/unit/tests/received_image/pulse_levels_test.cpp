@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels against the length of the pulse that a client asks for, of every head with a tone: a post keeps its
-// level, a bed gains 10 log10 of the length, and noise is that of the receiver (docs/physics.md 2.6, 2.9).
+// Levels for different pulse lengths that a client requests, for every head with a tone: a post keeps its
+// level, a bed gains 10 log10 of the length, and noise has the receiver's level (docs/physics.md 2.6, 2.9).
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -23,7 +23,7 @@
 namespace sonard {
 namespace {
 
-/// What a client asks of a Gemini, but for its tone of so many cycles.
+/// Settings of a client's usual ping of a Gemini, with a tone of so many cycles.
 render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double rounding_m = -1) {
   server::HeadConfig head = server::gemini_kind().make_default();
   if (rounding_m >= 0) {
@@ -37,7 +37,7 @@ render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double r
       gemini::plan_ping(config, server::gemini_config(head).device)->job, head);
 }
 
-/// The same of a Ping360.
+/// Settings of a client's ping of a Ping360.
 render::SonarSettings ping360_with(std::uint16_t pulse_us, std::uint16_t sample_period,
                                    std::uint16_t frequency_khz = 740) {
   const server::HeadConfig head = server::ping360_kind().make_default();
@@ -50,7 +50,7 @@ render::SonarSettings ping360_with(std::uint16_t pulse_us, std::uint16_t sample_
       ping360::make_job(ping360::form_of(command), server::ping360_config(head).device), head);
 }
 
-/// The echo alone, and of the same level at any range.
+/// The echo alone, with the same level at any range.
 render::EchoImage echo_of(const render::World& world, render::SonarSettings settings) {
   settings.physical.water_clutter.density_per_m3 = 0;
   settings.physical.absorption_db_per_m = 0;
@@ -62,7 +62,7 @@ render::EchoImage echo_of(const render::World& world, render::SonarSettings sett
   return renderer.render_echo(request);
 }
 
-/// Of the strongest cell.
+/// Level of the strongest cell of a post.
 double post_db(const render::SonarSettings& settings, float range_m) {
   const render::World post = test::make_world(
       {test::make_body("post", test::make_quad({range_m, -0.02F, -0.02F}, {0, 0.04F, 0}, {0, 0, 0.04F}))});
@@ -70,7 +70,7 @@ double post_db(const render::SonarSettings& settings, float range_m) {
   return 10 * std::log10(static_cast<double>(std::ranges::max(echo.intensity)));
 }
 
-/// Of a bed 2 m below the head, at a range in the middle of the fan.
+/// Level of a bed 2 m below the head, at a range in the middle of the fan.
 double bed_db(const render::SonarSettings& settings, double range_m) {
   const render::World bed =
       test::make_world({test::make_body("bed", test::make_quad({-5, -60, -2}, {120, 0, 0}, {0, 120, 0}))});
@@ -91,7 +91,7 @@ TEST(PulseLevels, ABedGainsTheLengthOfAGeminisTone) {
   for (const std::uint16_t cycles : {16, 25, 32, 64, 89, 128, 255}) {
     EXPECT_NEAR(bed_db(gemini_with(cycles, 14), 9) - usual_db, 10 * std::log10(cycles / 18.0), 0.2) << cycles;
   }
-  // No tone is shorter than the band of the head lets it be: 16.3 mm, 15.7 cycles.
+  // The band of the head limits the shortest tone: 16.3 mm, 15.7 cycles.
   for (const std::uint16_t cycles : {4, 11}) {
     EXPECT_NEAR(bed_db(gemini_with(cycles, 14), 9) - usual_db, 10 * std::log10(15.7 / 18), 0.2) << cycles;
   }
@@ -104,7 +104,7 @@ TEST(PulseLevels, ABedGainsTheLengthOfAGeminisTone) {
 }
 
 TEST(PulseLevels, APostKeepsItsLevelUnderAPing360sTones) {
-  // Lines of 1.5 mm, which resolve the shortest of these.
+  // Lines of 1.5 mm, which resolve the shortest tone.
   const double usual_db = post_db(ping360_with(53, 80), 1.0F);
   for (const std::uint16_t pulse_us : {10, 32, 100, 500, 1000}) {
     EXPECT_NEAR(post_db(ping360_with(pulse_us, 80), 1.0F), usual_db, 0.5) << pulse_us;
@@ -119,14 +119,14 @@ TEST(PulseLevels, ABedGainsTheLengthOfAPing360sTone) {
   }
 }
 
-// What a bed sends back in the time of a tone is the same, however many samples it is cut into.
+// The echo of a bed during a tone is the same for any sample period.
 TEST(PulseLevels, ABedOfAPing360DoesNotDependOnTheSamplePeriod) {
   const double usual_db = bed_db(ping360_with(100, 444), 8);
   EXPECT_NEAR(bed_db(ping360_with(100, 888), 8), usual_db, 0.2);
   EXPECT_NEAR(bed_db(ping360_with(100, 2222), 8), usual_db, 0.3);
 }
 
-// A transducer for 650 to 850 kHz, two ways (TransducerBand).
+// A transducer for 650 to 850 kHz, both ways (TransducerBand).
 TEST(PulseLevels, APing360IsFarDownBesideItsBand) {
   const double usual_db = post_db(ping360_with(100, 222), 2);
   EXPECT_NEAR(post_db(ping360_with(100, 222, 650), 2) - usual_db, -6.0, 0.3);
@@ -135,7 +135,7 @@ TEST(PulseLevels, APing360IsFarDownBesideItsBand) {
   EXPECT_NEAR(post_db(ping360_with(100, 222, 1000), 2) - usual_db, -15.5, 0.3);
 }
 
-/// Mean level of empty water far out, in the half decibels of the head behind its gain.
+/// Mean level of empty water far out, in the head's half decibels, after its gain.
 double noise_db(render::SonarSettings settings) {
   settings.physical.gain_db += 30;
   settings.physical.ring_down.on = false;
@@ -157,8 +157,8 @@ double noise_db(render::SonarSettings settings) {
   return sum / (pings * 200);
 }
 
-// A filter that is matched to a tone lets less noise through, the longer the tone, so a post that keeps its
-// level stands further above it.
+// A filter matched to a longer tone passes less noise. A post keeps its level, so it stands further above the
+// noise.
 TEST(PulseLevels, NoiseOfAPing360FallsWithTheLengthOfTheTone) {
   const double usual_db = noise_db(ping360_with(53, 2222));
   EXPECT_NEAR(noise_db(ping360_with(500, 2222)) - usual_db, -10 * std::log10(500 / 53.0), 0.5);
@@ -175,8 +175,8 @@ std::vector<std::uint8_t> empty_line(const render::SonarSettings& settings) {
   return render::Receiver().receive(water, request, 0, workers).u8;
 }
 
-// As in pictures of owners: bright from the first sample, dark beyond 0.75 m; a longer tone holds on for as
-// long as it is longer.
+// As in users' pictures: bright from the first sample, dark beyond 0.75 m; a longer tone lasts longer by its
+// additional length.
 TEST(PulseLevels, ThePing360IsBrightFromItsFirstSampleToTheEndOfItsRinging) {
   for (const std::uint16_t sample_period : {80, 444, 888}) {
     const render::SonarSettings settings = ping360_with(53, sample_period);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark's worlds are what docs/benchmark.md says they are, by hand computation and plain ray casting.
+// The benchmark's worlds match docs/benchmark.md, by hand computation and plain ray casting.
 #include "tests/scenes/scenes.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ glm::dvec3 corner(const render::TriangleMesh& mesh, std::size_t triangle, std::s
   return {p.x, p.y, p.z};
 }
 
-/// Signed volume by the divergence theorem: positive when closed and seen counter-clockwise from outside.
+/// Signed volume by the divergence theorem: positive if closed and counter-clockwise from outside.
 double volume(const render::TriangleMesh& mesh) {
   double six_fold = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -38,7 +38,7 @@ double volume(const render::TriangleMesh& mesh) {
   return six_fold / 6;
 }
 
-/// Every edge is shared by two triangles that run it in opposite directions.
+/// Whether every edge belongs to two triangles that run along it in opposite directions.
 bool closed(const render::TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
@@ -50,7 +50,8 @@ bool closed(const render::TriangleMesh& mesh) {
   return std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
-/// Distance along a unit ray to the nearest triangle of a mesh in world coordinates; infinite without one.
+/// Distance along a unit ray to the nearest triangle of a mesh in world coordinates; infinity if it hits
+/// none.
 double cast(const render::TriangleMesh& mesh, const glm::dvec3& origin, const glm::dvec3& direction) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -88,12 +89,12 @@ bool heard(const Scene& scene, const glm::dvec3& p_world) {
 
 TEST(Bed, HeightsAreThoseOfTheFormula) {
   EXPECT_EQ(flat_height_m(3, 4), 0);
-  // 0.3 sin(pi/2) cos(0) at the first crest, 0 on the y axis, the crest turned over half a wave to port.
+  // 0.3 sin(pi/2) cos(0) at the first crest, 0 on the y axis, the opposite height half a wave to port.
   const double crest_x = std::numbers::pi / 2 / 0.9;
   EXPECT_DOUBLE_EQ(swell_height_m(crest_x, 0), 0.3);
   EXPECT_DOUBLE_EQ(swell_height_m(0, 5), 0);
   EXPECT_NEAR(swell_height_m(crest_x, std::numbers::pi / 0.7), -0.3, 1e-15);
-  // The ripple adds 0.05 where sin(7x) = sin(6y) = 1 and nothing where sin(7x) = 0.
+  // The ripple adds 0.05 if sin(7x) = sin(6y) = 1, and 0 if sin(7x) = 0.
   const double x = std::numbers::pi / 14, y = std::numbers::pi / 12;
   EXPECT_NEAR(ripple_height_m(x, y) - 0.3 * std::sin(0.9 * x) * std::cos(0.7 * y), 0.05, 1e-15);
   EXPECT_NEAR(ripple_height_m(std::numbers::pi / 7, y), swell_height_m(std::numbers::pi / 7, y), 1e-15);
@@ -188,8 +189,8 @@ TEST(Scenes, NoTriangleIsDegenerateAndNoneHasNormals) {
 }
 
 TEST(Scenes, TheSeabedFillsTheFan) {
-  // Beyond its lower edge every ray of the fan meets the bed before 20 m or passes 20 m above it; both are
-  // seen by walking the four borders of the fan.
+  // Beyond its lower edge every ray of the fan meets the bed before 20 m or passes 20 m above it. A walk
+  // along the four borders of the fan shows both.
   const Scene scene = make_scene("plane");
   const render::TriangleMesh& bed = mesh_of(scene, "bed");
   glm::dvec3 low(1e9), high(-1e9);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The committed worlds: remade byte for byte, sound as geometry, and seen from their trajectories."""
+"""The committed worlds: the generator makes the same bytes, their geometry is sound, and trajectories see their targets."""
 
 import csv
 import functools
@@ -17,7 +17,7 @@ import zlib
 SOURCE = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else pathlib.Path(__file__).parents[4])
 CONFIGS = SOURCE / "configs"
 GENERATOR = CONFIGS / "worlds" / "generate" / "generate.py"
-# The least number of triangles in each: a tank has flat walls, a cage straight bars.
+# The least number of triangles in each: a tank has flat walls, and a cage straight bars.
 WORLDS = {"docking_station": 40_000, "ssiv": 40_000, "manifold": 20_000, "tank": 3_000, "grid": 3_000, "oil_and_gas": 30_000}
 
 
@@ -27,7 +27,7 @@ def generate(*arguments):
 
 @functools.cache
 def read_ply(path):
-    """(positions, normals, triangles) of a file as the generator writes it."""
+    """(positions, normals, triangles) of a file in the generator's format."""
     data = path.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
     header = data[:end].decode("ascii")
@@ -57,7 +57,7 @@ def rotated(quaternion, v):
 
 
 def rows(name):
-    """The poses of a trajectory, each a dictionary by column."""
+    """The poses of a trajectory, each as a dictionary by column."""
     with open(CONFIGS / "trajectories" / name, newline="") as file:
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
@@ -71,7 +71,7 @@ def moved(points, offset):
 
 
 def first_hit(origin, direction, triangles):
-    """Distance along a unit direction to the nearest triangle (three corners each), or infinity."""
+    """Distance along a unit direction to the nearest triangle (three corners each); infinity if it hits none."""
     nearest = math.inf
     for a, b, c in triangles:
         edge1, edge2, offset = ([q - p for p, q in zip(a, other)] for other in (b, c, origin))
@@ -138,7 +138,7 @@ class Geometry(unittest.TestCase):
                 face = cross([y - x for x, y in zip(p, q)], [y - x for x, y in zip(p, r)])
                 self.assertGreater(dot(face, face), 0.0, f"{path.name}: triangle without area")
                 against += sum(dot(face, normals[k]) < 0.0 for k in (a, b, c))
-            # A smoothed normal may lean over a needle of a triangle; turned-over surfaces would be all against.
+            # A smoothed normal may point away from a thin triangle; on an inverted surface all normals would.
             self.assertLessEqual(against, 0.002 * 3 * len(triangles), path.name)
 
     def test_every_file_an_sdf_names_is_there(self):
@@ -204,7 +204,7 @@ class Surveys(unittest.TestCase):
 
 
 class Manifold(unittest.TestCase):
-    """The numbers of docs/worlds.md, which tests of its image start from."""
+    """The numbers of docs/worlds.md that tests of its image use."""
 
     LEVEL = -25.16
 
@@ -237,9 +237,9 @@ class Manifold(unittest.TestCase):
 
 
 class Tank(unittest.TestCase):
-    """A head that sweeps the horizon from where tank.csv starts, its beam 35 degrees high."""
+    """A head that sweeps the horizon from the start of tank.csv, with a beam 35 degrees high."""
 
-    # What stands in the tank, as degrees from the bow to port: docs/worlds.md.
+    # The objects in the tank, in degrees from the bow to port: docs/worlds.md.
     SECTORS = {"ladder": (67, 73), "pillar": (11, 18), "inlet": (155, 165), "target": (-66, -54)}
 
     def test_walls_are_heard_where_four_planes_say_and_nothing_else_in_the_beam(self):
@@ -326,7 +326,7 @@ class Grid(unittest.TestCase):
 
 
 class OilAndGas(unittest.TestCase):
-    """A head that sweeps the plane across the vehicle, its beam 35 degrees wide along the vehicle."""
+    """A head that sweeps the plane across the vehicle, with a beam 35 degrees wide along the vehicle."""
 
     FOLDER = CONFIGS / "worlds/meshes/oil_and_gas"
 
@@ -339,7 +339,7 @@ class OilAndGas(unittest.TestCase):
         return moved(read_ply(self.FOLDER / f"{name}.ply")[0], pose)
 
     def sides_in_slice(self, name, start):
-        """Which sides of the vehicle, port 1 and starboard -1, hold vertices in the beam within 10 m."""
+        """The sides of the vehicle, port 1 and starboard -1, with vertices in the beam within 10 m."""
         beam = math.tan(math.radians(17.5))
         relative = moved(self.placed(name), [-c for c in start])
         return {math.copysign(1, y) for x, y, z in relative if abs(x) < beam * math.hypot(y, z) and math.hypot(x, y, z) < 10.0}
