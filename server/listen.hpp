@@ -14,8 +14,8 @@ namespace sonard::server {
 /// from that pose on the CPU and prints findings about the place. If an input gives no pose, it prints the
 /// likely cause. Warnings of the inputs go to the log.
 /// @param config with the vehicle filled in (resolve_mounts())
-/// @return exit_clean if any input gave a pose of the vehicle; exit_config if no input did or none is live;
-/// exit_network if an input cannot be opened
+/// @return exit_clean if any input gave a pose of the vehicle; exit_config if no input did, or if there is no
+/// live input; exit_network if an input cannot be opened
 int listen_to_poses(const DaemonConfig& config, const render::World& world,
                     std::chrono::nanoseconds duration);
 

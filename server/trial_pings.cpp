@@ -26,7 +26,7 @@ render::RendererOptions cpu_options(const DaemonConfig& config) {
 
 constexpr int bearings = 12;  // of a scanning head
 
-/// The vehicle's own model at the vehicle's pose; empty if it has none.
+/// The vehicle's own model at the vehicle's pose; empty without a model.
 std::vector<PosedBody> own_model(const DaemonConfig& config, const render::Pose& T_world_vehicle) {
   return config.vehicle_model.empty() ? std::vector<PosedBody>{}
                                       : std::vector<PosedBody>{{config.vehicle_model, T_world_vehicle}};

@@ -93,7 +93,7 @@ bool is_consistent(const Record& record) {
   return has_form(record.content, static_cast<Opcode>(record.opcode));
 }
 
-/// True if the content has the form of a record other than a chunk, whatever its type.
+/// Whether the content has the form of a record of any type except a chunk.
 bool looks_like_no_chunk(ByteView content) {
   constexpr std::array others{Opcode::message_index, Opcode::header, Opcode::schema, Opcode::channel,
                               Opcode::data_end};
@@ -108,8 +108,8 @@ bool was_chunk(ByteView file, std::size_t at) {
                 : named;
 }
 
-/// Where to continue after an unreadable record at `from`: at its end if the sizes in it match its length,
-/// else at the next consistent record.
+/// The offset to continue at after an unreadable record at `from`: its end if the sizes in it match its
+/// length, else at the next consistent record.
 std::optional<std::size_t> next_readable(ByteView file, std::size_t from) {
   const auto damaged = record_at(file, from);
   if (damaged && (looks_like_chunk(damaged->content) || looks_like_no_chunk(damaged->content))) {

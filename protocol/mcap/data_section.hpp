@@ -44,7 +44,7 @@ Result<Chunk, WireError> read_chunk(const Record& record);
 /// Reads the records in a chunk. Offsets in errors are relative to `records`.
 Result<Chunk, WireError> read_chunk_records(ByteView records);
 
-/// The whole records of the open chunk at `offset`, whatever its stated length; nullopt if there is no open
+/// The whole records of the open chunk at `offset`, for any stated length; nullopt if there is no open
 /// chunk or if it has no whole record.
 std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset);
 

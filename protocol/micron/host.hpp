@@ -25,7 +25,7 @@ struct HostConfig {
   bool reboot_first = false;  ///< reboot the head first, so that it has no parameters
 };
 
-/// What is known about the head.
+/// Data that the head has sent about itself.
 struct HeadIdentity {
   std::optional<VersionData> version;
   std::optional<BBUserData> user_blocks;  ///< nullopt: not received

@@ -59,7 +59,7 @@ bool is_known(const Block& block) {
          (is(block, BlockType::enhanced_packet) && read_packet(block));
 }
 
-/// The value of the first option `code` of a block; nullopt if the block has none. @param skip bytes of the
+/// The value of the first option `code` of a block; nullopt if it is missing. @param skip bytes of the
 /// body before its options
 std::optional<std::string_view> option_of(const Block& block, std::size_t skip, std::uint16_t code) {
   ByteReader reader{block.body};

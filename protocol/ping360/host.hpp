@@ -20,7 +20,7 @@
 
 namespace sonard::ping360 {
 
-/// What is known about the head.
+/// Data that the head has sent about itself.
 struct HeadIdentity {
   std::optional<ProtocolVersion> protocol;
   std::optional<DeviceInformation> information;

@@ -50,7 +50,7 @@ class BeamPattern {
   /// Adds to each of these beams the part of a fine beam's echo that those lobes receive.
   /// @param beams one number per beam
   void add_lobe(int fine_beam, float echo, const Beams& of, std::vector<float>& beams) const;
-  /// Largest sum, over the fine beams of any beam, of |share - ideal share|, where ideal beams have sharp
+  /// Largest sum, over the fine beams of any beam, of |share - ideal share|; an ideal beam has sharp
   /// edges. No bin changes by more than this times the strongest bin.
   double change() const { return change_; }
 

@@ -31,7 +31,8 @@ struct BeamPatch {
   EchoPatch patch;
 };
 
-/// A possible corner, where two or three mirrors send sound straight back: the image of the sonar in them.
+/// A possible corner of two or three mirrors, which reflect sound straight back: the image of the sonar in
+/// them.
 struct CornerCandidate {
   glm::dvec3 image_m{0.0};  ///< relative to the sonar, in world axes; the corner is half way to it
 };

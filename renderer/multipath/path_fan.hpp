@@ -25,7 +25,7 @@ struct FanCell {
   FanCell part(int column, int row, int columns, int rows) const;
 };
 
-/// A grid of cells over the fan: columns divide beams; rows have equal elevation and are twice as high where
+/// A grid of cells over the fan: columns divide beams; rows have equal elevation and are twice as high if
 /// the elevation pattern is low.
 class PathFan {
  public:

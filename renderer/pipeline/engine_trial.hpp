@@ -19,7 +19,7 @@ struct EngineTrial {
   /// hundredth; of the ping with the largest difference.
   double difference = 0.0;
   std::string cpu, gpu;     ///< engines and their hardware; `gpu` is empty if unavailable
-  std::string gpu_problem;  ///< why the GPU is not used, whatever its time; empty: time decides
+  std::string gpu_problem;  ///< why the GPU is not used even if faster; empty: time decides
   std::string software_gl;  ///< set if OpenGL runs on the CPU, with its device; then nothing was timed
 };
 

@@ -52,7 +52,7 @@ SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, cons
   view.azimuth_rad = (span.port_rad + span.starboard_rad) / 2;
   view.tan_half_width = std::tan(half);
   // In the plane of the view the elevation limit is highest at the sides. Without the mask the view is the
-  // paper's frustum, where the limit holds on the axis only.
+  // paper's frustum, whose limit holds on the axis only.
   view.tan_half_height =
       std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
   view.columns = span.columns;

@@ -53,7 +53,7 @@ class WorldFiles : public Assimp::DefaultIOSystem {
   }
 
  private:
-  /// The file of this name; empty if there is none, or if it may not be read.
+  /// The file of this name; empty if it does not exist, or is not permitted.
   std::filesystem::path permitted(const std::string& name) const {
     std::error_code error;
     std::filesystem::path path = std::filesystem::canonical(name, error);
@@ -189,7 +189,7 @@ class Collector {
   RawMesh take() { return std::move(mesh_); }
 
  private:
-  /// Assimp invents a name for a node of COLLADA that has none.
+  /// Assimp invents a name for a COLLADA node without a name.
   static std::string given_name_of(const aiNode& node) {
     const std::string name = node.mName.C_Str();
     return name.starts_with("$ColladaAutoName$") ? "" : name;

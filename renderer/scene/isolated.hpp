@@ -21,10 +21,9 @@ struct IsolatedResult {
 };
 
 /// Calls `work` in a forked child, confined by `jail`, and returns its bytes. The mesh and image libraries
-/// crash or loop on some damaged files, print to the terminal and keep global state; none of these effects
-/// reach this process. A child is killed beyond its processor limit, or beyond a wall-clock limit of one
-/// minute plus 20 times the processor limit. Call it at start-up, before other threads use the libraries that
-/// `work` uses.
+/// crash or loop on some damaged files, print to the terminal and keep global state; the child contains these
+/// effects. A child is killed beyond its processor limit, or beyond a wall-clock limit of one minute plus 20
+/// times the processor limit. Call it at start-up, before other threads use the libraries that `work` uses.
 /// @param prepare runs in the child before it is confined, to load libraries; may be empty
 /// @throws IsolatedFailure; also with the message of an exception that `work` threw.
 IsolatedResult run_isolated(const std::function<std::string()>& work, const ReaderJail& jail,

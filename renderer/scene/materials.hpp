@@ -33,7 +33,7 @@ struct MaterialRequest {
 
 /// Returns the named material with the given numbers in place of its own. A name that is not in the table is
 /// allowed if reflectance and mu are given. Without a name, it is the default material; if only the
-/// reflectance is given, mu follows from it. All other values are those of the default material, which has no
+/// reflectance is given, mu follows from it. All other values come from the default material, which has no
 /// facets. A Lambert coefficient above 1/pi (more than all the energy) is lowered to 1/pi, and a reflectance
 /// above 10 is kept; both add a line to `warnings`.
 /// @throws WorldError if the name is unknown, or a number is not finite or out of range.

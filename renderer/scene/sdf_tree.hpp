@@ -53,7 +53,7 @@ struct SdfElement {
 
 /// The XML namespace of our own elements, whose prefix is always "sonard:" in the tree.
 inline constexpr const char* own_namespace = "https://sonard.dev/sdf";
-/// Whether an XML namespace is ours. "urn:sonard" is that of worlds shipped before version 0.2.
+/// Whether an XML namespace is ours. Worlds shipped before version 0.2 have "urn:sonard".
 bool is_own_namespace(std::string_view uri);
 
 /// Whether an attribute is "true", in any case, or "1", as in libsdformat. nullptr gives false.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL files. The libraries tell text from binary by the first five bytes, refuse keywords in capitals and
-// read truncated files without an error.
+// STL files. The libraries distinguish text from binary by the first five bytes, refuse keywords in capitals
+// and read truncated files without an error.
 #pragma once
 
 #include <filesystem>

@@ -185,7 +185,7 @@ struct SpatialIndex::Impl {
     add_instances();
   }
 
-  /// @return the meshes, none of them built yet.
+  /// @return the meshes, not built yet.
   std::vector<std::shared_ptr<const Mesh>> add_parts() {
     std::vector<std::shared_ptr<const Mesh>> meshes;
     std::map<const TriangleMesh*, std::size_t> mesh_index;

@@ -452,7 +452,7 @@ void apply_water(YamlSection& section, const HeadContext& context, double carrie
   }
   head.acoustics.physical.absorption_db_per_m = absorption;
   head.acoustics.physical.multipath.wavelength_m = render::sound_speed_mps(water) / carrier_hz;
-  // The device's own absorption setting matches the water unless the user says otherwise.
+  // By default, the device's own absorption setting matches the water.
   head.acoustics.physical.tvg_absorption_db_per_m = absorption;
 }
 

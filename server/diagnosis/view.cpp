@@ -43,7 +43,7 @@ struct Wedge {
   double below_high(const glm::dvec2& p) const { return high.y * p.x - high.x * p.y; }
 };
 
-/// Cuts off the part of a segment where `side` is negative. Returns false if nothing is left.
+/// Cuts off the part of a segment that has a negative `side`. Returns false if nothing is left.
 template <class Side>
 bool cut(glm::dvec2& a, glm::dvec2& b, Side side) {
   const double at_a = side(a);

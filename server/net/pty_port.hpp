@@ -14,9 +14,9 @@ class io_context;
 
 namespace sonard::server {
 
-/// The slave is in raw mode, without echo, each time a client finds it closed, whatever settings the last
-/// client made; unread data of the last client is dropped. Several clients may open it at a time: as on a
-/// real tty, each byte then goes to one of them, and they count as gone when the last one closes it.
+/// The slave is in raw mode, without echo, each time a client finds it closed; settings of the last client
+/// are undone, and its unread data is dropped. Several clients may open it at a time: as on a real tty, each
+/// byte then goes to one of them, and they count as gone when the last one closes it.
 ///
 /// The kernel reports when the slave is closed, but not when it is opened. So while it is closed, it is
 /// polled every `look_again`. Until the port notices a client, the client receives nothing, but its data is

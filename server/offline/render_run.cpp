@@ -135,7 +135,7 @@ VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions&
   return trajectory;
 }
 
-/// Only warns: users may want higher rates than the head can keep.
+/// Only warns: a user may choose higher rates than the head can keep.
 void warn_of_rate(const FrameSource& frames, const std::string& head) {
   if (frames.period_s() < frames.natural_period_s() * (1.0 - 1e-9)) {
     spdlog::warn(

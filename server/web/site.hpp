@@ -80,7 +80,7 @@ class Site {
   /// Answers a request other than a WebSocket's.
   void answer(const HttpRequest& request, const Endpoint& peer,
               const std::function<void(HttpResponse)>& send);
-  /// Why a request is refused, whatever its target; nullopt: it is served.
+  /// Why a request is refused for any target; nullopt: it is served.
   std::optional<std::string> refusal(const HttpRequest& request) const;
   /// The status, no older than a quarter of a second.
   void with_status(std::function<void(const DaemonStatus&)> take);

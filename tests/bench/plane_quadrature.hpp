@@ -7,7 +7,8 @@
 namespace sonard::bench {
 
 /// Echo of a beam between two azimuths from ranges [r1, r2), r1 > 0, as PlaneTruth::beam(). Along azimuth,
-/// the density has kinks where the plane enters or leaves the range line. The integral is split at the kinks.
+/// the density has kinks at which the plane enters or leaves the range line. The integral is split at the
+/// kinks.
 double plane_beam_echo(const test::PlaneTruth& plane, double psi_from, double psi_to, double r1, double r2);
 
 }  // namespace sonard::bench

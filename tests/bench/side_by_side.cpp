@@ -62,7 +62,7 @@ double strongest_level(const render::EchoImage& image) {
   return strongest;
 }
 
-/// |image / truth - 1| for bins whose truth is above `heard` of their beam's maximum.
+/// |image / truth - 1| for bins whose truth exceeds the share `heard` of their beam's maximum.
 cv::Mat differences(const render::EchoImage& image, const render::EchoImage& truth) {
   cv::Mat polar = cv::Mat::zeros(image.lines, image.beams, CV_8UC1);
   for (int b = 0; b < image.beams; ++b) {

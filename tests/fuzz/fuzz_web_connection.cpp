@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes from a browser that connects to the page and leaves: requests, and what follows a WebSocket's
+// Any bytes from a browser that connects to the page and leaves: requests, and data after a WebSocket's
 // handshake. Promises: nothing is thrown, and the connection is over when its client has left.
 #include <cstddef>
 #include <cstdint>

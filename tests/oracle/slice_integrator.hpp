@@ -15,8 +15,8 @@ struct SliceOptions {
   double error_max = 2e-3;         ///< for each beam; as RelativeError::max
   int max_slices_per_beam = 8192;  ///< in all cases, the error reached is reported
   int first_intervals = 16;        ///< per half degree of a beam
-  /// A beam with at most this many corners of facets is also divided at each corner's azimuth, where its echo
-  /// has kinks and jumps. Then no facet can hide between two slices.
+  /// A beam with at most this many corners of facets is also divided at each corner's azimuth, because its
+  /// echo has kinks and jumps there. Then no facet can hide between two slices.
   int max_corners = 0;
   unsigned threads = 0;      ///< 0: one per core
   std::vector<int> beams{};  ///< only these are rendered, the others are 0; empty: all

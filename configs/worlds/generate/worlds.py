@@ -29,7 +29,7 @@ SHELLY_SAND = ("sand", {"lambert_mu_db": -13})
 GROWN_CONCRETE = ("concrete", {"pressure_reflection": 0.3})
 GROWN_ROCK = ("rock", {"pressure_reflection": 0.5})
 
-# Where the structures of oil_and_gas stand.
+# Positions of the structures of oil_and_gas.
 MANIFOLD_AT, TREE_AT, JACKET_AT = (0.0, 4.0), (7.5, -2.4), (0.0, -13.5)
 
 

@@ -114,7 +114,7 @@ class Welder {
   std::unordered_multimap<std::uint64_t, std::uint32_t> first_in_cell_;
 };
 
-/// Edges in the order of their corners. Triangles without area have none.
+/// Edges in the order of their corners. Triangles without area are skipped.
 std::vector<Edge> edges_of(const TriangleMesh& mesh, const std::vector<std::uint32_t>& number) {
   std::vector<Edge> edges;
   edges.reserve(mesh.indices.size());
@@ -178,7 +178,7 @@ std::optional<std::vector<glm::vec2>> convex_outline(
   return turned_rad < 7.0 ? std::optional(outline) : std::nullopt;
 }
 
-/// What the triangles of one group tell of their surface.
+/// Properties of the surface that the triangles of one group form.
 struct Surface {
   bool ends_badly = false;  ///< an edge of more than two triangles, or of two that wind against each other
   std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary;  ///< edges of one triangle, as it runs

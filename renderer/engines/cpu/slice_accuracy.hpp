@@ -20,7 +20,7 @@ struct SliceAccuracy {
   bool first_in_five = false;
   /// Slices are divided until their range mismatch, (share of elevations at which neighbours disagree) *
   /// (width / beam width), is at most this share of the elevations at which the beam receives an echo. The
-  /// sum over the beam is that of independent errors.
+  /// sum over the beam is computed as for independent errors.
   float disagreement = 2e-3F;
   /// Slices are also divided while the elevations at which they disagree may move the centroid of the beam's
   /// echo by more than this, because a few elevations may hold much of an echo.

@@ -418,7 +418,7 @@ float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, floa
   return std::ceil(facets_.slopes_per_t()[i] * (segment.high - segment.low) / share);
 }
 
-/// Divides the segments whose echo over range a patch cannot represent. @return false if there were none
+/// Divides the segments whose echo over range a patch cannot represent. @return false if it divided nothing
 bool SlicePatcher::divide_uneven(const Request& request) {
   if (!mark_uneven(request)) {
     return false;

@@ -91,7 +91,7 @@ class SlicePatcher {
   void weigh_by_pattern(const ElevationPattern& pattern);
   void join_gradients();
 
-  /// Segments after division, and numbers per segment; arrays are as long as those of `seen_`.
+  /// Segments after division, and numbers per segment; arrays are as long as in `seen_`.
   const std::vector<VisibleSegment>* visible_ = nullptr;  ///< the request's, or whole_
   std::vector<VisibleSegment> whole_, divided_;
   /// Normals of each segment of the request; empty if all are shaded by their planes and have no facets.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact visibility in slices of constant azimuth, refined where neighbouring slices disagree: the adaptive
+// Exact visibility in slices of constant azimuth, refined if neighbouring slices disagree: the adaptive
 // sampling of the CPU.
 #pragma once
 

@@ -48,8 +48,8 @@ void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
                   "address blocks of clients that get an answer");
 }
 
-/// Warns if no socket is bound where clients that have found the head send: to the announced address, at one
-/// fixed port.
+/// Warns if no socket is bound to the place to which clients that found the head send: the announced address
+/// and one fixed port.
 void warn_if_found_in_vain(YamlSection& section, const Ping360Config& config) {
   if (!config.discovery || config.discovery->address == 0) {
     return;

@@ -14,8 +14,8 @@ namespace {
 constexpr double usual_pulse_s = 53e-6;
 constexpr int usual_sample_period = 444;
 
-/// Changes wavelength and absorption to those of another frequency. The head's error in the absorption of its
-/// water stays as at its usual frequency.
+/// Changes wavelength and absorption to the values at another frequency. The head's error in the absorption
+/// of its water stays as at its usual frequency.
 void follow_frequency(double frequency_hz, const Ping360Config& config, render::PhysicalModel& physical) {
   physical.multipath.wavelength_m *= ping360_carrier_hz / frequency_hz;
   if (config.water) {

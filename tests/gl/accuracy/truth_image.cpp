@@ -91,7 +91,7 @@ double WallEndTruth::beam(double psi_from, double psi_to, double r1, double r2) 
     add_cosine(x / r, 0, kinks);                             // the wall at the height of the sonar,
     add_cosine(x / std::sqrt(r * r - h * h), 0, kinks);      // its foot,
     add_cosine(x / std::sqrt(r * r - top * top), 0, kinks);  // its top,
-    add_cosine(x / (r * std::cos(wall.elevation_limit_rad)), 0, kinks);  // where it leaves the fan,
+    add_cosine(x / (r * std::cos(wall.elevation_limit_rad)), 0, kinks);  // its exit from the fan,
     const double scaled = r * top / h;
     add_cosine(x / std::sqrt(scaled * scaled - top * top), 0, kinks);  // the far end of its shadow
   }

@@ -184,7 +184,7 @@ TEST_F(GpuBinningTest, AgreesOnOneBeam) {
   expect_agreement(scanning);
 }
 
-/// The open solid angle of each beam, line by line: behind a wall, over a bed, and where nothing is seen.
+/// The open solid angle of each beam, line by line: behind a wall, over a bed, and in open water.
 TEST_F(GpuBinningTest, AgreesOnOpenWater) {
   Case open{"open water", make_world({make_body("bed", bed(2)),
                                       make_body("wall", make_quad({7, 0, -80}, {0, 80, 0}, {0, 0, 160}))})};

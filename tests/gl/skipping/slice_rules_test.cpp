@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules of exact slices and their binning: each on against off, in worlds where it has much to skip and in
-// worlds where it has nothing.
+// Rules of exact slices and their binning: each on against off, in worlds with much to skip and in worlds
+// with nothing to skip.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -56,7 +56,7 @@ Comparison compare(SkipRule rule, const World& world, const PingRequest& request
   return result;
 }
 
-/// A ball whose facets are flat; with vertex normals they are those of the facets.
+/// A ball of flat facets. Optional vertex normals equal the normals of the facets.
 TriangleMesh faceted_ball(bool with_normals) {
   const TriangleMesh smooth = make_sphere(0.5F, 16);
   TriangleMesh mesh;
@@ -145,7 +145,7 @@ World divided_bed_and_box() {
   return make_world({make_body("bed", std::move(bed), 0.3), on_bed});
 }
 
-// Balls all around, above and beyond the range; the one ahead is heard.
+// Balls all around, above and beyond the range; only the one ahead reflects an echo.
 TEST(SliceRules, ClustersOutsideTheFanAreCulled) {
   World world = bed_and_ball();
   int outside = 0;
@@ -214,8 +214,8 @@ TEST(SliceRules, FacesThatSomebodyCanSeeStay) {
   EXPECT_EQ(compare(SkipRule::hidden_faces, ball_alone(std::move(bowl)), small_request()).skipped, 0u);
 }
 
-// A ball of clean steel on a bed without facets: facets are looked at near the ball's nearest point only. Of
-// rough stone they are heard nearly everywhere, and of a bed seen under 70 degrees nowhere.
+// A ball of clean steel on a bed without facets: facets are computed near the ball's nearest point only.
+// Facets of rough stone reflect nearly everywhere, and those on a bed seen under 70 degrees nowhere.
 TEST(SliceRules, FacetsAreLookedAtNearNormalIncidence) {
   World world = bed_and_ball();
   EXPECT_GT(compare(SkipRule::facet_kernel, world, small_request()).skipped, 100u);
@@ -306,10 +306,9 @@ TEST(SliceRules, PartsWithoutANormalMapAreNotMapped) {
   EXPECT_EQ(mapped.worst_of_maximum, 0.0);
 }
 
-// A bed of 40 x 40 cells and the six faces of a box of 16 x 16: two facets of each are left. Coarser presets
-// follow the corners of so many facets elsewhere than those of so few; there single bins differ by more than
-// what the rule changes of the surface. In the paper a bin is a mean, also of next to nothing at the box's
-// edges.
+// A bed of 40 x 40 cells and the six faces of a box of 16 x 16: each keeps two facets. Coarser presets follow
+// the corners of the facets, so merged facets change single bins by more than the rule changes the surface.
+// In the paper a bin is a mean, even over very little echo at the box's edges.
 TEST(SliceRules, FacetsInOnePlaneAreMerged) {
   PingRequest request = small_request();
   request.settings.sampling.preset = Sampling::Preset::reference;
@@ -331,8 +330,8 @@ TEST(SliceRules, TheGpuDrawsMergedFacetsToo) {
   EXPECT_EQ(skipped(mappable_bed(false)), 0u);  // it has normals, which the GPU takes as they are
 }
 
-// What lies in one plane from a sample to that above it is binned at once, of views that are fine enough;
-// what a user sets as a grid is not.
+// Two samples, one above the other, are binned as one if they lie in one plane and the view is fine enough.
+// In a grid set by a user they are not.
 TEST(SliceRules, SamplesInOnePlaneAreBinnedAsOne) {
   require_gl();
   PingRequest request = small_request();
@@ -362,7 +361,7 @@ TEST(SliceRules, FacetsInDifferentPlanesAreNotMerged) {
   }
 }
 
-// What is shaded between its vertices is left as it is, and so is what carries a normal map.
+// Facets with vertex normals or with a normal map are not merged.
 TEST(SliceRules, FacetsThatAreNotHeardFlatAreNotMerged) {
   for (const World& world : {ball_alone(make_sphere(0.5F, 16)), mappable_bed(true)}) {
     const Comparison comparison = compare(SkipRule::coplanar_facets, world, small_request());

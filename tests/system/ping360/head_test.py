@@ -101,7 +101,7 @@ class Demo(HeadCase):
         answer = client.ask(ping.bytes(), DEVICE_DATA)
         self.assert_ping(answer, ping)
         self.assertEqual(client.all_until_quiet(), [])
-        # The state is that of the last ping, also while the head turns for the next.
+        # The state shows the last ping, also while the head turns for the next.
         client.write(Transducer(angle=191, samples=300).bytes())
         self.assertEqual(self.quiet_state(client), answer.bytes())
         self.assertEqual(messages.data_of(client.wait(DEVICE_DATA)).angle, 191)

@@ -426,7 +426,7 @@ class Logs(RecordingTest):
                 self.assertTrue(any((bits, bins, bearing) in recorded for bearing in ways_round), line["number"])
         transports = {message["transport"] for message in messages["wire"] if "/stern/" in message["topic"]}
         self.assertEqual(transports, {"TRANSPORT_TCP", "TRANSPORT_SERIAL"})
-        # The streams of the capture equal those of the MCAP file.
+        # Capture and MCAP file have the same streams.
         for transport, port, server in (("TRANSPORT_TCP", 4001, HEAD_ADDRESS), ("TRANSPORT_SERIAL", 4001, "192.0.2.1")):
             said = "".join(message["data"] for message in messages["wire"]
                            if message["transport"] == transport and message["to_client"])

@@ -24,7 +24,7 @@ TEST(Printable, makes_one_line_that_commands_no_terminal) {
   EXPECT_EQ(printable("\xe2\x80\xa8"), "\\u2028") << "LINE SEPARATOR";
 }
 
-// Table 3-7 of the Unicode standard: what is not well-formed.
+// Ill-formed bytes after table 3-7 of the Unicode standard.
 TEST(Printable, shows_bytes_that_are_no_utf_8) {
   EXPECT_EQ(printable("\xff"), "\\xff");
   EXPECT_EQ(printable("\x80z"), "\\x80z");

@@ -59,7 +59,7 @@ TEST(Image, packed_ones_have_the_size_that_the_layout_says) {
   }
 }
 
-// A reader takes data as long as the image for raw pixels, whatever the type says, so zlib must be shorter.
+// Readers take data of the image's length for raw pixels, for any type, so compressed data must be shorter.
 TEST(Image, noise_is_stored_as_it_is) {
   ImageRecord image = patterned_image(0);
   std::mt19937 random{1};

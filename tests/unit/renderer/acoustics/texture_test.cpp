@@ -62,8 +62,8 @@ TEST(Texture, ScatterersGrowWithTheRange) {
   EXPECT_DOUBLE_EQ(scatterers_at(model, 25), 7.5);
 }
 
-// Index var / mean^2 of the intensity in the far half of the lines, where nu is 2/3 to 4/3 of its value in
-// the middle: on the average 1 + 2 <1 / nu>. About one cell in four of a line is independent. For these two
+// Index var / mean^2 of the intensity in the far half of the lines; nu is 2/3 to 4/3 of its value in the
+// middle there: on average 1 + 2 <1 / nu>. About one cell in four of a line is independent. For these two
 // million cells the standard error of E I^2 is 1 to 0.3 %.
 TEST(Texture, ScintillationIndexIsOnePlusTwoOverNu) {
   WorkerPool workers;

@@ -94,7 +94,7 @@ struct Table {
   std::vector<std::string> kinds;  ///< kinds of heads with these mappings
   std::string introduction;
   Keys keys;
-  std::vector<std::string> defaults;  ///< defaults of the keys, with those of kinds that differ
+  std::vector<std::string> defaults;  ///< defaults of the keys, and kinds with other defaults
 };
 
 std::string default_of(const KeyReference& key) {

@@ -105,7 +105,7 @@ TEST(Jumps, RandomPosesAreIndependent) {
     EXPECT_TRUE(find_jumps(points(40, 1, [&](double) {
                   return Place{place(random), place(random), 0};
                 })).independent);
-    // A sonar near a pipe at ten frames per second, where no step is a jump.
+    // A sonar near a pipe at ten frames per second: no step is a jump.
     std::uniform_real_distribution<double> near(-0.4, 0.4), about(-8 * degree, 8 * degree);
     EXPECT_TRUE(find_jumps(points(60, 0.1, [&](double) {
                   return Place{near(random), near(random), about(random)};

@@ -36,7 +36,7 @@ TEST(Answers, user_blocks_are_followed_by_fpga_data_and_set_sent_config) {
   ASSERT_EQ(blocks.size(), 264U);
   EXPECT_EQ(blocks[19], 15);
   EXPECT_EQ(blocks[146], 0);
-  // The blocks equal those of section 10, except for the fields that only MINIK's field order names.
+  // The blocks equal the example of section 10, except for the fields that only MINIK's field order names.
   for (const std::size_t named : {33U, 35U, 37U, 59U}) {
     EXPECT_NE(blocks[named], 0);
     blocks[named] = 0;
