@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Manifests against the schemas that Kubernetes publishes, as kubernetes-models carries them.
+// Checks manifests with the schemas of Kubernetes, from kubernetes-models.
 //   node check_manifests.js FILE.yaml...
-// Prints a line for each object, or what is wrong with it; exit code 1 where something is.
+// Prints a line or an error for each object; exit code 1 if there is an error.
 "use strict";
 const fs = require("node:fs");
 const yaml = require("js-yaml");
@@ -47,7 +47,7 @@ function complaints(object) {
   } catch (error) {
     return [error.message];
   }
-  // Its schemas allow any further field, as those of Kubernetes do. The validator reads all that it knows.
+  // The schemas allow unknown fields, as Kubernetes' do. The validator reads all fields that it knows; others are reported.
   return paths(object).filter((path) => !read.has(path)).map((path) => `${path}: no field of the schema`);
 }
 

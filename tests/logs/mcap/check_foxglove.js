@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Foxglove shows of an MCAP file by itself, read by the reader that it is built on.
+// Foxglove's own view of an MCAP file, through the reader library that Foxglove uses.
 //   node check_foxglove.js FILE.mcap HEAD...
-// Schemas are compared, field by field, with those that Foxglove publishes (@foxglove/schemas). The world is
+// Schemas are compared, field by field, with Foxglove's published ones (@foxglove/schemas). The world is
 // tests/data/system/sphere_to_port.sdf: a sphere of radius 0.5 m at (3, 2, 0), and the heads at the origin.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what write_mcap_example writes with both readers of @mcap/core, and decodes its messages by the descriptors
-// in the file alone.   node check_mcap.js WRITER finished|recovered|growing|zstd
-// The expectations are written here a second time, from what the messages are meant to hold.
+// Reads the files of write_mcap_example with both readers of @mcap/core, and decodes their messages by the descriptors
+// in the file only.   node check_mcap.js WRITER finished|recovered|growing|zstd
+// The expected values are written here independently of the writer.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -50,7 +50,7 @@ function checkMessage(topic, ping, said, message) {
   }
 }
 
-// Checks messages, which come in the order of the reader, and returns how many there are by topic.
+// Checks messages, in the order of the reader, and returns their number by topic.
 function checkAll(messages, channels, schemas) {
   const counts = {};
   for (const message of messages) {
@@ -105,7 +105,7 @@ function readStream() {
 }
 
 const streamed = readStream();
-const indexed = kind === "growing" ? streamed : await readIndexed(); // the index is the last that is written
+const indexed = kind === "growing" ? streamed : await readIndexed(); // the index is written last
 assert.deepEqual(streamed, indexed);
 const all = { "/pose": 20, "/bow/wire": 20, "/bow/image": 20, "/stern/line": 20 };
 if (kind !== "recovered") {

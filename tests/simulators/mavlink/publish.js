@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vehicle at rest, as node-mavlink tells of it: 50 times a second until it is ended.
+// A vehicle at rest in node-mavlink's messages: 50 times a second until it is ended.
 //   node publish.js PORT VERSION KIND NORTH EAST DOWN ROLL PITCH YAW
 // KIND: odometry, angles (LOCAL_POSITION_NED and ATTITUDE) or quaternion (... and ATTITUDE_QUATERNION). Metres and degrees
 // in MAVLink's own axes; attitudes come 10 ms after positions, and heartbeats between.

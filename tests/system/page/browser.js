@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Debian's Chromium with sonard's page in it, and what tests look for there. Every wait has a deadline.
+// Debian's Chromium with sonard's page, and queries of tests. Every wait has a deadline.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { chromium } from "playwright-core";
@@ -9,7 +9,7 @@ const DESK = { width: 1400, height: 900 };
 export const PHONE = { width: 390, height: 844 };
 
 export function startBrowser() {
-  // Tests may run as root, where Chromium has no sandbox; it opens nothing but the page.
+  // Tests may run as root, and Chromium then has no sandbox; it opens only the page.
   return chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox", "--disable-dev-shm-usage"] });
 }
 
@@ -20,7 +20,7 @@ export async function open(browser, address, viewport = DESK, hash = "") {
   page.complaints = [];
   page.on("pageerror", (error) => page.complaints.push(error.message));
   page.on("console", (message) => {
-    // A browser itself writes down a connection that fails, which tests do on purpose.
+    // The browser itself logs failed connections, which tests cause on purpose.
     if (message.type() === "error" && !/ERR_CONNECTION|WebSocket connection|status of 403/.test(message.text())) {
       page.complaints.push(message.text());
     }
@@ -91,7 +91,7 @@ async function firstStrongEcho(page, index) {
     const pixels = (drawn.bottom - drawn.top) * (turns && !polar ? 0.5 : 1);  // of the full range
     const box = canvas.getBoundingClientRect();
     const scale = box.width / width;
-    // By the laws of the two pictures: ahead is up and port on the left; or bearing to the right, range upwards.
+    // By the geometry of the two pictures: ahead is up and port on the left; or bearing to the right, range upwards.
     const drawnAt = polar
       ? { share: (drawn.bottom + 1 - first.y) / pixels, bearing_deg: ((first.x - drawn.left) / (drawn.right - drawn.left) - 0.5) * (turns ? 360 : 120) }
       : { share: Math.hypot(first.x - apex.x, first.y - apex.y) / pixels, bearing_deg: (Math.atan2(first.x - apex.x, apex.y - first.y) * 180) / Math.PI };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a running daemon with two heads, each with a client, and a publisher of poses.
-//   node daemon_test.js PROGRAMS DATA SCHEMA     on a machine of its own: ports are those of the defaults
+//   node daemon_test.js PROGRAMS DATA SCHEMA     on a machine of its own, because it uses the default ports
 // DATA is tests/data/system. The target's place follows from sphere_to_port.sdf there: a sphere of radius 0.5 m at
-// (3, 2, 0). Wrong poses, and what is to be said of them in pier_and_hull.sdf, are in wrong_poses.json. SCHEMA is
+// (3, 2, 0). Wrong poses, and their findings in pier_and_hull.sdf, are in wrong_poses.json. SCHEMA is
 // pose.proto.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -71,7 +71,7 @@ function startClients(range_m = RANGE_M) {
 
 /** A publisher that keeps the vehicle in one place. */
 function publish(position_m, orientation_xyzw = [0, 0, 0, 1]) {
-  const file = path.join(folder, `pose-${running.length}.csv`); // of its own: another publisher may still be reading its
+  const file = path.join(folder, `pose-${running.length}.csv`); // another publisher may still be reading its file
   const pose = [...position_m, ...orientation_xyzw].join(",");
   writeFileSync(file, `t,x,y,z,qx,qy,qz,qw\n0,${pose}\n600,${pose}\n`);
   return start("posecast", file, "--to", "127.0.0.1:14600");

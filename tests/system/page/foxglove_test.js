@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foxglove's own client, from npm, on the page of a running daemon; messages by Foxglove's own schemas, the status by
-// the schema that the daemon serves.
-//   node foxglove_test.js PROGRAMS DATA     on a machine of its own: ports are those of the defaults
+// Foxglove's own client, from npm, on the page of a running daemon. Checks messages with Foxglove's own schemas, and the
+// status with the schema that the daemon serves.
+//   node foxglove_test.js PROGRAMS DATA     on a machine of its own, because it uses the default ports
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -19,7 +19,7 @@ const { FoxgloveClient } = protocol;
 const [programs, data] = process.argv.slice(2);
 const ADDRESS = "127.0.0.1:8014";
 const PATIENCE_MS = 60000;
-const POSITION = [0.5, -1, 2]; // where the vehicle is kept; the sphere stands at (3, 2, 0)
+const POSITION = [0.5, -1, 2]; // place of the vehicle; the sphere is at (3, 2, 0)
 const HEADING = Math.PI / 3;
 
 const CONFIG = `
@@ -42,7 +42,7 @@ heads:
 
 const folder = mkdtempSync(path.join(tmpdir(), "sonard-foxglove-"));
 const running = [];
-// Tuples of Foxglove's schemas are those of an older draft.
+// Foxglove's schemas write tuples as in an older draft.
 const ajv = new Ajv2020({ strict: false, validateFormats: false });
 
 const start = (name, ...options) => startProgram(path.join(programs, name), options, running);

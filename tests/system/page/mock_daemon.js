@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A daemon as the page sees it, with made-up heads, so that the page is tested alone: a fan and a scanning head whose
-// targets lie where TARGETS says. It serves the page's own files and gives frames for credit only, as the daemon does.
+// A simulated daemon with two heads, to test the page alone: a fan and a scanning head with targets at the places in
+// TARGETS. It serves the page's own files and sends frames only for credit, as the daemon does.
 import { readFile } from "node:fs/promises";
 import http from "node:http";
 import path from "node:path";
@@ -48,7 +48,7 @@ function echo(target, range_m, bearing_rad, cell_m) {
   const shadow = bearing_deg > 8 && bearing_deg < 41 && range_m > wall;
   const hidden = Math.abs(bearing_deg - target.bearing_deg) < 1.5 && range_m > target.range_m && range_m < target.range_m + 4;
   const bed = range_m < 4 || shadow || hidden ? 1.5 : 26 * Math.exp(-((range_m - 8) ** 2) / 60);
-  return Math.min(60, bed * speckle);  // a brighter cell would look like the target, and may be nearer
+  return Math.min(60, bed * speckle);  // a brighter cell would look like the target and may be nearer
 }
 
 function message(header, directions, samples) {
@@ -99,15 +99,15 @@ export class MockDaemon {
     this.findings = [];
     this.poseFindings = [];
     this.recordingOn = false;
-    this.token = null;  // with one, nobody without it may switch the recording
-    this.wants = [0, 0];  // credit that viewers gave, by head
+    this.token = null;  // if set, only viewers with this token may switch the recording
+    this.wants = [0, 0];  // credit from viewers, by head
     this.statusWants = 0;
     this.worldAsked = 0;
     this.pings = 0;
     this.line = 0;
     this.sentLine = 0;
-    this.idle = false;  // no ping goes out; who asks first gets the last one
-    this.last = null;  // frame of the first head that an idle daemon gives
+    this.idle = false;  // no ping is sent; the first viewer that asks gets the last ping
+    this.last = null;  // frame of the first head that an idle daemon sends
     this.clients = [{ address: "127.0.0.1:52901", idle_s: 0.2, messages: 1234 }];  // of the first head
     this.withoutPose = 0;
     this.vehicle = MOUNT;

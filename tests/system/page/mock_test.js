@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page alone, against a daemon that is made up (mock_daemon.js) and so can count what the page asks for.
+// The page alone, with a simulated daemon (mock_daemon.js), which counts the page's requests.
 //   node mock_test.js PAGE        PAGE: the folder server/web/page
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
@@ -102,7 +102,7 @@ test("an empty picture says what it waits for: a client, a pose, or the next pin
   assert.ok(await head(page, 0).locator(".empty").isVisible());
 });
 
-// By the law of the picture: a fan of 120 degrees is 2 sin 60 = 1.73 times as wide as high, a turn is as wide as high.
+// By the geometry of the picture: a fan of 120 degrees is 2 sin 60 = 1.73 times as wide as high, a turn is as wide as high.
 for (const [name, viewport, most] of [["a desk", undefined, 0.8], ["a phone", PHONE, 0.72]]) {
   test(`a picture fills its box on ${name}`, async () => {
     await openPage(viewport);

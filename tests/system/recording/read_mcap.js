@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads MCAP files with @mcap/core, decodes their messages by the descriptors in the files alone, and prints what
-// recording_test.py compares, as JSON.   node read_mcap.js FILE...
+// Reads MCAP files with @mcap/core, decodes their messages by the descriptors in the files only, and prints the values
+// that recording_test.py compares, as JSON.   node read_mcap.js FILE...
 import { readFileSync } from "node:fs";
 import { crc32 } from "node:zlib";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import protobuf from "protobufjs";
 import descriptor from "protobufjs/ext/descriptor/index.js";
 
-// zlib.crc32 is newer than some versions of Node.
+// Some supported versions of Node lack zlib.crc32.
 const table = Array.from({ length: 256 }, (_, n) => {
   for (let bit = 0; bit < 8; ++bit) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
   return n >>> 0;
@@ -20,7 +20,7 @@ function decoder(schema) {
   return (data) => type.toObject(type.decode(data), { defaults: true, longs: String, enums: String });
 }
 
-// protobufjs spells the names of fields in several ways.
+// protobufjs has several spellings of field names.
 function plain(said) {
   return Object.fromEntries(Object.entries(said).map(([name, value]) => [name.replaceAll("_", "").toLowerCase(), value]));
 }
