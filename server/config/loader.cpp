@@ -243,9 +243,9 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
   section.text("partition", gazebo.partition, "partition of the Gazebo transport");
   section.default_is("partition", "value of `IGN_PARTITION`");
   read_own_address(section, "address", gazebo.address,
-                   "address of this machine on the network to Gazebo, instead of `IGN_IP` or `GZ_IP`. With a "
-                   "loopback address, only Gazebo on this machine can publish poses. With any other address, "
-                   "every machine on that network can publish poses");
+                   "address of this machine on the network to Gazebo; sonard ignores `IGN_IP` and `GZ_IP`. With "
+                   "a loopback address (the default), only Gazebo on this machine can publish poses. With any "
+                   "other address, every machine on that network can publish poses");
   section.require("frame", "world, or relative for poses that are relative to parents");
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
                  "reference frame of the poses: `world`, or `relative` to `parents`");
@@ -288,7 +288,8 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.introduce(
       "At least one of `initial`, `udp`, `tcp`, `mavlink`, `gazebo` and `trajectory` is required. "
-      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`.");
+      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. If several of these four are "
+      "set, only one may send poses of the vehicle at a time.");
   section.section(
       "initial",
       "pose until the first pose arrives. Without it, the heads answer clients but do not ping before the "
