@@ -164,7 +164,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                          {{"off", -std::numeric_limits<double>::infinity()}},
                          "scattering strength of a cubic metre of water: -80 if the water is clear, -60 if "
                          "it is turbid or full of bubbles");
-  section.section("water_clutter", "single objects that drift in the water: fish, weed, bubbles",
+  section.section("water_clutter", "single objects at fixed places in the water: fish, weed, bubbles",
                   [&](YamlSection& inner) { read_water_clutter(inner, model.water_clutter); });
   section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
                  "X of the time-varying gain (TVG), X log10 r + 2 alpha r");

@@ -144,7 +144,7 @@ void read_world(YamlSection& section, const std::filesystem::path& folder, Daemo
         inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
                      "WGS 84 longitude; east is positive");
         inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
-                     "altitude of z = 0 above mean sea level");
+                     "altitude of z = 0 in the datum of the map; without a map, above mean sea level");
       });
 }
 
