@@ -315,7 +315,8 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
         read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "TCP address that publishers connect to",
                     "address blocks that may publish poses");
         inner.integer("max_clients", tcp.max_clients, 1, 1000,
-                      "maximum number of connections; sonard closes further ones at once");
+                      "maximum number of connections. A further one takes the place of a publisher that sent no "
+                      "pose for 30 s; otherwise sonard closes it at once");
       });
   section.section("mavlink",
                   "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
