@@ -73,7 +73,7 @@ inline constexpr std::array skip_rules{
         SkipRule::hidden_faces, "hidden_faces",
         "the face turns its inner side to the sonar, which is outside of the box of its closed surface, or "
         "above its bed; rays are straight",
-        "triangles", 2e-2},
+        "triangles", 2e-4, "of the image's maximum, with preset `reference`"},
     SkipRuleEntry{SkipRule::empty_beams, "empty_beams", "nothing is seen in the beam", "beams", 0},
     SkipRuleEntry{SkipRule::geometric_normals, "geometric_normals",
                   "the part has no vertex normals, or all are within 1e-4 rad of their facet's", "parts",
