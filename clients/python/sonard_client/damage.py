@@ -8,7 +8,7 @@ from typing import Any
 
 
 class DamagedLog(UserWarning):
-    """Part of a log cannot be read. The reader skips that part and continues with the next one."""
+    """Part of a log cannot be read, or its end is missing. The reader skips that part and continues with the next one."""
 
 
 def warn(path: Any, what: str) -> None:
@@ -17,3 +17,9 @@ def warn(path: Any, what: str) -> None:
 
 def warn_of_bytes(path: Any, offset: int, size: int, why: str, lost: str) -> None:
     warn(path, f"{size} bytes at byte {offset} cannot be read ({why}); {lost}")
+
+
+def warn_of_end(path: Any, tail_bytes: int) -> None:
+    """Warns of a log without an end. `tail_bytes` is the size of the unfinished record at its end."""
+    tail = f"; the last {tail_bytes} bytes are no whole record" if tail_bytes else ""
+    warnings.warn(f"{path} is not closed: cut, still being written, or its writer went away{tail}", DamagedLog, stacklevel=2)

@@ -10,7 +10,13 @@ from typing import Any, Iterator, Optional
 
 LOCAL_SIGNATURE = b"PK\x03\x04"
 _CENTRAL_SIGNATURE, _END_SIGNATURE = b"PK\x01\x02", b"PK\x05\x06"
+START_OF_RECORD = b"*\x02"
+TERMINATOR = b"\xde\xde"  # ends a closed .dat
+_LOCAL = struct.Struct("<4sHHHHHIIIHH")
+_CENTRAL = struct.Struct("<4sHHHHHHIIIHHHHHII")
+_END = struct.Struct("<4sHHHHIIH")
 _STORED, _DEFLATED = 0, 8
+_ENCRYPTED = 1  # of an entry's flags
 _BLOCK_BYTES = 65531  # in sonard's own archives
 
 
@@ -62,52 +68,167 @@ class Pieces:
         return crc
 
 
+class _BadArchive(Exception):
+    """The archive around the .dat is damaged or cut."""
+
+
+def _unreadable(what: str) -> _BadArchive:
+    return _BadArchive(f"{what} cannot be read in its archive, which was searched for pings")
+
+
 @dataclass(frozen=True)
 class Dat:
-    content: Pieces
-    crc: Optional[int]  # from the archive; None if the archive does not give it
+    candidates: list[Pieces]  # the most likely one first; more than one only if the archive is damaged
+    crc: Optional[int]  # of the candidate, not checked yet; None if it is unknown, or checked
+    damage: Optional[str]  # of the archive around the .dat
 
 
-def find_dat(data: Any) -> Optional[Dat]:
-    """Finds the .dat by its local header, or else by the directory."""
-    at = 0
-    while (at := data.find(LOCAL_SIGNATURE, at)) >= 0:
-        if at + 30 <= len(data):
-            method, _, _, crc, stored, _, name, extra = struct.unpack_from("<HHHIIIHH", data, at + 8)
-            if bytes(data[at + 30: at + 30 + name]).endswith(b".dat"):
-                directory = _from_directory(data)
-                start = at + 30 + name + extra
-                if directory is not None:
-                    _, _, crc, stored = directory  # the local header may lack them
-                return Dat(_content(data, start, method, stored), crc if directory is not None else None)
-        at += 4
-    directory = _from_directory(data)
-    if directory is None:
-        return None
-    start, method, crc, stored = directory
-    return Dat(_content(data, start, method, stored), crc)
+@dataclass(frozen=True)
+class _Entry:
+    """An entry of the directory."""
+
+    name: bytes
+    flags: int
+    method: int
+    crc: int
+    stored_size: int
+    size: int
+    extra_size: int
+    local_header: int  # its offset
 
 
-def _from_directory(data: Any) -> Optional[tuple[int, int, int, int]]:
-    """Offset of the content (if the local header has the directory's lengths), method, CRC and stored size."""
-    end = data.rfind(_END_SIGNATURE)
-    if end < 0 or end + 22 > len(data):
-        return None
-    (at,) = struct.unpack_from("<I", data, end + 16)
-    while at + 46 <= len(data) and bytes(data[at: at + 4]) == _CENTRAL_SIGNATURE:
-        method, _, _, crc, stored, _, name, extra, comment = struct.unpack_from("<HHHIIIHHH", data, at + 10)
-        if bytes(data[at + 46: at + 46 + name]).endswith(b".dat"):
-            return struct.unpack_from("<I", data, at + 42)[0] + 30 + name + extra, method, crc, stored
-        at += 46 + name + extra + comment
-    return None
+def find_dat(data: Any) -> Dat:
+    """Finds the .dat by the directory. If the archive is damaged or cut, also by the local headers; the last candidate is the
+    whole file."""
+    try:
+        return _intact_dat(data)
+    except _BadArchive as why:
+        contents = [*_by_local_header(data), *_by_directory(data), Pieces([data])]
+        return Dat([content for content in contents if content.size > 0], None, str(why))
 
 
-def _content(data: Any, start: int, method: int, stored: int) -> Pieces:
-    view = memoryview(data)[start:]
+def _intact_dat(data: Any) -> Dat:
+    """Reads an archive without errors. Sizes, method and CRC come from the directory, because local headers may lack them."""
+    dat = None
+    for entry in _directory(data):
+        content = _located(data, entry)
+        if entry.name.endswith(b".dat") and dat is None:
+            dat = entry, content
+        elif entry.name.endswith(b".cfg"):
+            _unpacked(entry, content)
+    if dat is None:
+        raise _unreadable("a .dat")
+    entry, content = dat
+    if entry.method == _STORED and bytes(content[:2]) not in (START_OF_RECORD, TERMINATOR, b""):
+        raise _unreadable(f"the place of {_shown(entry)}")
+    blocks = [content] if entry.method == _STORED else _whole_blocks(content)
+    if blocks is not None and sum(map(len, blocks)) == entry.size:
+        return Dat([Pieces(blocks)], entry.crc, None)
+    return Dat([Pieces([_unpacked(entry, content)])], None, None)
+
+
+def _directory(data: Any) -> Iterator[_Entry]:
+    at, count = _end_record(data)
+    for number in range(count):
+        entry, at = _directory_entry(data, at, f"entry {number} of the directory")
+        yield entry
+
+
+def _directory_entry(data: Any, at: int, what: str) -> tuple[_Entry, int]:
+    """The entry at `at`, and the offset of the next one."""
+    if at + _CENTRAL.size > len(data):
+        raise _unreadable(what)
+    (signature, _, _, flags, method, _, _, crc, stored_size, size, name_size, extra_size, comment_size, _, _, _,
+     local_header) = _CENTRAL.unpack_from(data, at)
+    at += _CENTRAL.size
+    if signature != _CENTRAL_SIGNATURE or at + name_size + extra_size + comment_size > len(data):
+        raise _unreadable(what)
+    name = bytes(data[at: at + name_size])
+    return (_Entry(name, flags, method, crc, stored_size, size, extra_size, local_header),
+            at + name_size + extra_size + comment_size)
+
+
+def _end_record(data: Any) -> tuple[int, int]:
+    """Offset of the directory and number of its entries, from the last end record with a comment up to the end of the file."""
+    at = len(data)
+    while (at := data.rfind(_END_SIGNATURE, max(0, len(data) - _END.size - 0xFFFF), at)) >= 0:
+        if at + _END.size <= len(data):
+            *_, entries, _, directory, comment_size = _END.unpack_from(data, at)
+            if at + _END.size + comment_size == len(data):
+                return directory, entries
+        at += len(_END_SIGNATURE) - 1
+    raise _BadArchive("the end of the archive is missing")
+
+
+def _located(data: Any, entry: _Entry) -> memoryview:
+    """The content of an entry after its local header."""
+    at = entry.local_header
+    if at + _LOCAL.size > len(data) or bytes(data[at: at + 4]) != LOCAL_SIGNATURE:
+        raise _unreadable(f"the local header of {_shown(entry)}")
+    *_, name_size, extra_size = _LOCAL.unpack_from(data, at)
+    start = at + _LOCAL.size + name_size + extra_size
+    if (start + entry.stored_size > len(data) or entry.flags & _ENCRYPTED or entry.method not in (_STORED, _DEFLATED)
+            or (entry.method == _STORED and entry.stored_size != entry.size)):
+        raise _unreadable(f"the sizes or method of {_shown(entry)}")
+    return memoryview(data)[start: start + entry.stored_size]
+
+
+def _unpacked(entry: _Entry, content: memoryview) -> bytes:
+    """Unpacks an entry and checks its size and CRC."""
+    unpacked, whole = (bytes(content), True) if entry.method == _STORED else _inflated(content)
+    if not whole or len(unpacked) != entry.size or zlib.crc32(unpacked) != entry.crc:
+        raise _unreadable(f"the content of {_shown(entry)}")
+    return unpacked
+
+
+def _shown(entry: _Entry) -> str:
+    return entry.name.decode(errors="replace")
+
+
+def _by_local_header(data: Any) -> Iterator[Pieces]:
+    """The content after the first local header with the name of a .dat, by its method and by the other one."""
+    at = -1
+    while (at := data.find(LOCAL_SIGNATURE, at + 1)) >= 0 and at + _LOCAL.size <= len(data):
+        _, _, _, method, _, _, _, stored_size, _, name_size, extra_size = _LOCAL.unpack_from(data, at)
+        start = at + _LOCAL.size
+        if bytes(data[start: start + name_size]).endswith(b".dat"):
+            rest = memoryview(data)[start + name_size + extra_size:]
+            stored = rest[:stored_size] if bytes(rest[stored_size: stored_size + 2]) == b"PK" else rest
+            methods = (_STORED, _DEFLATED) if method == _STORED else (_DEFLATED, _STORED)
+            yield from (_front(stored if kind == _STORED else rest, kind) for kind in methods)
+            return
+
+
+def _by_directory(data: Any) -> Iterator[Pieces]:
+    """The content of the .dat at its offset in the directory. Assumes that the local header is as long as it should be."""
+    try:
+        for entry in _directory(data):
+            if entry.name.endswith(b".dat"):
+                start = entry.local_header + _LOCAL.size + len(entry.name) + entry.extra_size
+                yield _front(memoryview(data)[start: start + entry.stored_size], entry.method)
+                return
+    except _BadArchive:
+        return
+
+
+def _front(content: memoryview, method: int) -> Pieces:
+    """The readable part of a damaged entry."""
     if method == _STORED:
-        return Pieces([view[:stored] if stored else view])
-    pieces = _stored_blocks(view)
-    return Pieces(pieces or [_inflated(view)])
+        return Pieces([content])
+    return Pieces(_stored_blocks(content) or [_inflated(content)[0]])
+
+
+def _whole_blocks(data: memoryview) -> Optional[list[memoryview]]:
+    """The blocks of an entry that deflate stores uncompressed; None if it has other blocks or damaged ones."""
+    pieces = []
+    at, last = 0, False
+    while not last:
+        header = _block_header(data, at)
+        if header is None or not _is_stored(header) or at + 5 + header[1] > len(data):
+            return None
+        pieces.append(data[at + 5: at + 5 + header[1]])
+        at, last = at + 5 + header[1], bool(header[0] & 1)
+    return pieces
 
 
 def _stored_blocks(data: memoryview) -> list[memoryview]:
@@ -139,8 +260,8 @@ def _is_stored(header: tuple[int, int, int]) -> bool:
     return kind & 6 == 0 and size ^ inverse == 0xFFFF
 
 
-def _inflated(data: memoryview) -> bytes:
-    """Decompresses up to the end or the first error."""
+def _inflated(data: memoryview) -> tuple[bytes, bool]:
+    """Decompresses up to the end or the first error. Also returns whether the end was reached."""
     unpacker = zlib.decompressobj(-zlib.MAX_WBITS)
     parts = []
     try:
@@ -150,4 +271,4 @@ def _inflated(data: memoryview) -> bytes:
                 break
     except zlib.error:
         pass
-    return b"".join(parts)
+    return b"".join(parts), unpacker.eof

@@ -17,8 +17,9 @@ def read_log(path: Union[str, PathLike[str]], glf_zone: Optional[tzinfo] = timez
     written.
 
     glf_zone: time zone of the clock of a .glf or .dat, which the file does not state. sonard writes UTC by default; None is
-    the zone of this machine. Checksums are checked. The pings of a damaged part are lost, and it is reported as a DamagedLog
-    warning (`warnings.simplefilter("error", DamagedLog)` makes it an exception). Raises ValueError if the file is no log.
+    the zone of this machine. Checksums are checked. The pings of a damaged part are lost. A damaged part, or a missing end, is
+    reported as a DamagedLog warning (`warnings.simplefilter("error", DamagedLog)` makes it an exception). Raises ValueError if
+    the file is no log.
     """
     with open(path, "rb") as file:
         begins = file.read(8)
@@ -45,4 +46,6 @@ def _form(begins: bytes, name: str) -> Optional[str]:
     for form, magic in _FORMS.items():
         if name.endswith(form) and sum(a != b for a, b in zip(begins, magic)) == 1:
             return form
+    if begins.startswith(glf_log.TERMINATOR):
+        return ".dat"  # closed without records
     return ".dat" if not begins and name.endswith(".dat") else None

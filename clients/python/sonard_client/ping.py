@@ -37,6 +37,11 @@ class Ping:
     missing: int = 0
 
 
+def is_plausible_time(time_ns: int) -> bool:
+    """Whether a time of a log is within 146 years of 1970. `sonard info` has the same limit."""
+    return abs(time_ns) < 1 << 62
+
+
 def _unknown(size: int) -> Array:
     return np.full(size, np.nan)
 
