@@ -4,6 +4,7 @@ protocol/log/sonard_log.proto, whose field numbers are used below; the wire form
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 import zlib
@@ -11,8 +12,8 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 
-from .damage import warn, warn_of_bytes
-from .ping import Array, LoggedPing
+from .damage import warn, warn_of_bytes, warn_of_end
+from .ping import Array, LoggedPing, is_plausible_time
 
 MAGIC = b"\x89MCAP0\r\n"
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _ATTACHMENT, _STATISTICS, _METADATA, _DATA_END = (
@@ -25,6 +26,9 @@ _AFTER_DATA = (_FOOTER, _STATISTICS, _DATA_END)
 _READABLE = re.compile(rb"\x06(?=.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))|\x03(?=.{14}sonard\.log\.)"
                        rb"|\x07(?=.{3}\x00{5}.{5}\x00)", re.DOTALL)
 _MOST_BYTES = 1 << 30  # of one chunk
+_FRONT_BYTES = 49  # of a chunk without compression, up to its records
+_FOOTER_BYTES = 9 + 20
+_MOST_BINS = 65535  # of a scan line
 
 
 class _Damaged(Exception):
@@ -45,6 +49,9 @@ class _Reader:
         self._channels: dict[int, int] = {}
         self._lost_chunk: Optional[tuple[int, int, str]] = None  # offset, size and reason; its message indexes may follow
         self._lost_messages: dict[int, int] = {}  # by channel, counted from these indexes
+        self._without_channel = 0  # messages
+        self._ended = False  # the end of the data section was found
+        self._tail_bytes = 0  # of an unfinished record at the end
 
     def pings(self) -> Iterator[LoggedPing]:
         for kind, body in self._records():
@@ -55,28 +62,48 @@ class _Reader:
                 number, schema = struct.unpack_from("<HH", body)
                 self._channels.setdefault(number, schema)
             elif kind == _MESSAGE and len(body) >= 22:
-                schema_name = self._schema_of(struct.unpack_from("<H", body)[0])
+                (channel,) = struct.unpack_from("<H", body)
+                schema_name = self._schema_of(channel)
+                self._without_channel += channel not in self._channels
                 if schema_name in _MAKERS:
                     try:
                         ping = _MAKERS[schema_name](_fields(body[22:]))
-                    except (IndexError, ValueError, struct.error) as error:
+                    except _UNDECODABLE as error:
                         warn(self._path, f"a {schema_name} cannot be decoded ({error}); it is lost")
                     else:
                         yield ping
+        if self._without_channel:
+            warn(self._path, f"{self._without_channel} messages belong to no channel and are left out")
 
     def _schema_of(self, channel: int) -> str:
         return self._schemas.get(self._channels.get(channel, 0), "")
 
     def _records(self) -> Iterator[tuple[int, bytes]]:
+        """Records outside and inside of chunks. Warns if the end of the log is missing or damaged."""
+        yield from self._data_section()
+        self._tell_lost_chunk()
+        if not self._ended and not _has_end(self._data):
+            warn_of_end(self._path, self._tail_bytes)
+        elif self._ended and not _has_whole_summary(self._data):
+            warn(self._path, "the index at its end cannot be read; no ping is lost")
+
+    def _data_section(self) -> Iterator[tuple[int, bytes]]:
         """Records outside and inside of chunks, up to the end of the data or an unfinished last record."""
         data = self._data
         at: Optional[int] = len(MAGIC)
         while at is not None and at < len(data):
             end = _end(data, at)
             try:
-                if end is None:
+                if (end_of_records := _end_of_open_chunk(data, at)) is not None:
+                    self._tell_lost_chunk()
+                    yield from _split(data[at + _FRONT_BYTES: end_of_records], has_crc=False)
+                    if end is not None and end > end_of_records:
+                        warn_of_bytes(self._path, end_of_records, end - end_of_records, "a record in an open chunk",
+                                      "its pings are lost")
+                    end = max(end or 0, end_of_records)
+                elif end is None:
                     raise _Damaged("a length beyond the end")
-                if data[at] == _CHUNK:
+                elif data[at] == _CHUNK:
                     if not _sizes_agree(data, at):
                         raise _Damaged("the length of a chunk")
                     self._tell_lost_chunk()
@@ -84,7 +111,8 @@ class _Reader:
                 elif _sizes_agree(data, at) or not (data[at] == _ATTACHMENT or _has_form(data, at, data[at])):
                     raise _Damaged(f"a record of type {data[at]}")
                 elif data[at] in _AFTER_DATA:
-                    break
+                    self._ended = True
+                    return
                 elif data[at] == _MESSAGE_INDEX:
                     self._count_lost(data[at + 9: end])
                 else:
@@ -92,15 +120,15 @@ class _Reader:
                 at = end
             except _Damaged as why:
                 at = self._behind_damage(at, end, str(why))
-        self._tell_lost_chunk()
 
     def _behind_damage(self, at: int, end: Optional[int], why: str) -> Optional[int]:
         """Reports damage at `at`. Returns where to continue; None if there is no place."""
         self._tell_lost_chunk()
         data = self._data
-        following = _next_readable(data, at, end)
-        if following is None and end is None and not data[-len(MAGIC):] == MAGIC:
-            return None  # the record is still being written
+        following = None if _is_cut_chunk(data, at) else _next_readable(data, at, end)
+        if following is None and end is None and not _has_end(data):
+            self._tail_bytes = len(data) - at
+            return None  # the record is cut, or still being written
         size = (len(data) if following is None else following) - at
         if _was_chunk(data, at):
             self._lost_chunk = at, size, why
@@ -141,6 +169,15 @@ def _sizes_agree(data: Any, at: int) -> bool:
     return bool(name <= end - at - 49 and at + 49 + name + struct.unpack_from("<Q", data, at + 41 + name)[0] == end)
 
 
+def _is_cut_chunk(data: Any, at: int) -> bool:
+    """Whether the file ends inside the chunk at `at`, whose sizes agree."""
+    if at + _FRONT_BYTES > len(data) or data[at] != _CHUNK or _end(data, at) is not None or _has_end(data):
+        return False
+    (name,) = struct.unpack_from("<I", data, at + 37)
+    return bool(at + 49 + name <= len(data) and struct.unpack_from("<Q", data, at + 1)[0] ==
+                40 + name + struct.unpack_from("<Q", data, at + 41 + name)[0])
+
+
 def _has_form(data: Any, at: int, kind: int) -> bool:
     """Whether the lengths inside the record fit a record of this kind, for any type byte."""
     end = _end(data, at)
@@ -172,7 +209,7 @@ def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
     return None
 
 
-def _records_of_chunk(body: bytes, path: Any) -> Iterator[tuple[int, bytes]]:
+def _records_of_chunk(body: bytes, path: Any) -> list[tuple[int, bytes]]:
     if len(body) < 40:
         raise _Damaged("a chunk without its front")
     size, crc = struct.unpack_from("<QI", body, 16)
@@ -183,15 +220,49 @@ def _records_of_chunk(body: bytes, path: Any) -> Iterator[tuple[int, bytes]]:
     data = _unpacked(body[32: at], body[at + 8:], size, path)
     if crc not in (0, zlib.crc32(data)):
         raise _Damaged("the checksum of a chunk")
+    return _split(data, has_crc=crc != 0)
+
+
+def _split(data: bytes, has_crc: bool) -> list[tuple[int, bytes]]:
+    """The records in a chunk. Without a checksum, a record of an unexpected type or form is damage."""
+    records = []
     at = 0
     while at < len(data):
         end = _end(data, at)
         if end is None:
             raise _Damaged("a record beyond its chunk")
-        if crc == 0 and data[at] != _MESSAGE and not (data[at] in (_SCHEMA, _CHANNEL) and _has_form(data, at, data[at])):
+        if not has_crc and data[at] != _MESSAGE and not (data[at] in (_SCHEMA, _CHANNEL) and _has_form(data, at, data[at])):
             raise _Damaged(f"a record of type {data[at]} in a chunk")
-        yield data[at], data[at + 9: end]
+        records.append((data[at], data[at + 9: end]))
         at = end
+    return records
+
+
+def _end_of_open_chunk(data: Any, at: int) -> Optional[int]:
+    """The end of the last whole record of a chunk that is still being written: it has no checksum and no compression, and its
+    length may be too short. None if there is no such chunk."""
+    begin = at + _FRONT_BYTES
+    if begin > len(data) or data[at] != _CHUNK or struct.unpack_from("<II", data, at + 33) != (0, 0):
+        return None
+    end = begin
+    while end < len(data) and data[end] in (_SCHEMA, _CHANNEL, _MESSAGE) and (following := _end(data, end)) is not None:
+        end = following
+    return end if end > begin else None
+
+
+def _has_end(data: Any) -> bool:
+    return len(data) >= 2 * len(MAGIC) and bool(data[-len(MAGIC):] == MAGIC)
+
+
+def _has_whole_summary(data: Any) -> bool:
+    """Whether the file has an end and a summary with the right checksum, or says that it has no summary."""
+    at = len(data) - len(MAGIC) - _FOOTER_BYTES
+    if not _has_end(data) or at < len(MAGIC) or data[at] != _FOOTER or not _has_form(data, at, _FOOTER):
+        return False
+    start, _, crc = struct.unpack_from("<QQI", data, at + 9)
+    if crc == 0:
+        return bool(start == 0 or len(MAGIC) <= start <= at)
+    return bool(len(MAGIC) <= start <= at and zlib.crc32(data[start: at + _FOOTER_BYTES - 4]) == crc)
 
 
 def _unpacked(compression: bytes, data: bytes, size: int, path: Any) -> bytes:
@@ -201,14 +272,20 @@ def _unpacked(compression: bytes, data: bytes, size: int, path: Any) -> bytes:
         except ImportError as error:
             raise ValueError(f"{path} is compressed: pip install zstandard") from error
         try:
-            unpacked: bytes = zstandard.ZstdDecompressor().decompress(data, min(size, _MOST_BYTES))
+            if size > _MOST_BYTES or zstandard.frame_content_size(data) not in (size, -1):
+                raise _Damaged("the size of a chunk")
+            unpacked: bytes = zstandard.ZstdDecompressor().decompress(data, size)
         except (zstandard.ZstdError, MemoryError) as error:
             raise _Damaged("a chunk that does not unpack") from error
+        if len(unpacked) != size:
+            raise _Damaged("the size of a chunk")
         return unpacked
     if compression == b"lz4":
         raise ValueError(f"{path} is compressed by 'lz4', which sonard does not write")
     if compression:
         raise _Damaged("the compression of a chunk")
+    if len(data) != size:
+        raise _Damaged("the size of a chunk")
     return data
 
 
@@ -253,27 +330,48 @@ def _numbers(data: bytes, order: tuple[int, ...]) -> Array:
     return np.array([values.get(number, 0.0) for number in order])
 
 
+def _require_plausible(time_ns: int, step_m: float, sound_speed_mps: float) -> None:
+    """Raises ValueError for values that no sonar has. `sonard info` leaves out the same pings."""
+    if not is_plausible_time(time_ns) or not 0 < step_m < math.inf or not 0 < sound_speed_mps < math.inf:
+        raise ValueError("impossible values")
+
+
+def _signed(value: int) -> int:
+    """An int64 from its varint."""
+    return value - (1 << 64) if value >= 1 << 63 else value
+
+
 def _ranges_m(first_m: float, step_m: float, count: int) -> Array:
     return first_m + (np.arange(count) + 0.5) * step_m
 
 
 def _multibeam_ping(image: dict[int, Any]) -> LoggedPing:
     """Decodes a SonarImage."""
-    rows, beams = image.get(5, 0), image.get(6, 0)
-    return LoggedPing(samples=np.frombuffer(image.get(7, b""), np.uint8).reshape(rows, beams),
-                      ranges_m=_ranges_m(image.get(9, 0.0), image.get(10, 0.0), rows),
-                      bearings_rad=np.frombuffer(image.get(8, b""), "<f8"), transmit_us=None,
-                      head=image.get(1, b"").decode(), time_ns=image.get(4, 0), sonar_position_m=_numbers(_fields(image.get(15, b"")).get(1, b""), (1, 2, 3)),
-                      sonar_quaternion_xyzw=_numbers(_fields(image.get(15, b"")).get(2, b""), (2, 3, 4, 1)))
+    rows, beams, time_ns = image.get(5, 0), image.get(6, 0), _signed(image.get(4, 0))
+    samples, bearings_rad = np.frombuffer(image.get(7, b""), np.uint8), np.frombuffer(image.get(8, b""), "<f8")
+    if not samples.size or samples.size != rows * beams or bearings_rad.size != beams:
+        raise ValueError(f"{rows} rows of {beams} beams have {samples.size} samples and {bearings_rad.size} bearings")
+    _require_plausible(time_ns, image.get(10, 0.0), image.get(11, 0.0))
+    pose = _fields(image.get(15, b""))
+    return LoggedPing(samples=samples.reshape(rows, beams), ranges_m=_ranges_m(image.get(9, 0.0), image.get(10, 0.0), rows),
+                      bearings_rad=bearings_rad, transmit_us=None, head=image.get(1, b"").decode(), time_ns=time_ns,
+                      sonar_position_m=_numbers(pose.get(1, b""), (1, 2, 3)),
+                      sonar_quaternion_xyzw=_numbers(pose.get(2, b""), (2, 3, 4, 1)))
 
 
 def _scan_line(line: dict[int, Any]) -> LoggedPing:
     """Decodes a ScanLine."""
-    bins = np.frombuffer(line.get(6, b""), np.uint8)
+    bins, bearing_rad, time_ns = np.frombuffer(line.get(6, b""), np.uint8), line.get(5, 0.0), _signed(line.get(4, 0))
+    if not 0 < bins.size <= _MOST_BINS or not math.isfinite(bearing_rad):
+        raise ValueError(f"{bins.size} bins at {bearing_rad} rad")
+    _require_plausible(time_ns, line.get(8, 0.0), line.get(9, 0.0))
+    pose = _fields(line.get(13, b""))
     return LoggedPing(samples=bins[:, None], ranges_m=_ranges_m(line.get(7, 0.0), line.get(8, 0.0), bins.size),
-                      bearings_rad=np.array([line.get(5, 0.0)]), transmit_us=None,
-                      head=line.get(1, b"").decode(), time_ns=line.get(4, 0), sonar_position_m=_numbers(_fields(line.get(13, b"")).get(1, b""), (1, 2, 3)),
-                      sonar_quaternion_xyzw=_numbers(_fields(line.get(13, b"")).get(2, b""), (2, 3, 4, 1)))
+                      bearings_rad=np.array([bearing_rad]), transmit_us=None, head=line.get(1, b"").decode(),
+                      time_ns=time_ns, sonar_position_m=_numbers(pose.get(1, b""), (1, 2, 3)),
+                      sonar_quaternion_xyzw=_numbers(pose.get(2, b""), (2, 3, 4, 1)))
 
 
 _MAKERS = {"sonard.log.SonarImage": _multibeam_ping, "sonard.log.ScanLine": _scan_line}
+# What decoding a message with wrong bytes raises, for example a field of another type.
+_UNDECODABLE = (AttributeError, IndexError, TypeError, ValueError, struct.error)
