@@ -8,6 +8,8 @@ import zlib
 from dataclasses import dataclass
 from typing import Any, Iterator, Optional
 
+import numpy as np
+
 LOCAL_SIGNATURE = b"PK\x03\x04"
 _CENTRAL_SIGNATURE, _END_SIGNATURE = b"PK\x01\x02", b"PK\x05\x06"
 START_OF_RECORD = b"*\x02"
@@ -16,6 +18,8 @@ _LOCAL = struct.Struct("<4sHHHHHIIIHH")
 _CENTRAL = struct.Struct("<4sHHHHHHIIIHHHHHII")
 _END = struct.Struct("<4sHHHHIIH")
 _STORED, _DEFLATED = 0, 8
+_SIGNATURES = (LOCAL_SIGNATURE, _CENTRAL_SIGNATURE, _END_SIGNATURE)
+_WINDOW_BYTES = 1 << 20
 _ENCRYPTED = 1  # of an entry's flags
 _BLOCK_BYTES = 65531  # in sonard's own archives
 
@@ -232,20 +236,43 @@ def _whole_blocks(data: memoryview) -> Optional[list[memoryview]]:
 
 
 def _stored_blocks(data: memoryview) -> list[memoryview]:
-    """Blocks that deflate stores uncompressed. Skips a damaged header if another one follows."""
-    pieces = []
+    """Blocks that deflate stores uncompressed. Skips a damaged header if another one follows. If bytes were inserted into a
+    block or removed, the block ends at the next header."""
+    pieces: list[memoryview] = []
     at = before = 0
-    while (header := _block_header(data, at)) is not None:
+    while (header := _block_header(data, at)) is not None and bytes(data[at: at + 4]) not in _SIGNATURES:
         kind, size, inverse = header
         sizes = [size] if _is_stored(header) else [
             guess for guess in (size, inverse ^ 0xFFFF, before, _BLOCK_BYTES)
             if (following := _block_header(data, at + 5 + guess)) is not None and _is_stored(following)]
+        if not sizes and pieces:
+            begin = at - len(pieces.pop())
+            following = _next_block(data, begin, before)
+            at = len(data) if following is None else following
+            pieces.append(data[begin: at])
+            continue
         if not sizes or (sizes[0] == 0 and kind & 1):
             break
         before = sizes[0]
         pieces.append(data[at + 5: at + 5 + before])
         at += 5 + before
     return pieces
+
+
+def _next_block(data: memoryview, at: int, usual_size: int) -> Optional[int]:
+    """Offset of the next header of a stored block that a header, or the end of the entry, follows. A block of the usual size
+    may also be cut."""
+    for start in range(at, len(data), _WINDOW_BYTES):
+        window = np.frombuffer(data[start: start + _WINDOW_BYTES + 4], np.uint8)
+        found = (window[:-4] < 2) & (window[1:-3] ^ window[3:-1] == 0xFF) & (window[2:-2] ^ window[4:] == 0xFF)
+        for offset in np.flatnonzero(found).tolist():
+            kind, size, _ = struct.unpack_from("<BHH", data, start + offset)
+            end = start + offset + 5 + size
+            header = _block_header(data, end)
+            if (header is not None and header[0] < 2 and _is_stored(header)) or (
+                    kind == 1 and bytes(data[end: end + 4]) in _SIGNATURES) or (size == usual_size and end > len(data)):
+                return start + offset
+    return None
 
 
 def _block_header(data: memoryview, at: int) -> Optional[tuple[int, int, int]]:

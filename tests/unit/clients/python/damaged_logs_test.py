@@ -7,6 +7,7 @@ the samples written.
 """
 
 import os
+import re
 import struct
 import sys
 import tempfile
@@ -92,6 +93,17 @@ def open_mcap_log(stated):
     records = [SCHEMA + CHANNEL] + [message(number) for number in range(PINGS)]
     return MAGIC + record(1, text(b"") + text(b"sonard 0.1.0")) + chunk(b"".join(records[:1 + stated]), crc=0) + b"".join(
         records[1 + stated:])
+
+
+def sonard_archive(content, block_size):
+    """An archive as sonard writes it (docs/logs.md 1.2), but without a .cfg: stored blocks, then an empty one."""
+    blocks = b"".join(struct.pack("<BHH", 0, len(block), len(block) ^ 0xFFFF) + block
+                      for block in (content[at: at + block_size] for at in range(0, len(content), block_size)))
+    blocks += b"\x01\0\0\xff\xff"
+    entry = struct.pack("<HHHHHIIIHH", 20, 0, 8, 0, 33, zlib.crc32(content), len(blocks), len(content), 8, 0)
+    local = b"PK\x03\x04" + entry + b"data.dat" + blocks
+    central = b"PK\x01\x02" + struct.pack("<H", 20) + entry + struct.pack("<HHHII", 0, 0, 0, 0, 0) + b"data.dat"
+    return local + central + b"PK\x05\x06" + struct.pack("<HHHHIIH", 0, 0, 1, 1, len(central), len(local), 0)
 
 
 def images_of(count):
@@ -181,6 +193,21 @@ class DamagedLogs(unittest.TestCase):
                     self.assertRegex(told[0], "content of data.dat cannot be read in its archive, which was searched for pings$")
                 else:
                     self.assertEqual(told, [])  # the directory has the right values
+
+    def test_inserted_and_missing_bytes_of_a_glf_cost_their_records(self):
+        images = glf_writer.noise(count=10, lines=100)
+        for block_size in (65531, 16383):
+            whole = sonard_archive(glf_writer.dat(images), block_size)
+            self.assertEqual(self.read(".glf", whole), ([image.pixels for image in images], []))
+            begin = whole.index(b"*\x02")
+            size = whole.index(b"PK\x01\x02") - 5 - begin
+            for number in range(40):
+                at = begin + 30 + number * (size - 600) // 40
+                for damaged in (whole[:at] + bytes(range(256)) * 2 + whole[at:], whole[:at] + whole[at + 512:]):
+                    pings, told = self.read(".glf", damaged)
+                    self.assertGreaterEqual(len({image.pixels for image in images}.intersection(pings)), 8, (at, told))
+                    unread = sum(int(size) for one in told for size in re.findall(r"(\d+) bytes", one))
+                    self.assertGreater(unread, 25600, told)
 
     def test_a_damaged_entry_beside_the_dat_is_told(self):
         images = images_of(2)
