@@ -107,8 +107,7 @@ def find_dat(data: Any) -> Dat:
     try:
         return _intact_dat(data)
     except _BadArchive as why:
-        contents = [*_by_local_header(data), *_by_directory(data), Pieces([data])]
-        return Dat([content for content in contents if content.size > 0], None, str(why))
+        return Dat([*_by_local_header(data), *_by_directory(data), Pieces([data])], None, str(why))
 
 
 def _intact_dat(data: Any) -> Dat:
@@ -291,11 +290,24 @@ def _inflated(data: memoryview) -> tuple[bytes, bool]:
     """Decompresses up to the end or the first error. Also returns whether the end was reached."""
     unpacker = zlib.decompressobj(-zlib.MAX_WBITS)
     parts = []
-    try:
-        for at in range(0, len(data), 1 << 16):
+    for at in range(0, len(data), 1 << 16):
+        before = unpacker.copy()
+        try:
             parts.append(unpacker.decompress(data[at: at + (1 << 16)]))
-            if unpacker.eof:
-                break
+        except zlib.error:
+            parts.append(_up_to_error(before, data[at: at + (1 << 16)]))
+            break
+        if unpacker.eof:
+            break
+    return b"".join(parts), unpacker.eof
+
+
+def _up_to_error(unpacker: Any, data: memoryview) -> bytes:
+    """Decompresses byte by byte, because zlib returns nothing of a step with an error."""
+    parts = []
+    try:
+        for at in range(len(data)):
+            parts.append(unpacker.decompress(data[at: at + 1]))
     except zlib.error:
         pass
-    return b"".join(parts), unpacker.eof
+    return b"".join(parts)

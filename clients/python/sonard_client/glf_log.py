@@ -40,12 +40,13 @@ def pings_of_glf(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[Logge
 
 
 def _with_records(candidates: list[Pieces]) -> Optional[Pieces]:
-    """The candidate that begins with a whole record, or else one that contains a whole record or begins as one."""
+    """The candidate that begins with a whole record, or else one that contains one, or else the first one. None if there is
+    only the whole file, and no record in it."""
     for at_start in (True, False):
         for dat in candidates:
             if _is_record(dat, 0) if at_start else _next_record(dat, 0) is not None:
                 return dat
-    return next((dat for dat in candidates if dat.size >= 2 and dat.read(0, 2) in (MAGIC_OF_DAT, TERMINATOR)), None)
+    return candidates[0] if len(candidates) > 1 else None
 
 
 def pings_of_dat(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[LoggedPing]:

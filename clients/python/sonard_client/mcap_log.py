@@ -29,6 +29,8 @@ _MOST_BYTES = 1 << 30  # of one chunk
 _FRONT_BYTES = 49  # of a chunk without compression, up to its records
 _FOOTER_BYTES = 9 + 20
 _MOST_BINS = 65535  # of a scan line
+_VARINT, _EIGHT_BYTES, _BYTES, _FOUR_BYTES = 0, 1, 2, 5  # wire types of fields
+_SIZES = {_EIGHT_BYTES: 8, _FOUR_BYTES: 4}
 
 
 class _Damaged(Exception):
@@ -67,8 +69,8 @@ class _Reader:
                 self._without_channel += channel not in self._channels
                 if schema_name in _MAKERS:
                     try:
-                        ping = _MAKERS[schema_name](_fields(body[22:]))
-                    except _UNDECODABLE as error:
+                        ping = _MAKERS[schema_name](_Fields(body[22:]))
+                    except (IndexError, ValueError) as error:
                         warn(self._path, f"a {schema_name} cannot be decoded ({error}); it is lost")
                     else:
                         yield ping
@@ -295,83 +297,106 @@ def _text(body: bytes, at: int) -> str:
 
 
 def _varint(data: bytes, at: int) -> tuple[int, int]:
-    value = shift = 0
-    while True:
+    value = 0
+    for shift in range(0, 70, 7):
         value |= (data[at] & 0x7F) << shift
         at += 1
         if data[at - 1] < 0x80:
-            return value, at
-        shift += 7
+            return value & 0xFFFF_FFFF_FFFF_FFFF, at
+    raise ValueError("a number has more than 10 bytes")
 
 
-def _fields(data: bytes) -> dict[int, Any]:
-    """The last value of each field: an int, a float of 8 bytes, or bytes."""
-    fields: dict[int, Any] = {}
-    at = 0
-    while at < len(data):
-        tag, at = _varint(data, at)
-        if tag & 7 == 0:
-            fields[tag >> 3], at = _varint(data, at)
-        elif tag & 7 == 1:
-            (fields[tag >> 3],) = struct.unpack_from("<d", data, at)
-            at += 8
-        elif tag & 7 == 2:
-            length, at = _varint(data, at)
-            fields[tag >> 3] = data[at: at + length]
-            at += length
-        else:
-            raise ValueError(f"a message has a field of wire type {tag & 7}")
-    return fields
+class _Fields:
+    """The last value of each field of a message. A field of another type than expected is missing, as for every reader of
+    Protocol Buffers."""
+
+    def __init__(self, data: bytes) -> None:
+        self._values: dict[tuple[int, int], Any] = {}
+        at = 0
+        while at < len(data):
+            tag, at = _varint(data, at)
+            number, kind = tag >> 3, tag & 7
+            size = 0
+            if kind == _VARINT:
+                value, at = _varint(data, at)
+                self._values[number, kind] = value
+            elif kind in _SIZES:
+                size = _SIZES[kind]
+            elif kind == _BYTES:
+                size, at = _varint(data, at)
+            else:
+                raise ValueError(f"a field of wire type {kind}")
+            if not number or at + size > len(data):
+                raise ValueError(f"field {number} of {size} bytes")
+            if kind != _VARINT:
+                self._values[number, kind] = data[at: at + size]
+            at += size
+
+    def number(self, field: int) -> int:
+        """An unsigned number of 32 bits."""
+        return int(self._values.get((field, _VARINT), 0)) & 0xFFFF_FFFF
+
+    def signed(self, field: int) -> int:
+        """A number of 64 bits."""
+        value = int(self._values.get((field, _VARINT), 0))
+        return value - (1 << 64) if value >= 1 << 63 else value
+
+    def real(self, field: int) -> float:
+        return float(struct.unpack("<d", self._values.get((field, _EIGHT_BYTES), bytes(8)))[0])
+
+    def content(self, field: int) -> bytes:
+        return bytes(self._values.get((field, _BYTES), b""))
+
+    def text(self, field: int) -> str:
+        return self.content(field).decode()
 
 
-def _numbers(data: bytes, order: tuple[int, ...]) -> Array:
-    """Fields of a Vector3 or Quaternion; a missing field is 0."""
-    values = _fields(data)
-    return np.array([values.get(number, 0.0) for number in order])
+def _pose(data: bytes) -> tuple[Array, Array]:
+    """Position and quaternion of a Pose; a missing number is 0."""
+    pose = _Fields(data)
+    position, orientation = _Fields(pose.content(1)), _Fields(pose.content(2))
+    return (np.array([position.real(number) for number in (1, 2, 3)]),
+            np.array([orientation.real(number) for number in (2, 3, 4, 1)]))
 
 
-def _require_plausible(time_ns: int, step_m: float, sound_speed_mps: float) -> None:
+def _require_plausible(ping: _Fields, step_m: float, sound_speed_mps: float) -> None:
     """Raises ValueError for values that no sonar has. `sonard info` leaves out the same pings."""
-    if not is_plausible_time(time_ns) or not 0 < step_m < math.inf or not 0 < sound_speed_mps < math.inf:
+    if (not is_plausible_time(ping.signed(4)) or ping.number(2) > 0xFFFF or not 0 < step_m < math.inf
+            or not 0 < sound_speed_mps < math.inf):
         raise ValueError("impossible values")
-
-
-def _signed(value: int) -> int:
-    """An int64 from its varint."""
-    return value - (1 << 64) if value >= 1 << 63 else value
 
 
 def _ranges_m(first_m: float, step_m: float, count: int) -> Array:
     return first_m + (np.arange(count) + 0.5) * step_m
 
 
-def _multibeam_ping(image: dict[int, Any]) -> LoggedPing:
+def _multibeam_ping(image: _Fields) -> LoggedPing:
     """Decodes a SonarImage."""
-    rows, beams, time_ns = image.get(5, 0), image.get(6, 0), _signed(image.get(4, 0))
-    samples, bearings_rad = np.frombuffer(image.get(7, b""), np.uint8), np.frombuffer(image.get(8, b""), "<f8")
+    rows, beams = image.number(5), image.number(6)
+    samples, bearings_rad = np.frombuffer(image.content(7), np.uint8), np.frombuffer(image.content(8), "<f8")
     if not samples.size or samples.size != rows * beams or bearings_rad.size != beams:
         raise ValueError(f"{rows} rows of {beams} beams have {samples.size} samples and {bearings_rad.size} bearings")
-    _require_plausible(time_ns, image.get(10, 0.0), image.get(11, 0.0))
-    pose = _fields(image.get(15, b""))
-    return LoggedPing(samples=samples.reshape(rows, beams), ranges_m=_ranges_m(image.get(9, 0.0), image.get(10, 0.0), rows),
-                      bearings_rad=bearings_rad, transmit_us=None, head=image.get(1, b"").decode(), time_ns=time_ns,
-                      sonar_position_m=_numbers(pose.get(1, b""), (1, 2, 3)),
-                      sonar_quaternion_xyzw=_numbers(pose.get(2, b""), (2, 3, 4, 1)))
+    _require_plausible(image, image.real(10), image.real(11))
+    _pose(image.content(14))  # of the vehicle; checked only, as the type is
+    image.text(16)
+    position_m, quaternion_xyzw = _pose(image.content(15))
+    return LoggedPing(samples=samples.reshape(rows, beams), ranges_m=_ranges_m(image.real(9), image.real(10), rows),
+                      bearings_rad=bearings_rad, transmit_us=None, head=image.text(1), time_ns=image.signed(4),
+                      sonar_position_m=position_m, sonar_quaternion_xyzw=quaternion_xyzw)
 
 
-def _scan_line(line: dict[int, Any]) -> LoggedPing:
+def _scan_line(line: _Fields) -> LoggedPing:
     """Decodes a ScanLine."""
-    bins, bearing_rad, time_ns = np.frombuffer(line.get(6, b""), np.uint8), line.get(5, 0.0), _signed(line.get(4, 0))
+    bins, bearing_rad = np.frombuffer(line.content(6), np.uint8), line.real(5)
     if not 0 < bins.size <= _MOST_BINS or not math.isfinite(bearing_rad):
         raise ValueError(f"{bins.size} bins at {bearing_rad} rad")
-    _require_plausible(time_ns, line.get(8, 0.0), line.get(9, 0.0))
-    pose = _fields(line.get(13, b""))
-    return LoggedPing(samples=bins[:, None], ranges_m=_ranges_m(line.get(7, 0.0), line.get(8, 0.0), bins.size),
-                      bearings_rad=np.array([bearing_rad]), transmit_us=None, head=line.get(1, b"").decode(),
-                      time_ns=time_ns, sonar_position_m=_numbers(pose.get(1, b""), (1, 2, 3)),
-                      sonar_quaternion_xyzw=_numbers(pose.get(2, b""), (2, 3, 4, 1)))
+    _require_plausible(line, line.real(8), line.real(9))
+    _pose(line.content(12))  # of the vehicle; checked only, as the type is
+    line.text(16)
+    position_m, quaternion_xyzw = _pose(line.content(13))
+    return LoggedPing(samples=bins[:, None], ranges_m=_ranges_m(line.real(7), line.real(8), bins.size),
+                      bearings_rad=np.array([bearing_rad]), transmit_us=None, head=line.text(1), time_ns=line.signed(4),
+                      sonar_position_m=position_m, sonar_quaternion_xyzw=quaternion_xyzw)
 
 
 _MAKERS = {"sonard.log.SonarImage": _multibeam_ping, "sonard.log.ScanLine": _scan_line}
-# What decoding a message with wrong bytes raises, for example a field of another type.
-_UNDECODABLE = (AttributeError, IndexError, TypeError, ValueError, struct.error)

@@ -95,15 +95,19 @@ def open_mcap_log(stated):
         records[1 + stated:])
 
 
+def archive_of(content, packed):
+    """An archive with a .dat: its content, and its deflated form."""
+    entry = struct.pack("<HHHHHIIIHH", 20, 0, 8, 0, 33, zlib.crc32(content), len(packed), len(content), 8, 0)
+    local = b"PK\x03\x04" + entry + b"data.dat" + packed
+    central = b"PK\x01\x02" + struct.pack("<H", 20) + entry + struct.pack("<HHHII", 0, 0, 0, 0, 0) + b"data.dat"
+    return local + central + b"PK\x05\x06" + struct.pack("<HHHHIIH", 0, 0, 1, 1, len(central), len(local), 0)
+
+
 def sonard_archive(content, block_size):
     """An archive as sonard writes it (docs/logs.md 1.2), but without a .cfg: stored blocks, then an empty one."""
     blocks = b"".join(struct.pack("<BHH", 0, len(block), len(block) ^ 0xFFFF) + block
                       for block in (content[at: at + block_size] for at in range(0, len(content), block_size)))
-    blocks += b"\x01\0\0\xff\xff"
-    entry = struct.pack("<HHHHHIIIHH", 20, 0, 8, 0, 33, zlib.crc32(content), len(blocks), len(content), 8, 0)
-    local = b"PK\x03\x04" + entry + b"data.dat" + blocks
-    central = b"PK\x01\x02" + struct.pack("<H", 20) + entry + struct.pack("<HHHII", 0, 0, 0, 0, 0) + b"data.dat"
-    return local + central + b"PK\x05\x06" + struct.pack("<HHHHIIH", 0, 0, 1, 1, len(central), len(local), 0)
+    return archive_of(content, blocks + b"\x01\0\0\xff\xff")
 
 
 def images_of(count):
@@ -309,13 +313,29 @@ class DamagedLogs(unittest.TestCase):
         self.assertRegex(told[0], "1 messages belong to no channel and are left out$")
 
     def test_impossible_values_are_told_in_an_mcap(self):
-        for wrong in (struct.pack("<Bd", 0x41, -1.0), struct.pack("<Bd", 0x49, float("nan")), b"\x32\0", b"\x30\5",
-                      b"\x20" + b"\xff" * 8 + b"\x7f"):
+        for wrong in (struct.pack("<Bd", 0x41, -1.0), struct.pack("<Bd", 0x49, float("nan")), b"\x32\0", b"\x37",
+                      b"\x0a\1\xff", b"\x0a\5x", b"\x10" + b"\xff" * 11, b"\x62\1\7", b"\x20" + b"\xff" * 8 + b"\x7f"):
             line = record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + scan_line(0) + wrong)
             whole = MAGIC + record(1, text(b"") + text(b"x")) + chunk(SCHEMA + CHANNEL + line + message(1))
             pings, told = self.read(".mcap", whole + mcap_end(len(whole)))
             self.assertEqual(pings, [samples_of(1)], wrong)
             self.assertRegex(told[0], r"a sonard.log.ScanLine cannot be decoded \(.*\); it is lost$")
+
+    def test_a_field_of_another_type_is_no_value(self):
+        line = record(5, struct.pack("<HIQQ", 1, 0, 0, 0) + scan_line(0) + b"\x30\5" + b"\x21" + bytes(8) + b"\x35" + bytes(4))
+        whole = MAGIC + record(1, text(b"") + text(b"x")) + chunk(SCHEMA + CHANNEL + line)
+        self.assertEqual(self.read(".mcap", whole + mcap_end(len(whole))), ([samples_of(0)], []))
+
+    def test_a_compressed_glf_is_read_up_to_the_damage(self):
+        images = images_of(60)
+        content = glf_writer.dat(images)
+        size = len(glf_writer.dat(images[:20])) - 2
+        for begin, count in ((content[:size], 20), (b"", 0)):
+            packer = zlib.compressobj(wbits=-zlib.MAX_WBITS)
+            packed = packer.compress(begin) + packer.flush(zlib.Z_SYNC_FLUSH) + b"\x07" * 40  # no block begins so
+            pings, told = self.read(".glf", archive_of(content, packed))
+            self.assertEqual(pings, [image.pixels for image in images[:count]])
+            self.assertIn("the content of data.dat cannot be read", told[0])
 
     def test_impossible_values_are_told_in_a_dat(self):
         for wrong in ({"sound_speed_mps": 0.0}, {"sound_speed_mps": float("inf")}, {"modulation_frequency_hz": 0},
