@@ -381,8 +381,7 @@ void Check::check_poses() {
                                   poses.mavlink->system_id));
   }
   if (poses.gazebo) {
-    sources.push_back(
-        fmt::format("gazebo {} entity '{}'", poses.gazebo->topic, poses.gazebo->vehicle.name));
+    sources.push_back(fmt::format("gazebo {} entity '{}'", poses.gazebo->topic, poses.gazebo->vehicle.name));
   }
   if (trajectory_) {
     sources.push_back(fmt::format(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detects truncated files, and files of another kind. Most libraries read a truncated file up to its end, without
-// an error.
+// Detects truncated files, and files of another kind. Most libraries read a truncated file up to its end,
+// without an error.
 #pragma once
 
 #include <filesystem>

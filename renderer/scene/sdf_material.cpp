@@ -82,8 +82,8 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
   }
 }
 
-/// The name of ours that a name is probably meant to be: "sonard:material" for "sonar:Material" and "x:material",
-/// "sonard:x" for "sonar:x". Empty if the name belongs to another program.
+/// The name of ours that a name is probably meant to be: "sonard:material" for "sonar:Material" and
+/// "x:material", "sonard:x" for "sonar:x". Empty if the name belongs to another program.
 /// @param element that has the name as an attribute; empty if the name is an element's
 std::string meant_name(std::string_view prefix, std::string_view local, std::string_view element) {
   const std::string own = "sonard:" + lower_case(local);

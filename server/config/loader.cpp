@@ -242,10 +242,11 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
   section.text("topic", gazebo.topic, "topic with `Pose_V` or `Pose` messages");
   section.text("partition", gazebo.partition, "partition of the Gazebo transport");
   section.default_is("partition", "value of `IGN_PARTITION`");
-  read_own_address(section, "address", gazebo.address,
-                   "address of this machine on the network to Gazebo; sonard ignores `IGN_IP` and `GZ_IP`. With "
-                   "a loopback address (the default), only Gazebo on this machine can publish poses. With any "
-                   "other address, every machine on that network can publish poses");
+  read_own_address(
+      section, "address", gazebo.address,
+      "address of this machine on the network to Gazebo; sonard ignores `IGN_IP` and `GZ_IP`. With "
+      "a loopback address (the default), only Gazebo on this machine can publish poses. With any "
+      "other address, every machine on that network can publish poses");
   section.require("frame", "world, or relative for poses that are relative to parents");
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
                  "reference frame of the poses: `world`, or `relative` to `parents`");
@@ -288,7 +289,8 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.introduce(
       "At least one of `initial`, `udp`, `tcp`, `mavlink`, `gazebo` and `trajectory` is required. "
-      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. If several of these four are "
+      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. If several of these four "
+      "are "
       "set, only one may send poses of the vehicle at a time.");
   section.section(
       "initial",
@@ -314,9 +316,10 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
         TcpPoseInput& tcp = poses.tcp.emplace();
         read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "TCP address that publishers connect to",
                     "address blocks that may publish poses");
-        inner.integer("max_clients", tcp.max_clients, 1, 1000,
-                      "maximum number of connections. A further one takes the place of a publisher that sent no "
-                      "pose for 30 s; otherwise sonard closes it at once");
+        inner.integer(
+            "max_clients", tcp.max_clients, 1, 1000,
+            "maximum number of connections. A further one takes the place of a publisher that sent no "
+            "pose for 30 s; otherwise sonard closes it at once");
       });
   section.section("mavlink",
                   "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",

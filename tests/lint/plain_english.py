@@ -16,7 +16,7 @@ from tree import CPP, Tree  # noqa: E402
 
 KINDS = {
     # A free relative clause as the subject: "What is seen twice is counted once."
-    "relative": re.compile(r"(?:^|[.:;,] +)(?:and |but |so )?(?:[Ww]hat|[Ww]ho|[Ww]hoever|[Ww]hatever) (?:is|are|was|were|has|have|can|comes?|goes|\w+s) [^?]*$"),
+    "relative": re.compile(r"(?:^|[.:;,] +)(?:and |but |so )?(?:What|what|Who|who|Whoever|whoever|Whatever|whatever) (?:is|are|was|were|has|have|can|comes?|goes|\w+s) [^?]*$"),
     # "where" for "if" or "when"; real places are counted, too.
     "where": re.compile(r"\b[Ww]here\b"),
     # Machines that speak, hear and want.

@@ -319,8 +319,8 @@ std::vector<double> bounces_db(const render::World& world, const std::vector<ren
   return brighter_db;
 }
 
-/// Depth behind the docking station's last wall, at 15.2 m, to which bounces add 1 dB or more. Paths are random,
-/// so it takes the mean of nine places, each turned by another part of a cell.
+/// Depth behind the docking station's last wall, at 15.2 m, to which bounces add 1 dB or more. Paths are
+/// random, so it takes the mean of nine places, each turned by another part of a cell.
 double halo_m() {
   const pictures::View view = pictures::configured_view("demo.yaml", 30);
   std::vector<render::Pose> places;
