@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <exception>
 #include <stdexcept>
 
 namespace sonard::test {
@@ -17,8 +18,8 @@ class WithoutRights {
     }
   }
   ~WithoutRights() {
-    if (was_root_) {
-      static_cast<void>(seteuid(0));
+    if (was_root_ && seteuid(0) != 0) {
+      std::terminate();  // other tests need the rights
     }
   }
   WithoutRights(const WithoutRights&) = delete;
