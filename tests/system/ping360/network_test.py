@@ -145,12 +145,12 @@ class Link(TwoMachines):
         self.check_faults(counts, "from_client")
         self.check_faults(counts, "to_client")
         self.assertEqual(counts["received"], len(sent))
-        self.assertEqual(counts["commands"], counts["from_surface_passed"], "every request that arrived was understood")
-        answered = counts["to_surface_passed"] - counts["to_surface_duplicated"] + counts["to_surface_lost"]
+        self.assertEqual(counts["commands"], counts["from_client_passed"], "every request that arrived was understood")
+        answered = counts["to_client_passed"] - counts["to_client_duplicated"] + counts["to_client_lost"]
         # A copy of a waiting command is not executed again (docs/protocols/ping360.md).
         self.assertEqual(answered, counts["commands"] - counts["commands_joined"], "and was answered once")
         self.assertEqual(counts["commands_dropped"] + counts["refused"] + counts["dropped_bytes"], 0)
-        self.assertEqual(len(answers), counts["to_surface_passed"])
+        self.assertEqual(len(answers), counts["to_client_passed"])
         for got in answers:
             self.assertEqual(got.message, DEVICE_DATA)
             self.assert_ping(got, sent[messages.data_of(got).samples])
@@ -184,8 +184,8 @@ class Link(TwoMachines):
         self.assertLess(max(angles), counts["pings_sent"])
         self.assertLess(counts["pings_sent"], 400)
         missing = counts["pings_sent"] - len(angles)
-        self.assertGreaterEqual(missing, counts["to_surface_lost"] - stops, "a ping was lost or is there")
-        self.assertLessEqual(missing, counts["to_surface_lost"])
+        self.assertGreaterEqual(missing, counts["to_client_lost"] - stops, "a ping was lost or is there")
+        self.assertLessEqual(missing, counts["to_client_lost"])
         by_angle = {}
         for ping in pings:
             self.assertEqual(by_angle.setdefault(ping.angle, ping), ping, "the second copy is the first")
