@@ -19,6 +19,14 @@ const ZipEntry* find_suffix(const std::vector<ZipEntry>& entries, std::string_vi
   return found == entries.end() ? nullptr : &*found;
 }
 
+/// False if the first byte belongs to neither a record nor the terminator: a length in the local header is
+/// wrong.
+bool begins_as_dat(const PiecewiseBytes& dat) {
+  std::uint8_t first = record_id;
+  dat.copy(0, std::span{&first, std::min<std::size_t>(dat.size(), 1)});
+  return first == record_id || first == dat_terminator.front();
+}
+
 /// Converts offsets in a record to offsets in the .dat.
 template <class Record>
 Result<Record, WireError> placed(Result<Record, WireError> decoded, const RecordEntry& entry) {
@@ -37,11 +45,11 @@ Result<LogView, WireError> LogView::open(std::span<const std::uint8_t> file,
   if (!file.empty() && file.front() == archive_start) {
     return open_archive(file, max_unpacked_size);
   }
-  if (!file.empty() && file.front() != record_id && file.front() != dat_terminator.front()) {
-    return WireError{WireErrorReason::bad_value, 0, "file"};
-  }
   LogView log;
   log.dat_ = PiecewiseBytes{file};
+  if (!begins_as_dat(log.dat_)) {
+    return WireError{WireErrorReason::bad_value, 0, "file"};
+  }
   log.index_ = index_dat(log.dat_, OnDamage::skip);
   return log;
 }
@@ -65,6 +73,9 @@ Result<LogView, WireError> LogView::open_archive(std::span<const std::uint8_t> a
     return WireError{WireErrorReason::bad_value, archive.size(), "dat_entry"};
   }
   if (auto pieces = stored_pieces(*dat)) {
+    if (!begins_as_dat(*pieces)) {
+      return WireError{WireErrorReason::bad_value, dat->offset, "entry_data"};
+    }
     log.dat_ = std::move(*pieces);
     log.dat_crc_ = dat->crc;
   } else {
@@ -86,6 +97,7 @@ std::optional<LogView> LogView::open_damaged(std::span<const std::uint8_t> file,
   if (!dat) {
     log.dat_ = PiecewiseBytes{file};
   } else if (dat->unpacked.empty()) {
+    log.unread_size_ = dat->unread_size;
     log.dat_ = std::move(dat->pieces);
   } else {
     log.unpacked_ = std::move(dat->unpacked);

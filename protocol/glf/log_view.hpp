@@ -42,6 +42,8 @@ class LogView {
   const DatIndex& index() const { return index_; }
   /// Text of the .cfg; empty if there is no .cfg.
   const std::string& config_xml() const { return config_xml_; }
+  /// Bytes of a damaged archive after index() in which no block begins.
+  std::uint64_t unread_size() const { return unread_size_; }
   /// Reads the whole .dat; false if the archive contains another checksum for it.
   bool matches_checksum() const;
 
@@ -60,6 +62,7 @@ class LogView {
   std::vector<std::uint8_t> unpacked_;  ///< viewed by dat_ if the archive was compressed
   PiecewiseBytes dat_;
   DatIndex index_;
+  std::uint64_t unread_size_ = 0;
   std::string config_xml_;
   std::optional<std::uint32_t> dat_crc_;  ///< as stated in the archive
 };

@@ -100,24 +100,61 @@ std::optional<std::size_t> size_of_damaged_block(std::span<const std::uint8_t> b
   return std::nullopt;
 }
 
-/// Stored blocks at the front of `bytes`; the last one may be cut.
-PiecewiseBytes stored_front(std::span<const std::uint8_t> bytes) {
-  PiecewiseBytes pieces;
-  std::size_t size = 0;
-  for (std::size_t offset = 0; const auto header = block_header_at(bytes, offset);) {
-    const auto found = header->is_stored() ? std::optional(std::size_t{header->size})
-                                           : size_of_damaged_block(bytes, offset, *header, size);
-    // The flag for the last block may be damaged. It counts only in an empty block, which ends our archives.
-    if (!found || (*found == 0 && (header->kind & 0x01) != 0)) {
-      break;
-    }
-    size = *found;
-    offset += zip::block_header_size;
-    const auto rest = bytes.subspan(offset);
-    pieces.append(rest.first(std::min(size, rest.size())));
-    offset += size;
+/// True if a block header at `offset` is the first of a chain: another header or the end follows its block.
+bool blocks_go_on_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
+  const auto header = block_header_at(bytes, offset);
+  if (!header || header->kind > 1 || !header->is_stored()) {
+    return false;
   }
-  return pieces;
+  if (header->kind == 1) {
+    return header->size == 0;
+  }
+  const std::size_t end = offset + zip::block_header_size + header->size;
+  const auto next = block_header_at(bytes, end);
+  return header->size > 0 && next && next->kind <= 1 && next->is_stored();
+}
+
+/// The first block header from `start` on, after bytes that are missing or too many.
+std::optional<std::size_t> find_block(std::span<const std::uint8_t> bytes, std::size_t start) {
+  for (std::size_t offset = start; offset + zip::block_header_size <= bytes.size(); ++offset) {
+    if (bytes[offset] <= 1 && blocks_go_on_at(bytes, offset)) {
+      return offset;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Stored blocks at the front of `bytes`; the last one may be cut. If no header follows a block, bytes are
+/// missing or too many in it: the block then reaches to the next header.
+DamagedDat stored_front(std::span<const std::uint8_t> bytes) {
+  DamagedDat dat;
+  std::size_t start = 0;  // of the content of the block before `offset`
+  std::size_t offset = 0;
+  const auto append_block = [&](std::size_t end) {
+    dat.pieces.append(bytes.subspan(start, std::min(end, bytes.size()) - start));
+  };
+  while (const auto header = block_header_at(bytes, offset)) {
+    const auto size = header->is_stored() ? std::optional(std::size_t{header->size})
+                                          : size_of_damaged_block(bytes, offset, *header, offset - start);
+    if (!size) {
+      const auto found = find_block(bytes, start);
+      if (!found) {
+        dat.unread_size = bytes.size() - offset;
+        break;
+      }
+      offset = *found;
+      continue;
+    }
+    append_block(offset);
+    start = offset + zip::block_header_size;
+    // The flag for the last block may be damaged. It counts only in an empty block, which ends our archives.
+    if (*size == 0 && (header->kind & 0x01) != 0) {
+      return dat;
+    }
+    offset = start + *size;
+  }
+  append_block(offset);
+  return dat;
 }
 
 bool is_dat(std::string_view name) {
@@ -186,6 +223,31 @@ std::optional<Content> content_by_directory(std::span<const std::uint8_t> archiv
   return std::nullopt;
 }
 
+/// The content from the first block on that is not text, as the .cfg is. Needs neither names nor directory.
+std::optional<Content> content_by_blocks(std::span<const std::uint8_t> archive) {
+  for (auto at = find_block(archive, 0); at; at = find_block(archive, *at + 1)) {
+    const auto block = archive.subspan(*at);
+    if (block.front() == 0 && block[zip::block_header_size] != '<') {
+      return Content{block, true};
+    }
+  }
+  return std::nullopt;
+}
+
+DamagedDat dat_in(const Content& content, std::uint64_t max_size) {
+  DamagedDat dat;
+  if (content.deflated) {
+    dat = stored_front(content.data);
+  } else {
+    dat.pieces = PiecewiseBytes{content.data};
+  }
+  if (dat.pieces.size() == 0) {
+    dat.unread_size = 0;
+    dat.unpacked = inflate_front(content.data, max_size);
+  }
+  return dat;
+}
+
 }  // namespace
 
 Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_t> archive) {
@@ -200,11 +262,11 @@ Result<std::vector<ZipEntry>, WireError> zip_entries(std::span<const std::uint8_
     const std::size_t start = reader.offset();
     zip::CentralHeader central;
     read_fields<zip::Layout<zip::CentralHeader>>(reader, central);
-    const auto name = reader.bytes(central.entry.name_size, "entry_name");
-    reader.skip(std::size_t{central.entry.extra_size} + central.comment_size, "entry_name");
     if (central.signature != zip::central_signature) {
       reader.fail_at(start, WireErrorReason::bad_value, "central_signature");
     }
+    const auto name = reader.bytes(central.entry.name_size, "entry_name");
+    reader.skip(std::size_t{central.entry.extra_size} + central.comment_size, "entry_name");
     if (!reader.ok()) {
       return *reader.error();
     }
@@ -237,22 +299,23 @@ std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry) {
 }
 
 std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size) {
-  std::optional<DamagedDat> any;
-  for (const auto& content : {content_by_local_header(archive), content_by_directory(archive)}) {
-    if (!content) {
-      continue;
+  // A wrong place in the archive may begin like a record, but leaves less to read.
+  const auto rank = [](const DamagedDat& dat) {
+    return std::pair(begins_with_a_record(dat), dat.pieces.size() + dat.unpacked.size());
+  };
+  std::optional<DamagedDat> best;
+  for (const auto& find : {content_by_local_header, content_by_directory, content_by_blocks}) {
+    if (find == content_by_blocks && best && begins_with_a_record(*best)) {
+      break;
     }
-    DamagedDat dat;
-    dat.pieces = content->deflated ? stored_front(content->data) : PiecewiseBytes{content->data};
-    if (dat.pieces.size() == 0) {
-      dat.unpacked = inflate_front(content->data, max_size);
+    if (const auto content = find(archive)) {
+      DamagedDat dat = dat_in(*content, max_size);
+      if (!best || rank(dat) > rank(*best)) {
+        best = std::move(dat);
+      }
     }
-    if (begins_with_a_record(dat)) {
-      return dat;
-    }
-    any = any ? std::move(any) : std::move(dat);  // kept, because only its first byte may be damaged
   }
-  return any;
+  return best;
 }
 
 Result<std::vector<std::uint8_t>, WireError> unpacked(const ZipEntry& entry, std::uint64_t max_size) {

@@ -35,10 +35,11 @@ std::optional<PiecewiseBytes> stored_pieces(const ZipEntry& entry);
 struct DamagedDat {
   PiecewiseBytes pieces;               ///< of an uncompressed entry
   std::vector<std::uint8_t> unpacked;  ///< of a compressed entry, up to the damage
+  std::uint64_t unread_size = 0;       ///< bytes of the file after `pieces` in which no block begins
 };
 
-/// Finds the .dat by its local header, or else by the directory. Skips damaged headers of stored blocks.
-/// nullopt if neither leads to a .dat.
+/// Finds the .dat by its local header, by the directory, or else by its first block. Skips damaged headers of
+/// stored blocks, and bytes that are missing or too many. nullopt if none leads to a .dat.
 /// @param archive the whole file
 /// @param max_size maximum bytes to unpack
 std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std::uint64_t max_size);

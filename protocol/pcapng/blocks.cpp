@@ -100,7 +100,7 @@ class BlockCheck {
       case BlockType::section_header:
         return error_in_section(block);
       case BlockType::interface_description:
-        return std::nullopt;
+        return error_in_interface(block);
       case BlockType::enhanced_packet:
         return error_in_packet(block);
     }
@@ -119,6 +119,12 @@ class BlockCheck {
     return std::nullopt;
   }
 
+  std::optional<WireError> error_in_interface(const Block& block) const {
+    return ours_ && ByteReader{block.body}.u16le("link_type") != link_type_raw
+               ? std::optional(WireError{WireErrorReason::bad_value, block.offset + 8, "link_type"})
+               : std::nullopt;
+  }
+
   std::optional<WireError> error_in_packet(const Block& block) const {
     const auto packet = read_packet(block);
     if (!packet) {
@@ -130,12 +136,14 @@ class BlockCheck {
                : std::nullopt;
   }
 
-  bool ours_ = false;  ///< sonard wrote the section, so it has only BlockType blocks and IPv4 packets
+  bool ours_ =
+      false;  ///< sonard wrote the section, so it has only BlockType blocks, raw links and IPv4 packets
 };
 
-/// Offset of the next block of a known type after `offset`. Blocks begin at multiples of four bytes.
+/// Offset of the next block of a known type after `offset`. Blocks begin at multiples of four bytes,
+/// but not after bytes that are missing or too many.
 std::optional<std::size_t> next_block(ByteView file, std::size_t offset) {
-  for (std::size_t at = (offset / 4 + 1) * 4; at < file.size(); at += 4) {
+  for (std::size_t at = offset + 1; at < file.size(); ++at) {
     const auto block = block_at(file, at);
     if (block && *block && is_known(**block)) {
       return at;

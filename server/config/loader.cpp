@@ -566,10 +566,6 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   }
 }
 
-}  // namespace
-
-namespace {
-
 void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds) {
   if (findings.unknown_keys.empty()) {
     return;

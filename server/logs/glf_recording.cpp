@@ -91,6 +91,11 @@ std::vector<std::string> GlfRecording::problems() const {
                           "records",
                           to_string(*archive_error_)));
   }
+  if (view_.unread_size() > 0) {
+    problems.push_back(
+        fmt::format("damaged: {} bytes at the end of the file are not read, because no block begins in them",
+                    view_.unread_size()));
+  }
   add_damage(problems, index.damaged,
              [](const Damage&) { return std::string("the images and statuses in them are lost"); });
   add_damage(problems, damaged_images_, [](const Damage&) { return std::string("1 ping is lost"); });

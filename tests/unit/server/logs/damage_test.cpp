@@ -113,15 +113,19 @@ Bytes dat_log(int images) {
   return dat;
 }
 
-Bytes glf_log(int images) {
+Bytes glf_log(int images, std::size_t block_size = glf::pack_block_size) {
   const Bytes dat = dat_log(images);
   const glf::CivilTime closed{.year = 2026, .month = 11, .day = 20, .hour = 14, .minute = 22, .second = 33};
   // ZIP and MCAP use the same CRC.
   const glf::Packer packer{"2026-11-20-142233", "<genesisLog/>\n", {dat.size(), mcap::crc32(dat)}, closed};
   Bytes archive = packer.head();
-  const auto header = glf::Packer::block_header(dat.size());
-  archive.insert(archive.end(), header.begin(), header.end());
-  archive.insert(archive.end(), dat.begin(), dat.end());
+  for (std::span<const std::uint8_t> rest = dat; !rest.empty();) {
+    const auto block = rest.first(std::min(block_size, rest.size()));
+    const auto header = glf::Packer::block_header(block.size());
+    archive.insert(archive.end(), header.begin(), header.end());
+    archive.insert(archive.end(), block.begin(), block.end());
+    rest = rest.subspan(block.size());
+  }
   const auto tail = packer.tail();
   archive.insert(archive.end(), tail.begin(), tail.end());
   return archive;
@@ -228,6 +232,65 @@ TEST(Damage, a_flipped_bit_in_a_glf_costs_its_record) {
   expect_at_most(1, ".glf", glf_log(5), pings_written(5));
 }
 
+constexpr std::size_t magic_size = 8;  ///< the format of a log is known by its first bytes
+
+/// @param moved number of bytes too many (positive) or missing (negative) at `at`
+Bytes with_moved_bytes(Bytes bytes, std::size_t at, int moved) {
+  const auto place = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+  if (moved > 0) {
+    bytes.insert(place, static_cast<std::size_t>(moved), 0xA5);
+  } else {
+    bytes.erase(place, place + std::min<std::ptrdiff_t>(-moved, bytes.end() - place));
+  }
+  return bytes;
+}
+
+/// Bytes that are too many or missing at a place, as after a copy that failed: such a place may lose at most
+/// `most_lost` pings, and a loss must be reported.
+void expect_at_most_when_moved(std::size_t most_lost, const std::string& suffix, const Bytes& whole,
+                               const Pings& written) {
+  const Outcome undamaged = outcome_of(suffix, whole, written);
+  ASSERT_EQ(undamaged.lost, 0U);
+  std::size_t places_that_lose = 0;
+  for (const int moved : {1, 7, 512, -1, -5, -40}) {
+    for (std::size_t at = magic_size; at < whole.size(); at += 3) {
+      const Outcome outcome = outcome_of(suffix, with_moved_bytes(whole, at, moved), written);
+      ASSERT_TRUE(outcome.opened) << moved << " bytes at " << at << ": " << outcome.problems.at(0);
+      ASSERT_LE(outcome.lost, most_lost)
+          << moved << " bytes at " << at << ": " << testing::PrintToString(outcome.problems);
+      if (outcome.pings < written.size()) {
+        ASSERT_GT(outcome.problems.size(), undamaged.problems.size()) << moved << " bytes at " << at;
+      }
+      places_that_lose += outcome.lost > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(places_that_lose, whole.size() / 3) << "most bytes are those of pings";
+}
+
+TEST(Damage, bytes_too_many_or_missing_in_a_glf_cost_the_pings_there) {
+  expect_at_most_when_moved(2, ".glf", glf_log(5), pings_written(5));
+  expect_at_most_when_moved(2, ".glf", glf_log(5, 150), pings_written(5));
+}
+
+TEST(Damage, bytes_too_many_or_missing_in_a_dat_cost_the_pings_there) {
+  expect_at_most_when_moved(2, ".dat", dat_log(5), pings_written(5));
+}
+
+TEST(Damage, bytes_too_many_or_missing_in_an_mcap_cost_the_chunks_there) {
+  expect_at_most_when_moved(4, ".mcap", mcap_log(8, false, true), pings_written(8));
+  expect_at_most_when_moved(4, ".mcap", mcap_log(8, true, false), pings_written(8));
+}
+
+TEST(Damage, a_glf_without_blocks_after_a_place_says_how_many_bytes_are_not_read) {
+  Bytes bytes = glf_log(5, 150);
+  const auto end = std::ranges::search(bytes, Bytes{'P', 'K', 1, 2});
+  ASSERT_FALSE(end.empty());
+  const auto from = bytes.begin() + 400;
+  std::fill(from, bytes.end(), 0xA5);
+  const Outcome outcome = outcome_of(".glf", bytes, pings_written(5));
+  EXPECT_THAT(outcome.problems, Contains(AllOf(HasSubstr("bytes at the end of the file are not read"))));
+}
+
 TEST(Damage, info_says_where_a_chunk_is_damaged_and_how_many_pings_are_lost) {
   Bytes bytes = mcap_log(6, false, true);
   const auto place = place_of(samples_of(2), bytes);
@@ -285,13 +348,31 @@ Bytes capture(std::string_view application) {
   return writer.take();
 }
 
-LogSummary summary_of_capture(Bytes bytes, std::size_t at, int bit) {
-  bytes[at] ^= static_cast<std::uint8_t>(1U << bit);
+LogSummary summary_of_capture(const Bytes& bytes) {
   const test::TemporaryLog temporary(".pcapng", bytes);
   return summarise(LogFile(temporary.path()),
                    [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
                      return datagram.size() == 20 ? std::optional(PingSeen{"fan", 7, {}}) : std::nullopt;
                    });
+}
+
+LogSummary summary_of_capture(Bytes bytes, std::size_t at, int bit) {
+  bytes[at] ^= static_cast<std::uint8_t>(1U << bit);
+  return summary_of_capture(bytes);
+}
+
+TEST(Damage, bytes_too_many_or_missing_in_a_capture_cost_the_packets_there) {
+  const Bytes whole = capture("sonard 0.1.0");
+  for (const int moved : {1, 7, 512, -1, -5, -40}) {
+    for (std::size_t at = magic_size; at < whole.size(); at += 3) {
+      const LogSummary log = summary_of_capture(with_moved_bytes(whole, at, moved));
+      ASSERT_FALSE(log.heads.empty()) << moved << " bytes at " << at;
+      ASSERT_GE(log.heads[0].pings(), captured_pings - 2) << moved << " bytes at " << at;
+      if (log.heads[0].pings() < captured_pings) {
+        ASSERT_FALSE(log.problems.empty()) << moved << " bytes at " << at;
+      }
+    }
+  }
 }
 
 TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
