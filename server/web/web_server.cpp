@@ -17,6 +17,7 @@
 #include <boost/asio/post.hpp>
 
 #include "server/net/tcp_listener.hpp"
+#include "server/net/tcp_options.hpp"
 #include "server/web/http_session.hpp"
 
 namespace sonard::server {
@@ -37,8 +38,7 @@ struct WebServer::Impl {
       : config(web), listener(std::make_shared<TcpListener>(io, "page", web.bind, web.allow)) {}
 
   void accept(asio::ip::tcp::socket socket, const Endpoint& peer) {
-    boost::system::error_code ignored;  // the peer may be gone already
-    socket.set_option(asio::socket_base::send_buffer_size{send_buffer_bytes}, ignored);
+    set_client_options(socket, send_buffer_bytes);
     std::make_shared<HttpSession>(*site, std::move(socket), peer)->start();
   }
 

@@ -20,6 +20,7 @@ sdf/               small worlds
 ply/               text and binary of both byte orders, whole and cut
 stl/               text and binary, whole and cut
 web/               what a browser sends over one connection
+web_messages/      JSON messages of a viewer, a line each, for the protocol of the first byte
 
 The form of a script is described in script.hpp. Run it again after adding an example; files that are there
 for another reason (inputs that once failed) are left alone.
@@ -526,6 +527,20 @@ def web_connections():
                        frame(b'{"op":"unsubscribe","subscriptionIds":[1]}') + frame(b"\x01abc", 2) + frame(b"", 8))
 
 
+def web_messages():
+    def script(protocol, *messages):
+        return protocol + b"\n".join(messages)
+
+    yield "live", script(b"l", b'{"type": "want", "head": 0, "max_rows": 200}', b'{"type": "want_status"}', b"{", b"")
+    yield "live_numbers", script(b"l", b'{"type": "want", "head": -1, "max_rows": 1e99}', b'{"type": "want", "head": 18446744073709551615, '
+                                       b'"max_rows": 0}', b'{"type": ["want"], "head": {}}')
+    yield "foxglove", script(b"f", b'{"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":4294967296,"channelId":2}]}',
+                             b'{"op":"unsubscribe","subscriptionIds":[1, "x", null]}')
+    yield "foxglove_forms", script(b"f", b'{"op":"subscribe","subscriptions":{"id":1}}', b'{"op":"subscribe"}', b'{"op":7}', b"[]",
+                                   b'{"op":"unsubscribe","subscriptionIds":' + b"[" * 200 + b"]" * 200 + b"}")
+    yield "escapes", script(b"f", b'{"op":"\\u0000\\ud800"}', b'{"op":"subscribe","op":"unsubscribe"}')
+
+
 def write(folder, name, data):
     target = CORPUS / folder
     target.mkdir(parents=True, exist_ok=True)
@@ -547,7 +562,7 @@ def main():
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
                             ("configuration", configurations()), ("sdf", sdf_worlds()), ("ply", ply_files()),
-                            ("stl", stl_files()), ("web", web_connections())):
+                            ("stl", stl_files()), ("web", web_connections()), ("web_messages", web_messages())):
         for name, script in scripts:
             write(folder, name, script)
 

@@ -67,6 +67,7 @@ class PageClient {
  public:
   explicit PageClient(Page& page) : page_(page), client_(page.io) {
     client_.connect(page.acceptor.local_endpoint());
+    client_.set_option(boost::asio::ip::tcp::no_delay(true));  // each message arrives before the page runs
     const auto session =
         std::make_shared<server::HttpSession>(page.site, page.acceptor.accept(), Endpoint{0x7F000001, 1});
     session->start();
