@@ -307,6 +307,27 @@ render::EngineKind engine_named(const std::string& name) {
   return name == "gpu" ? EngineKind::gpu : name == "cpu" ? EngineKind::cpu : EngineKind::automatic;
 }
 
+/// What a command line without a subcommand gets to read.
+/// @param first its first word; empty if there is none
+std::string missing_subcommand(const CLI::App& app, const std::filesystem::path& first) {
+  std::vector<std::string> names;
+  for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(subcommand->get_name());
+  }
+  const std::string expected = fmt::format("(expected one of: {})", fmt::join(names, ", "));
+  if (first.empty()) {
+    return fmt::format("a subcommand is missing {}", expected);
+  }
+  const std::string word = printable(first.string());
+  const std::string suffix = first.extension().string();
+  const bool is_log = suffix == ".glf" || suffix == ".dat" || suffix == ".mcap" || suffix == ".pcapng";
+  return suffix == ".yaml" || suffix == ".yml"
+             ? fmt::format("'{0}' is no subcommand; 'sonard run {0}' runs a configuration {1}", word,
+                           expected)
+         : is_log ? fmt::format("'{0}' is no subcommand; 'sonard info {0}' shows a log {1}", word, expected)
+                  : fmt::format("'{}' is no subcommand {}", word, expected);
+}
+
 int main_program(int argc, char** argv) {
   CLI::App app{"sonard - emulates imaging sonars on the network, rendered from a 3D world", "sonard"};
   app.formatter(std::make_shared<HelpFormatter>());
@@ -409,13 +430,9 @@ int main_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-      std::vector<std::string> names;
-      for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {
-        names.push_back(subcommand->get_name());
-      }
-      fmt::print(stderr, "'{}' is no subcommand (expected one of: {})\n", printable(argv[1]),
-                 fmt::join(names, ", "));
+    const bool has_option = argc > 1 && argv[1][0] == '-';
+    if (app.get_subcommands().empty() && !has_option) {
+      fmt::print(stderr, "{}\n", missing_subcommand(app, argc > 1 ? argv[1] : ""));
       return exit_usage;
     }
     return app.exit(error) == 0 ? exit_clean : exit_usage;
