@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -12,12 +13,13 @@
 
 #include "renderer/renderer_options.hpp"
 #include "tests/bench/campaign.hpp"
+#include "tests/bench/demo_ping.hpp"
 #include "tests/bench/gpu_cost.hpp"
 #include "tests/bench/gpu_report.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/plans.hpp"
+#include "tests/bench/quick_table.hpp"
 #include "tests/bench/recording_cost.hpp"
-#include "tests/bench/targets.hpp"
 
 namespace sonard::bench {
 namespace {
@@ -66,26 +68,33 @@ void run_gpu_report(const Options& options) {
 void run(const Options& options) {
   fmt::print("{}", describe_machine());
   const std::vector<render::EngineKind> engines = engines_of(options.engine);
+  Measurements results;
+  const bool demo_is_wanted =
+      options.scenes.empty() || std::ranges::any_of(options.scenes, [](const std::string& s) {
+        return demo_ping.scene.starts_with(s);
+      });
+  if (options.engine != "gpu" && demo_is_wanted) {
+    measure_demo_ping(results, {20, 101, 3.0});
+  }
   Campaign campaign(engines, options.references);
   if (options.quick) {
     run_quick(campaign);
   } else {
     run_sweep(campaign, options.scenes);
   }
-  Measurements results = campaign.results();
+  for (const Measurement& m : campaign.results().all()) {
+    results.add(m.subject, m.metric, m.value, m.unit);
+  }
   if (options.scenes.empty()) {
     measure_recording(results);
   }
   for (const render::EngineKind engine : engines) {
     const std::string name(render::name_of(engine));
     const auto description = campaign.descriptions().find(name);
-    if (description == campaign.descriptions().end()) {
-      continue;
+    if (description != campaign.descriptions().end()) {
+      fmt::print("\n{}\n", description->second);
     }
-    fmt::print("\n{}\n", description->second);
-    if (options.quick) {
-      fmt::print("{}", format_targets(target_rows(results, name)));
-    }
+    fmt::print("{}", format_quick(quick_rows(results, name)));
   }
   fmt::print("\n{}", format_work(results));
   if (options.scenes.empty()) {
@@ -107,8 +116,8 @@ int main(int argc, char** argv) {
   CLI::App app("Measures the time of a ping and the error of its image.");
   app.add_flag(
       "--quick", options.quick,
-      "Only what the project's targets need, in a minute or two, and what each set of vector instructions "
-      "takes (tests/bench/instruction_sets.py)");
+      "Only the main scenes and the demo's ping, in a minute or two, and the time with each set of vector "
+      "instructions (tests/bench/instruction_sets.py)");
   app.add_flag("--company", options.company,
                "Pings a second of the demo beside 0, 1, 2 and 4 busy processes, and of `sonard render`; two "
                "minutes (tests/bench/company.py)")

@@ -9,7 +9,7 @@
 
 namespace sonard::bench {
 
-/// Measures the project's targets, in less than a minute (docs/benchmark.md).
+/// Measures the main scenes with the presets, in a minute or two (docs/benchmark.md).
 void run_quick(Campaign& campaign);
 
 /// Measures all scenes, the ladders of sampling, and the growth of time with triangles, beams, bins and

@@ -12,8 +12,7 @@ constexpr Repetition some{7, 201, 0.2};
 constexpr Repetition many{50, 1000, 0.3};  // for pings of some ten microseconds
 constexpr Repetition few{2, 3, 0.3};
 
-/// `reference` is slow and has no target, so only one scene measures it. Targets are for `cpu`. `gpu` is
-/// measured for comparison if a ping takes less than a second.
+/// `reference` is slow, so only one scene measures it. `gpu` is measured if a ping takes less than a second.
 Plan presets(const std::string& scene, const Repetition& repetition) {
   Plan plan;
   for (const Point& point : preset_points()) {

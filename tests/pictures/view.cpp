@@ -89,11 +89,26 @@ void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehic
   }
 }
 
+server::DaemonConfig load(const std::string& config) {
+  return server::load_config(SONARD_SOURCE_DIR "/configs/" + config, server::head_kinds()).config;
+}
+
 }  // namespace
 
+std::vector<render::Pose> poses_along(const std::string& config, const std::string& trajectory,
+                                      const std::vector<double>& times_s) {
+  server::DaemonConfig daemon = load(config);
+  daemon.poses.trajectory = {.file = SONARD_SOURCE_DIR "/configs/" + trajectory};
+  const Vehicle vehicle(daemon.poses);
+  std::vector<render::Pose> T_world_sonar;
+  for (const double time_s : times_s) {
+    T_world_sonar.push_back(vehicle.at(time_s) * daemon.heads.front().T_vehicle_sonar);
+  }
+  return T_world_sonar;
+}
+
 View configured_view(const std::string& config, double range_m, double time_s, double line_s) {
-  const server::DaemonConfig daemon =
-      server::load_config(SONARD_SOURCE_DIR "/configs/" + config, server::head_kinds()).config;
+  const server::DaemonConfig daemon = load(config);
   const Vehicle vehicle(daemon.poses);
   View view;
   view.world = render::load_world(daemon.world_file);

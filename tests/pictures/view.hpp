@@ -36,6 +36,12 @@ struct View {
 /// @throws the exceptions of loading a configuration, a world or a trajectory
 View configured_view(const std::string& config, double range_m, double time_s = 0.0, double line_s = 0.05);
 
+/// Poses of the first head of a configuration (T_world_sonar) while its vehicle follows a trajectory, both in
+/// configs/, at these times after the start.
+/// @throws the exceptions of loading a configuration or a trajectory
+std::vector<render::Pose> poses_along(const std::string& config, const std::string& trajectory,
+                                      const std::vector<double>& times_s);
+
 /// A sonar in a world of shapes: 256 beams of equal angle over 120 degrees, 20 degrees high, 1000 lines up to
 /// `range_m`, otherwise default settings.
 View plain_view(render::World world, const render::Pose& T_world_sonar, double range_m);
