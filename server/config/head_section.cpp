@@ -278,15 +278,14 @@ void read_mount(YamlSection& section, HeadConfig& head) {
                "([worlds.md](worlds.md#sonars)). Its name is `bow`, or as much of `rov::sonar_link::bow` as "
                "distinguishes it from others. It must have the type of this head");
   if (const double arm_m = glm::length(head.T_vehicle_sonar.position_m); arm_m > longest_arm_m) {
-    section.warn(
-        "position_m",
-        fmt::format("puts the sonar {:.4g} m from the origin of the vehicle (is it in centimetres or "
-                    "millimetres? It is read as metres)",
-                    arm_m));
+    section.warn("position_m", fmt::format("puts the sonar {:.4g} m from the origin of the vehicle (is it in "
+                                           "centimetres or millimetres? sonard expects metres)",
+                                           arm_m));
   }
   for (const char* key : {"position_m", "rpy_deg"}) {
     if (section.has("from_world") && section.has(key)) {
-      section.report(key, "the world says where the head sits (expected this or from_world)");
+      section.report(
+          key, "cannot be combined with from_world, which gives the whole mount (expected one of them)");
     }
   }
 }
@@ -444,9 +443,8 @@ void apply_water(YamlSection& section, const HeadContext& context, double carrie
     absorption = render::francois_garrison_absorption_db_per_m(carrier_hz, water);
     if (const std::string outside = outside_of_absorption_range(carrier_hz, water); !outside.empty()) {
       section.warn_of("water",
-                      fmt::format("the absorption is computed outside of what its formula was made for: "
-                                  "{}. It may be off by more than 10 % (water.absorption_db_per_km sets "
-                                  "it)",
+                      fmt::format("the formula of the absorption is not valid here: {}. Its error may exceed "
+                                  "10 % (to set the absorption, use water.absorption_db_per_km)",
                                   outside));
     }
   }
@@ -463,11 +461,10 @@ void read_pose(YamlSection& section, render::Pose& pose, std::string_view positi
   glm::dvec3 rpy_deg{0.0};
   section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0), rpy_meaning);
   if (look_like_radians(rpy_deg)) {
-    section.warn("rpy_deg",
-                 fmt::format("{:.4g}, {:.4g}, {:.4g} look like radians (they are read as degrees; {:.4g}, "
-                             "{:.4g}, {:.4g} degrees are the same turn)",
-                             rpy_deg.x, rpy_deg.y, rpy_deg.z, glm::degrees(rpy_deg.x),
-                             glm::degrees(rpy_deg.y), glm::degrees(rpy_deg.z)));
+    section.warn("rpy_deg", fmt::format("{:.4g}, {:.4g}, {:.4g} look like radians (sonard expects degrees; "
+                                        "{:.4g}, {:.4g}, {:.4g} degrees are the same rotation)",
+                                        rpy_deg.x, rpy_deg.y, rpy_deg.z, glm::degrees(rpy_deg.x),
+                                        glm::degrees(rpy_deg.y), glm::degrees(rpy_deg.z)));
   }
   const glm::dvec3 rpy = rpy_deg * (std::numbers::pi / 180.0);
   pose.orientation =

@@ -77,7 +77,7 @@ int count_documents(const std::string& text) {
   while (starts.marks.size() < 2 && parser.HandleNextDocument(starts)) {
   }
   if (starts.marks.size() == 2 && starts.marks[0].pos == starts.marks[1].pos) {
-    throw YAML::ParserException(starts.marks[1], "nothing can begin with this character");
+    throw YAML::ParserException(starts.marks[1], "this character cannot begin a value");
   }
   return static_cast<int>(starts.marks.size());
 }
@@ -85,7 +85,8 @@ int count_documents(const std::string& text) {
 YAML::Node parse_yaml(const std::filesystem::path& file, const std::string& text) {
   try {
     if (const int documents = count_documents(text); documents != 1) {
-      throw ConfigError(file, {{{}, "", fmt::format("holds {} YAML documents (expected one)", documents)}});
+      throw ConfigError(file,
+                        {{{}, "", fmt::format("contains {} YAML documents (expected one)", documents)}});
     }
     YAML::Node document = YAML::Load(text);
     if (const auto endless = find_endless_quote(text)) {
@@ -231,7 +232,7 @@ void read_parents(YamlSection& section, bool relative, SimulatorEntity& entity, 
   constexpr TextForm names{"names of entities, the outermost first", "texts", R"("type": "string")"};
   section.parsed_list("parents", entity.parents, &any_text, names, meaning);
   if (!relative && section.has("parents")) {
-    section.report("parents", "poses in the world have no parents (expected only with `frame: relative`)");
+    section.report("parents", "is invalid with `frame: world` (expected `frame: relative`)");
   }
 }
 
@@ -261,12 +262,12 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
   const bool named = section.has("vehicle");
   if (relative && named) {
     section.require("parents",
-                    "what the vehicle's pose is relative to, the outermost first; [] for a model that stands "
-                    "in the world");
+                    "the entities that the vehicle's pose is relative to, the outermost first; [] for a "
+                    "model directly in the world");
   }
   for (const char* key : {"parents", "mount"}) {
     if (!named && section.has(key)) {
-      section.report(key, "is of `vehicle`, which is not given (expected both, or neither)");
+      section.report(key, "requires `vehicle`, which is missing (expected both, or neither)");
     }
   }
   section.section(
@@ -345,17 +346,16 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
   if (live && poses.trajectory) {
-    section.report("trajectory",
-                   "the trajectory and a live input would fight over the vehicle (expected one of them)");
+    section.report("trajectory", "cannot be combined with a live input (expected one of them)");
   }
   if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
     section.report("initial",
-                   "nothing gives a pose (expected initial, udp, tcp, mavlink, gazebo or trajectory)");
+                   "no source of poses is given (expected initial, udp, tcp, mavlink, gazebo or trajectory)");
   }
   if (!live && !poses.trajectory && poses.clock != PingClock::wall) {
     section.report("clock",
-                   "no source of poses has a clock (expected wall, or udp, tcp, mavlink, gazebo or "
-                   "trajectory beside it)");
+                   "requires poses with time stamps (expected wall, or udp, tcp, mavlink, gazebo or "
+                   "trajectory in addition)");
   }
 }
 
@@ -388,7 +388,7 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
   if (sampling.preset != Preset::grid) {
     for (const char* key : {"views", "columns_per_view", "rows"}) {
       if (section.has(key)) {
-        section.report(key, "a preset chooses its samples by itself (expected only with `preset: grid`)");
+        section.report(key, "the preset chooses the samples (expected this key only with `preset: grid`)");
       }
     }
   }
@@ -451,7 +451,7 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   section.boolean("pcapng", recording.pcapng,
                   "writes one capture for Wireshark with the bytes of both directions");
   if (!recording.glf && !recording.mcap && !recording.pcapng) {
-    section.report("directory", "no kind of log is to be written (expected glf, mcap or pcapng to be true)");
+    section.report("directory", "no kind of log is selected (expected glf, mcap or pcapng to be true)");
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
   section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and another ping may follow
@@ -536,21 +536,21 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
     root.warn_if_given("gpu", "the engine is `cpu`");
   }
   root.retired("backend", "write `engine: gpu` for raster, `engine: cpu` for ray, `engine: auto` for auto");
-  root.retired("gpu_binning", "remove it; engine `gpu` bins on the GPU in any case");
+  root.retired("gpu_binning", "remove it; engine `gpu` always bins on the GPU");
   root.section("skip", "rules that skip unnecessary work",
                [&](YamlSection& section) { read_skip(section, config.skip); });
   root.section("water", "properties of the water",
                [&](YamlSection& section) { read_water(section, context); });
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;
-  root.require("poses", "a mapping that says where poses come from");
+  root.require("poses", "a mapping with the sources of the vehicle's pose");
   root.section("poses", "sources of the vehicle's pose",
                [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
   context.pings_by_source = config.poses.clock != PingClock::wall;
   root.section("sampling", "target error of the images", [&](YamlSection& section) {
     read_sampling(section, context.sampling, context.adaptive_quality);
     if (context.pings_by_source && context.adaptive_quality) {
-      section.warn_if_given("adaptive_quality", "pings keep the time of the poses (`poses.clock`)");
+      section.warn_if_given("adaptive_quality", "pings follow the stamps of the poses (`poses.clock`)");
     }
   });
   root.section(

@@ -49,7 +49,7 @@ void name_sections(std::vector<ConfigProblem>& problems, std::span<const Unknown
     const std::set<std::string>& paths = key.has_value ? entry->second.of_value : entry->second.of_key;
     std::string& message = problems[key.problem].message;
     if (paths.size() == 1 && message.starts_with(complaint)) {
-      message.insert(complaint.size(), fmt::format("; it is '{}'", *paths.begin()));
+      message.insert(complaint.size(), fmt::format(" here, did you mean '{}'?", *paths.begin()));
     }
   }
 }

@@ -19,7 +19,7 @@ struct UnknownKey {
 };
 
 /// Adds the right section to the message of each unknown key whose name is a key of exactly one other
-/// section: "unknown key; it is 'acoustics.physical.multipath.level' (...)".
+/// section: "unknown key here, did you mean 'acoustics.physical.multipath.level'? (...)".
 /// @param known keys of the whole file, one list for each kind of head
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
                    std::span<const std::vector<KeyReference>> known);

@@ -44,7 +44,8 @@ void read_ptys(YamlSection& section, const std::filesystem::path& folder,
       return other.link == pty.link && !pty.link.empty();
     });
     if (taken) {
-      inner.report("link", fmt::format("{} is given twice (expected a name of its own)", pty.link.string()));
+      inner.report("link", fmt::format("{} is given twice (expected a different link for each item)",
+                                       pty.link.string()));
     }
     ptys.push_back(std::move(pty));
   };
@@ -72,12 +73,12 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, 
   if (is_loopback(bind_address)) {
     allow = {{0x7F000000, 8}};
   } else if (bind_address != 0 || section.has("bind")) {  // otherwise the address was rejected before
-    section.require("allow", "the address blocks to serve, as the socket is not bound to loopback");
+    section.require("allow", "the address blocks to serve, because the socket is not bound to loopback");
   }
   constexpr TextForm blocks{"an address block such as 10.61.19.0/24", "address blocks",
                             R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}(/[0-9]{1,2})?$")"};
   section.parsed_list("allow", allow, &parse_cidr, blocks, meaning,
-                      "nobody is listed (expected at least one address block)");
+                      "the list is empty (expected at least one address block)");
   section.default_is("allow", "[127.0.0.0/8]; **required** when not bound to loopback", R"(["127.0.0.0/8"])");
 }
 

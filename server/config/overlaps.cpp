@@ -73,7 +73,7 @@ class Overlaps {
   void compare(std::size_t head, const Identity& identity, std::size_t other, const Identity& taken) {
     if (identity.key == taken.key && identity.value == taken.value) {
       report(head_key(head, identity.key),
-             fmt::format("{} already belongs to heads[{}] (expected one of its own)", identity.value, other));
+             fmt::format("{} is already used by heads[{}] (expected a unique value)", identity.value, other));
     }
   }
 

@@ -96,9 +96,9 @@ void warn_of_status_without_access(YamlSection& section, const StatusDestination
                                    const AllowList& allow) {
   for (const Ipv4 host : status.hosts) {
     if (!allow.empty() && !allows(allow, host)) {
-      section.warn("status",
-                   fmt::format("{} gets status packets but is not in `allow`: its commands are dropped",
-                               address_text(host)));
+      section.warn("status", fmt::format("{} receives status packets but is not in `allow`, so its commands "
+                                         "are dropped (add it to `allow`)",
+                                         address_text(host)));
     }
   }
 }

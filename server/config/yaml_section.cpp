@@ -66,15 +66,17 @@ std::string describe(const YAML::Node& node) {
 }
 
 std::string ipv6_text(std::string_view value, std::string_view expected) {
-  return fmt::format("{} is an IPv6 address; IPv6 is not served (expected {})", in_quotes(value), expected);
+  return fmt::format("{} is an IPv6 address; IPv6 is not supported (expected {})", in_quotes(value),
+                     expected);
 }
 
 /// A node as text; an IPv6 address in brackets, which YAML reads as a list, gets its own text.
 std::string describe_with_ipv6(const YAML::Node& node) {
   const bool address =
       node.IsSequence() && node.size() == 1 && node[0].IsScalar() && is_ipv6(node[0].Scalar());
-  return address ? "a list, as YAML reads the brackets of an IPv6 address; IPv6 is not served"
-                 : describe(node);
+  return address
+             ? "a list, because YAML reads the brackets of an IPv6 address as a list; IPv6 is not supported"
+             : describe(node);
 }
 
 /// Whether a text is a number and more text: "10C", "5 ms", "-3.5deg".
@@ -208,7 +210,7 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
   for (const auto& pair : node) {
     const SourcePosition name_at = position_of(pair.first.Mark());
     if (!pair.first.IsScalar()) {
-      problem(name_at, path_, fmt::format("{} stands as a key (expected a word)", describe(pair.first)));
+      problem(name_at, path_, fmt::format("{} is used as a key (expected a word)", describe(pair.first)));
       continue;
     }
     const std::string& name = pair.first.Scalar();
@@ -223,7 +225,7 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
     if (ends_with_stray_quote(pair.second)) {
       problem(entries_.back().value_at, path_of(name),
               fmt::format(
-                  "{} ends with a quote that none before it opens (expected no quote, or one on each side)",
+                  "{} ends with a quote but does not begin with one (expected no quote, or one on each side)",
                   describe(pair.second)));
     }
   }
@@ -297,13 +299,12 @@ void YamlSection::renamed(std::string_view former, std::string_view key) {
     return;
   }
   if (has(key)) {
-    report(former,
-           fmt::format("is the former name of '{}', which is given, too (expected one of them)", key));
+    report(former, fmt::format("is the former name of '{}', which is given too (expected one of them)", key));
     entries_[found->second].read = true;
     return;
   }
   const std::size_t entry = found->second;
-  warn_of(path_of(key), fmt::format("is called '{}' here, its former name; write '{}'", former, key));
+  warn_of(path_of(key), fmt::format("has its former name '{}' here; write '{}'", former, key));
   entry_of_.erase(found);
   entry_of_.emplace(key, entry);
   entries_[entry].name = key;
@@ -404,11 +405,12 @@ void YamlSection::vector3(std::string_view key, glm::dvec3& out, const Range& ra
     return;
   }
   if (!entry->value.IsSequence() || entry->value.size() != 3) {
-    problem(entry->value_at, path_of(key),
-            fmt::format("is {} (expected a list of three numbers{})",
-                        entry->value.IsSequence() ? fmt::format("a list of {}", entry->value.size())
-                                                  : describe(entry->value),
-                        entry->value.size() > 3 ? "; commas part them, decimals have a point" : ""));
+    problem(
+        entry->value_at, path_of(key),
+        fmt::format("is {} (expected a list of three numbers{})",
+                    entry->value.IsSequence() ? fmt::format("a list of {}", entry->value.size())
+                                              : describe(entry->value),
+                    entry->value.size() > 3 ? "; a comma separates numbers, so decimals need a point" : ""));
     return;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -606,9 +608,9 @@ std::optional<double> YamlSection::number_of(const YAML::Node& node, const Sourc
     return std::nullopt;
   }
   if (is_number_with_unit(text)) {
-    problem(
-        at, path,
-        fmt::format("{} carries a unit; units belong to the key (expected {})", in_quotes(text), expected));
+    problem(at, path,
+            fmt::format("{} contains a unit; the key already states the unit (expected {})", in_quotes(text),
+                        expected));
     return std::nullopt;
   }
   if (error != std::errc{} || stop != end || !std::isfinite(value)) {

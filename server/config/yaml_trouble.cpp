@@ -97,15 +97,15 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
       if (const std::string_view word = word_with_ipv6(line); !word.empty()) {
         return {{number, column(static_cast<std::size_t>(word.data() - whole.data()))},
                 "",
-                fmt::format("{} is an IPv6 address (expected an IPv4 address; IPv6 is not served)",
+                fmt::format("{} is an IPv6 address (expected an IPv4 address; IPv6 is not supported)",
                             in_quotes(word))};
       }
       if (!indents.allow(indent)) {
-        return {{number, column(indent)},
-                "",
-                fmt::format(
-                    "this line is indented by {} space(s), as none of those it could belong to (expected {})",
-                    indent, fmt::join(indents.open(), " or "))};
+        return {
+            {number, column(indent)},
+            "",
+            fmt::format("this line is indented by {} space(s), which matches no open section (expected {})",
+                        indent, fmt::join(indents.open(), " or "))};
       }
     }
     indents.add(line);

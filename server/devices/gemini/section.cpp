@@ -57,7 +57,7 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   section.default_is("bind", "the alternate address");
   if (config.bind_address != 0 && config.bind_address != device.alternate_address) {
     section.warn("bind",
-                 fmt::format("clients send to the alternate address {}, but only {} is listened on",
+                 fmt::format("clients send to the alternate address {}, but the head listens only on {}",
                              address_text(device.alternate_address), address_text(config.bind_address)));
   }
   section.integer("command_port", config.command_port, 1, 65535,

@@ -36,13 +36,13 @@ void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
   section.parsed("bind", discovery.bind, &parse_endpoint, discovery_form,
                  "UDP address that receives the clients' searches; several heads may share it");
   section.default_is("bind", endpoint_text(discovery.bind), '"' + endpoint_text(discovery.bind) + '"');
-  section.require("address", "the address that clients are told, at which a socket of udp is reached");
+  section.require("address", "the address in the answers to clients, at which a socket of udp is reachable");
   section.parsed("address", discovery.address, &parse_ipv4, address_form,
                  "address in the answers to clients; a socket of `udp` must be reachable there");
   section.parsed("mac", discovery.mac, &parse_mac, mac_form, "MAC address in the answers to clients");
   section.default_is("mac", "54:10:ec:12:34:56");
   if (!section.has("bind")) {
-    section.require("allow", "the address blocks to answer, as the socket is bound to all addresses");
+    section.require("allow", "the address blocks to answer, because the socket is bound to all addresses");
   }
   read_allow_list(section, discovery.bind.address, discovery.allow,
                   "address blocks of clients that get an answer");
@@ -60,7 +60,7 @@ void warn_if_found_in_vain(YamlSection& section, const Ping360Config& config) {
   });
   if (!served) {
     section.warn("discovery.address",
-                 fmt::format("clients that find the head send to {}, where no socket of udp is bound",
+                 fmt::format("clients that find the head send to {}, but no socket of udp is bound there",
                              endpoint_text(told)));
   }
 }
@@ -199,7 +199,7 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   section.section("acoustics", "formation of the pings",
                   [&](YamlSection& inner) { read_ping360_acoustics(inner, head, config); });
   if (config.device.lock_to_first && config.device.idle_timeout.count() == 0) {
-    section.report("lock_to_first", "would hold for ever (expected timing.idle_timeout_ms above 0 with it)");
+    section.report("lock_to_first", "would last for ever (expected timing.idle_timeout_ms above 0)");
   }
   if (section.has("serial")) {
     config.device.serial_channel = static_cast<int>(config.udp.size());

@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"duplicate_key.yaml", "15:5: heads[0].mount", "",
                "duplicate key (expected once; first given on line 14)"},
         Broken{"bad_unit.yaml", "15:18: water.temperature_c", "",
-               "'10C' carries a unit; units belong to the key (expected a number from -4 to 45, "
-               "in degrees Celsius)"},
+               "'10C' contains a unit; the key already states the unit (expected a number from -4 to 45, in "
+               "degrees Celsius)"},
         Broken{"wrong_type.yaml", "15:20: heads[0].timing.burst_lines", "",
                "is 'many' (expected a whole number"},
         Broken{"negative_range.yaml", "16:29: heads[0].acoustics.physical.near_field_blank_m", "",
@@ -183,7 +183,7 @@ TEST(OverlappingHeads, are_refused_with_what_they_share) {
       testing::UnorderedElementsAre(
           AllOf(StartsWith(file + ":18:26: heads[1].network.bind: UDP 127.91.0.8:52901 overlaps"),
                 HasSubstr("heads[0].network.bind")),
-          StartsWith(file + ":18:26: heads[1].network.alternate_address: 127.91.0.8 already belongs to")));
+          StartsWith(file + ":18:26: heads[1].network.alternate_address: 127.91.0.8 is already used by")));
 }
 
 // --- shipped configurations
@@ -542,7 +542,7 @@ TEST(Run, refuses_a_broken_configuration_like_check) {
   const std::string file = broken_folder + "bad_unit.yaml";
   const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr(file + ":15:18: water.temperature_c: '10C' carries a unit"));
+  EXPECT_THAT(result.err, HasSubstr(file + ":15:18: water.temperature_c: '10C' contains a unit"));
 }
 
 TEST(Run, names_the_key_of_a_missing_world) {

@@ -104,7 +104,7 @@ TEST_F(Ping360Section, says_what_is_wrong) {
                                   "address: 127.0.0.1, mac: 5}")),
               ElementsAre(HasSubstr("expected six hexadecimal octets")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], lock_to_first: on")),
-              ElementsAre(HasSubstr("lock_to_first: would hold for ever")));
+              ElementsAre(HasSubstr("lock_to_first: would last for ever")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], device: {id: 255}")),
               ElementsAre(HasSubstr("device.id")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}], devise: {id: 5}")),
@@ -133,14 +133,14 @@ TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
   for (const std::string udp : {"{bind: 127.0.0.1:12345}", "{bind: 0.0.0.0:9092, allow: [192.168.2.0/24]}"}) {
     const auto found = warnings(udp);
     ASSERT_EQ(found.size(), 1U) << udp;
-    EXPECT_THAT(found[0], HasSubstr("send to 192.168.2.4:12345, where no socket of udp is bound"));
+    EXPECT_THAT(found[0], HasSubstr("send to 192.168.2.4:12345, but no socket of udp is bound there"));
   }
 }
 
 TEST_F(Ping360Section, no_two_heads_of_any_kind_may_have_the_same_terminal) {
   EXPECT_THAT(complaints(document("name: a, serial: {pty: [{link: a}]}") +
                          "  - {name: b, type: micron, serial: {pty: [{link: ./a}]}}\n"),
-              ElementsAre(HasSubstr("already belongs to heads[0] (expected one of its own)")));
+              ElementsAre(HasSubstr("is already used by heads[0] (expected a unique value)")));
 }
 
 TEST_F(Ping360Section, heads_may_share_the_port_of_discovery_and_an_id) {
