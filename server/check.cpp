@@ -164,7 +164,7 @@ std::string unit_hint(const render::Body& body) {
     return longest > large_m && (size.z > flat * longest || has_scaled_sibling);
   };
   if (std::ranges::any_of(mesh_sizes(body, is_unscaled), is_in_millimetres)) {
-    return "is its mesh in millimetres? <scale>0.001 0.001 0.001</scale> makes metres of them";
+    return "is its mesh in millimetres? If so, add <scale>0.001 0.001 0.001</scale>";
   }
   const auto is_tiny = [](const glm::dvec3& size) { return glm::length(size) < small_m; };
   return std::ranges::any_of(mesh_sizes(body, is_made_small), is_tiny) ? "is its mesh scaled twice?" : "";
@@ -259,10 +259,9 @@ void Check::report_cost(const HeadConfig& head, double ms, std::size_t triangles
   report_.summary.push_back(fmt::format("cost     {}: {}", head.name, cost));
   report_.cost_ms[head.name] = ms;
   if (ms > slow_ms && triangles > many_triangles) {
-    warning("world.file",
-            fmt::format("head '{}': {}, with {} triangles in the world: a heightmap for the ground "
-                        "(docs/worlds.md) or coarser meshes make it faster",
-                        head.name, cost, triangles));
+    warning("world.file", fmt::format("head '{}': {}, with {} triangles in the world. To make it faster, use "
+                                      "a heightmap for the ground (docs/worlds.md) or coarser meshes",
+                                      head.name, cost, triangles));
   }
 }
 
@@ -277,7 +276,7 @@ void Check::check_world() {
         fmt::format("world    {}: {} {}, {} triangles, {}", world.name, world.bodies.size(),
                     world.bodies.size() == 1 ? "body" : "bodies", world.triangle_count(),
                     world.triangle_count() > 0 ? "materials: " + material_names(world)
-                                               : "images hold noise and water clutter alone"));
+                                               : "images contain only noise and water clutter"));
     if (world.origin) {
       report_.summary.push_back(fmt::format("origin   latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
                                             world.origin->latitude_deg, world.origin->longitude_deg,
@@ -342,7 +341,8 @@ void Check::try_folder(const std::filesystem::path& folder, const std::string& k
     there = there.parent_path();
   }
   if (!fs::is_directory(there, error)) {
-    problem(key, fmt::format("{} is not a folder (expected one, or nothing yet)", there.string()));
+    problem(key, fmt::format("{} is not a folder (expected a folder, or a path that does not exist yet)",
+                             there.string()));
     return;
   }
   std::string name = (there / ".sonard-check-XXXXXX").string();
@@ -354,13 +354,14 @@ void Check::try_folder(const std::filesystem::path& folder, const std::string& k
     fs::remove(name, error);
   }
   if (!written) {
-    problem(key, fmt::format("nothing can be written into {}: {}", there.string(),
-                             std::generic_category().message(why)));
+    problem(key,
+            fmt::format("cannot write into {}: {}", there.string(), std::generic_category().message(why)));
     return;
   }
   const fs::space_info space = fs::space(there, error);
   if (!error && space.available < least_space) {
-    warning(key, fmt::format("only {} MB are free in {}", space.available / 1'000'000, there.string()));
+    warning(key, fmt::format("only {} MB are free in {}: free more space or choose another folder",
+                             space.available / 1'000'000, there.string()));
   }
 }
 

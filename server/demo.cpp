@@ -140,7 +140,7 @@ class Demo {
     signals_.async_wait([this](const boost::system::error_code& error, int) { interrupted_ = !error; });
     start_daemon();
     if (wait([this] { return ready_; }, longest_start)) {
-      fmt::print("demo: watch at {} ({})\n", page(),
+      fmt::print("demo: open {} in a browser ({})\n", page(),
                  options_.time ? fmt::format("for {} s", options_.time->count()) : "until Ctrl-C");
       std::fflush(stdout);
       start_poses();

@@ -168,7 +168,7 @@ int run(const CommandLine& arguments, char** argv) {
   const InheritedConfig inherited = inherit_config();
   const auto go_back = [&](const std::string& why) {
     if (inherited.fallback) {
-      spdlog::error("the new configuration cannot be served: going back to the one before: {}", why);
+      spdlog::error("the new configuration failed, returning to the previous one: {}", why);
       go_back_to(*inherited.fallback, argv);
     }
   };
@@ -322,10 +322,11 @@ std::string missing_subcommand(const CLI::App& app, const std::filesystem::path&
   const std::string suffix = first.extension().string();
   const bool is_log = suffix == ".glf" || suffix == ".dat" || suffix == ".mcap" || suffix == ".pcapng";
   return suffix == ".yaml" || suffix == ".yml"
-             ? fmt::format("'{0}' is no subcommand; 'sonard run {0}' runs a configuration {1}", word,
+             ? fmt::format("'{0}' is not a subcommand; 'sonard run {0}' runs a configuration {1}", word,
                            expected)
-         : is_log ? fmt::format("'{0}' is no subcommand; 'sonard info {0}' shows a log {1}", word, expected)
-                  : fmt::format("'{}' is no subcommand {}", word, expected);
+         : is_log
+             ? fmt::format("'{0}' is not a subcommand; 'sonard info {0}' shows a log {1}", word, expected)
+             : fmt::format("'{}' is not a subcommand {}", word, expected);
 }
 
 int main_program(int argc, char** argv) {

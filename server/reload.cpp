@@ -43,7 +43,7 @@ class InheritableText {
       done += static_cast<std::size_t>(written);
     }
     if (fd_ < 0 || done < text.size()) {
-      throw std::system_error(errno, std::generic_category(), "cannot hand on the configuration");
+      throw std::system_error(errno, std::generic_category(), "cannot pass on the configuration");
     }
   }
   ~InheritableText() { ::close(fd_); }
@@ -103,7 +103,7 @@ std::optional<std::string> checked_apart(const std::filesystem::path& file, cons
   if (check.exit_code() == 0) {
     return std::nullopt;
   }
-  return first.value_or(fmt::format("the check ended with {}", check.exit_code()));
+  return first.value_or(fmt::format("the check ended with exit code {}", check.exit_code()));
 }
 
 /// True if a socket of the running daemon conflicts with another. It is free once the daemon restarts.
@@ -149,7 +149,7 @@ void begin_anew_with(const std::string& text, const std::string* fallback, char*
   hold_orders_to_end();          // later signals go to the new program
   if (!ordered_to_end()) {
     ::execv("/proc/self/exe", argv);
-    throw std::system_error(errno, std::generic_category(), "cannot begin anew");
+    throw std::system_error(errno, std::generic_category(), "cannot restart");
   }
 }
 

@@ -63,8 +63,8 @@ std::optional<std::string> obstacle_to_binding(const PlannedSocket& planned) {
   }
   if (error.value() == EADDRNOTAVAIL) {
     return fmt::format(
-        "{} is not an address of this machine (expected one of an interface here; a network "
-        "namespace can have it, or skip this with --no-network)",
+        "{} is not an address of this machine (expected an address of an interface here; if "
+        "another network namespace has it, use --no-network)",
         address_text(endpoint.address));
   }
   return fmt::format("{} {} cannot be bound: {} (expected an address and port to listen on)", transport,

@@ -295,7 +295,7 @@ void Daemon::start_page(const DaemonConfig& config, const render::World& world) 
                     recorder_ ? std::function<void(bool)>([this](bool on) { recorder_->turn(on); }) : nullptr,
                 .identity = {config.file.string(), world.name, world.water_surface_z_m},
                 .world = world});
-  spdlog::info("page: {}", page_->address());
+  spdlog::info("web: {}", page_->address());
 }
 
 // Called on the I/O thread.
@@ -327,7 +327,7 @@ RenderServiceHooks Daemon::hooks() {
   RenderServiceHooks hooks;
   hooks.post = [this](std::function<void()> task) { asio::post(io_, std::move(task)); };
   hooks.on_failure = [this](const std::string& what) {
-    spdlog::critical("the renderer failed: {}", what);
+    spdlog::critical("engine: the renderer failed: {}", what);
     end(exit_renderer);
   };
   hooks.observe = [this](const RenderJob& job, const render::PingSamples& samples) {
@@ -393,8 +393,10 @@ void Daemon::look_at_addresses() {
   const OwnAddresses::News news = other_addresses_.look(others, now);
   for (const PlannedSocket& socket : other_sockets_) {
     if (std::ranges::count(news.gone, socket.endpoint.address) > 0) {
-      address_log_.warn("{}: the address {} is gone from this machine: nobody reaches it until it is back",
-                        socket.key, address_text(socket.endpoint.address));
+      address_log_.warn(
+          "{}: the address {} is gone from this machine: clients cannot reach it until it is back (plug the "
+          "cable in, or renew the lease)",
+          socket.key, address_text(socket.endpoint.address));
     }
   }
   address_timer_.expires_after(std::chrono::seconds{1});
@@ -462,14 +464,14 @@ void Daemon::wait_for_signal() {
                                wait_for_signal();
                                return;
                              }
-                             spdlog::info("signal {}: ending", signal_);
+                             spdlog::info("signal {}: stopping", signal_);
                              lifetime_.stop();
                            });
 }
 
 void Daemon::reload() {
   if (!may_begin_anew_) {
-    spdlog::info("SIGHUP ignored: a replay has no configuration to read again");
+    spdlog::info("SIGHUP ignored: a replay cannot reload its configuration");
     return;
   }
   check_again_ = checking_;
@@ -477,7 +479,7 @@ void Daemon::reload() {
     return;
   }
   checking_ = true;
-  spdlog::info("SIGHUP: the configuration is read again");
+  spdlog::info("SIGHUP: reading the configuration again");
   check_ = std::jthread([this](const std::stop_token& stop) {
     asio::post(lifetime_, [this, problem = may_begin_anew_(stop)] { checked(problem); });
   });
@@ -488,9 +490,9 @@ void Daemon::checked(const std::optional<std::string>& problem) {
   if (check_again_) {  // the file may have changed since it was read
     reload();
   } else if (problem) {
-    spdlog::error("the configuration cannot be used: going on with the one in use: {}", *problem);
+    spdlog::error("configuration invalid, keeping the current one: {}", *problem);
   } else {
-    spdlog::info("the configuration is good: beginning anew with it");
+    spdlog::info("configuration valid, restarting");
     exit_code_ = begins_anew;
     lifetime_.stop();
   }
@@ -502,7 +504,7 @@ void Daemon::end_when_played() {
     return;
   }
   if (playback_->finished(clock_.now())) {
-    spdlog::info("the recording has ended");
+    spdlog::info("replay: the recording has ended");
     end(exit_clean);
     return;
   }
@@ -560,8 +562,8 @@ render::World read_world(const DaemonConfig& config) {
       static_cast<std::size_t>(config.world_max_triangles));
   if (world.triangle_count() == 0 && !config.open_water) {
     throw render::WorldError(
-        {fmt::format("{}: the world has no triangles (expected a surface that echoes; for open "
-                     "water write `world: empty`, or add `empty: true` beside `file`)",
+        {fmt::format("{}: the world has no triangles (expected a surface that reflects sound; for open "
+                     "water, write `world: empty`, or add `empty: true` beside `file`)",
                      config.world_file.string())},
         world.warnings);
   }
@@ -579,7 +581,8 @@ render::World load_world_of(DaemonConfig& config) {
       spdlog::warn("{}", warning);
     }
     if (world.triangle_count() == 0) {
-      spdlog::info("world {}: no surface echoes; images hold noise and water clutter alone", world.name);
+      spdlog::info("world {}: no surface reflects sound; images contain only noise and water clutter",
+                   world.name);
     }
     if (world.origin) {
       spdlog::info("world {}: (0, 0, 0) is at latitude {:.7f}, longitude {:.7f}, altitude {:.2f} m",
@@ -629,7 +632,7 @@ int run_daemon(DaemonConfig config, const ReloadCheck& may_begin_anew) {
   }
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     if (!config.skip.on(entry.rule)) {
-      spdlog::info("skip rule {} is off", entry.name);
+      spdlog::info("engine: skip rule {} is off", entry.name);
     }
   }
   return serve(config, world, world_renderer_factory(world, options, engine_choice_path()), nullptr,

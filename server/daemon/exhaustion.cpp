@@ -21,14 +21,14 @@
 namespace sonard::server {
 namespace {
 
-/// " (this process may have 15: ulimit -n)"; empty if there is no such limit.
+/// " (limit of this process: 15, ulimit -n)"; empty if there is no such limit.
 std::string limit_text(__rlimit_resource resource, rlim_t unit, std::string_view counted,
                        std::string_view command) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
     return "";
   }
-  return fmt::format(" (this process may have {}{}: {})", limit.rlim_cur / unit, counted, command);
+  return fmt::format(" (limit of this process: {}{}, {})", limit.rlim_cur / unit, counted, command);
 }
 
 std::string out_of_memory() {

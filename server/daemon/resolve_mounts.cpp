@@ -67,13 +67,13 @@ class MountResolver {
     if (found.empty()) {
       problem(key, fmt::format("the world has no sonar '{}' (expected {})", head.mount_from_world,
                                world_.sonars.empty()
-                                   ? "a <sensor type=\"custom\" sonard:type=\"...\"> in it, and it has none"
+                                   ? "a <sensor type=\"custom\" sonard:type=\"...\"> in the world"
                                    : "one of " + paths(sonars_named(world_, ""))));
     } else if (found.size() > 1) {
       problem(key, fmt::format("'{}' is the name of several sonars of the world (expected one of {})",
                                head.mount_from_world, paths(found)));
     } else if (found.front()->type != head.kind->type()) {
-      problem(key, fmt::format("{} is of type {} in the world (expected {}, as this head is)",
+      problem(key, fmt::format("{} has type {} in the world (expected {}, the type of this head)",
                                found.front()->path, found.front()->type, head.kind->type()));
     } else {
       head.T_vehicle_sonar = found.front()->T_body_sonar;
@@ -85,7 +85,7 @@ class MountResolver {
     if (config_.vehicle_model.empty()) {
       config_.vehicle_model = sonar.body;
     } else if (config_.vehicle_model != sonar.body) {
-      problem(key, fmt::format("{} is on model '{}', and the vehicle is '{}' (expected one vehicle)",
+      problem(key, fmt::format("{} is on model '{}', but the vehicle is '{}' (expected one vehicle)",
                                sonar.path, sonar.body, config_.vehicle_model));
     }
   }
@@ -95,10 +95,9 @@ class MountResolver {
       return;
     }
     if (config_.vehicle_model.empty()) {
-      problem(
-          "poses.gazebo.vehicle",
-          "is required: the name of an entity of the simulator (without it, world.vehicle_model or a mount "
-          "from_world says which model carries the sonars)");
+      problem("poses.gazebo.vehicle",
+              "missing (expected the name of an entity of the simulator; otherwise, world.vehicle_model or a "
+              "mount from_world must name the model with the sonars)");
     }
     config_.poses.gazebo->vehicle = {config_.vehicle_model, {}};
   }
@@ -110,9 +109,8 @@ class MountResolver {
     config_.poses.mavlink->world_origin = world_.origin;
     if (config_.poses.mavlink->messages == MavlinkMessages::global_position && !world_.origin) {
       problem("poses.mavlink.messages",
-              "global_position needs to know where the world is on Earth (world.origin, or "
-              "<spherical_coordinates> "
-              "in its file)");
+              "global_position requires the position of the world on Earth (expected world.origin, or "
+              "<spherical_coordinates> in its file)");
     }
   }
 

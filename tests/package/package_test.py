@@ -81,7 +81,7 @@ class Package(unittest.TestCase):
     def test_2_the_demo_moves_from_the_package_alone(self):
         printed = self.system.run("cd /tmp && sonard demo --seconds 10 --out /tmp/out", network=False)
         print(printed)
-        self.assertRegex(printed, r"demo: watch at http://127\.0\.0\.1:8014")
+        self.assertRegex(printed, r"demo: open http://127\.0\.0\.1:8014 in a browser")
         self.assertRegex(printed, r"got .* complete \([1-9]\d* in all\); 0 lines missing")
         picture = (self.system.root / "tmp/out/fan-last.png").read_bytes()
         self.assertTrue(picture.startswith(b"\x89PNG") and len(picture) > 10000)

@@ -354,15 +354,15 @@ TEST_F(CheckedWorld, without_a_surface_is_open_water_only_if_told_so) {
   const std::string marks = "<model name=\"marks\"><frame name=\"f\"/></model>\n";
   const ProcessResult refused = check(marks);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(
-      refused.err,
-      HasSubstr("world.sdf: the world has no triangles (expected a surface that echoes; for open water "
-                "write `world: empty`, or add `empty: true` beside `file`)"));
+  EXPECT_THAT(refused.err,
+              HasSubstr("world.sdf: the world has no triangles (expected a surface that reflects sound; for "
+                        "open water, write `world: empty`, or add `empty: true` beside `file`)"));
   for (const char* world : {"empty", "{empty: true}", "{empty: true, file: world.sdf}"}) {
     const ProcessResult allowed = check_with(world);
     EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
     EXPECT_EQ(allowed.err, "") << world;
-    EXPECT_THAT(allowed.out, HasSubstr("0 triangles, images hold noise and water clutter alone\n")) << world;
+    EXPECT_THAT(allowed.out, HasSubstr("0 triangles, images contain only noise and water clutter\n"))
+        << world;
     EXPECT_THAT(allowed.out, HasSubstr("cost     bow: a ping to ")) << world;
   }
 }
@@ -499,9 +499,9 @@ TEST_F(CheckedWorld, says_where_on_earth_it_is) {
 TEST_F(CheckedWorld, tries_where_it_will_write) {
   const std::string world = model("a", "<sphere/>");
   EXPECT_THAT(check(world, "recording: {directory: /proc/logs, mcap: true}\n").err,
-              HasSubstr("recording.directory: nothing can be written into /proc: "));
+              HasSubstr("recording.directory: cannot write into /proc: "));
   EXPECT_THAT(check(world, "recording: {directory: " + write("file", "") + "/logs, mcap: true}\n").err,
-              HasSubstr("file is not a folder (expected one, or nothing yet)"));
+              HasSubstr("file is not a folder (expected a folder, or a path that does not exist yet)"));
   EXPECT_EQ(check(world, "recording: {directory: new/logs, mcap: true}\n").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "nothing is left behind";
 }

@@ -232,7 +232,7 @@ class Signals(DaemonCase):
             file.write("colour: green\n")
         daemon.signal(signal.SIGHUP)
         daemon.wait_for_line("sonard.yaml:\\d+:\\d+: colour", PATIENCE_S)
-        daemon.wait_for_line("going on with the one in use", PATIENCE_S)
+        daemon.wait_for_line("configuration invalid, keeping the current one", PATIENCE_S)
         self.lines(client, 3)
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
@@ -273,7 +273,7 @@ class Signals(DaemonCase):
     def refused(self, daemon, why):
         """SIGHUP does not change the daemon, and one line gives the reason."""
         daemon.signal(signal.SIGHUP)
-        daemon.wait_for_line(f"going on with the one in use: .*{why}", PATIENCE_S)
+        daemon.wait_for_line(f"configuration invalid, keeping the current one: .*{why}", PATIENCE_S)
         self.configured(self.client())
 
     def test_sighup_with_a_taken_port_changes_nothing(self):
@@ -314,7 +314,7 @@ class Signals(DaemonCase):
                 file.write(text[:len(text) // 2])
             self.served_port(*ports)
             self.assertTrue(daemon.running(), daemon.tail())
-        daemon.wait_for_line("SIGHUP: the configuration is read again", 1)
+        daemon.wait_for_line("SIGHUP: reading the configuration again", 1)
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0, daemon.tail())
 
     def test_a_configuration_that_cannot_be_served_after_all_gives_way_to_the_one_before(self):
@@ -329,7 +329,7 @@ class Signals(DaemonCase):
         with open(path, "w", encoding="utf-8") as file:
             file.write(text.replace("serial: {", f"serial: {{pty: [{{link: {link}}}], "))
         daemon.signal(signal.SIGHUP)
-        daemon.wait_for_line("going back to the one before: .*link", PATIENCE_S)
+        daemon.wait_for_line("returning to the previous one: .*link", PATIENCE_S)
         daemon.wait_for_line("sonard ready", START_S, count=2)
         self.configured(self.client())
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)

@@ -212,7 +212,7 @@ class Diagnosis(OwnMachine):
         self.assertEqual(client.returncode, 0, client.stderr)
         self.assertEqual(self.status()["heads"][0]["findings"], [])
         self.assertEqual([line for line in daemon.lines if "warning" in line], [])
-        self.assertEqual(len([line for line in daemon.lines if "no surface echoes" in line]), 1)
+        self.assertEqual(len([line for line in daemon.lines if "no surface reflects sound" in line]), 1)
 
     def test_no_pose_is_said(self):
         daemon = self.start()

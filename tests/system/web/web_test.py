@@ -79,7 +79,7 @@ class Web(OwnMachine):
 
     def test_monitors(self):
         daemon = self.start()
-        self.assertRegex(daemon.output(), rf"page: http://127\.0\.0\.1:{PORT}\b")
+        self.assertRegex(daemon.output(), rf"web: http://127\.0\.0\.1:{PORT}\b")
         status, text, _ = self.ask("GET", "/health")
         self.assertEqual((status, json.loads(text)), (200, {"status": "ok"}))
         status, text, answer = self.ask("GET", "/metrics")

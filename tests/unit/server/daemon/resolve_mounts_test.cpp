@@ -72,7 +72,7 @@ TEST_F(ResolveMounts, NamesWhatTheWorldHas) {
               ElementsAre(is_problem("heads[0].mount.from_world",
                                      "the world has no sonar 'oculus' (expected one of rov::bow::gemini, ")));
   world_.sonars.clear();
-  EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].mount.from_world", "and it has none")));
+  EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].mount.from_world", "in the world")));
 }
 
 TEST_F(ResolveMounts, WantsOneSonarOfTheRightTypeOnOneVehicle) {
@@ -82,12 +82,12 @@ TEST_F(ResolveMounts, WantsOneSonarOfTheRightTypeOnOneVehicle) {
       take(),
       ElementsAre(
           is_problem("heads[0].mount.from_world", "(expected one of crab::left::eye, crab::right::eye)"),
-          is_problem("heads[1].mount.from_world", "is of type micron in the world (expected gemini_720i")));
+          is_problem("heads[1].mount.from_world", "has type micron in the world (expected gemini_720i")));
   config_ = {};
   add_gemini("gemini");
   add_gemini("left::eye");
   EXPECT_THAT(take(), ElementsAre(is_problem("heads[1].mount.from_world",
-                                             "on model 'crab', and the vehicle is 'rov'")));
+                                             "on model 'crab', but the vehicle is 'rov'")));
 }
 
 TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {

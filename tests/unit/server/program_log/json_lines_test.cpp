@@ -40,7 +40,7 @@ TEST(JsonLines, NameTheHeadOrTheArea) {
   EXPECT_EQ(members_of("head=bow: no pose").dump(), R"({"head":"bow","message":"no pose","keys":{}})");
   EXPECT_EQ(members_of("engine auto: cpu is taken")["area"], "engine");
   EXPECT_EQ(members_of("pose stream udp 127.0.0.1:14600: datagram dropped")["area"], "pose");
-  EXPECT_EQ(members_of("page: http://127.0.0.1:8014")["area"], "page");
+  EXPECT_EQ(members_of("web: http://127.0.0.1:8014")["area"], "web");
   EXPECT_EQ(members_of("signal 15")["area"], "sonard");
 }
 
