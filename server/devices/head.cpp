@@ -246,8 +246,8 @@ std::vector<Finding> Head::Impl::findings() const {
   std::vector<Finding> all = diagnosis.findings();
   for (const Ipv4 address : own_addresses.gone()) {
     all.push_back(
-        {"address_gone", fmt::format("The address {} is gone from this machine: no client reaches the "
-                                     "head there. Is the cable plugged in, and the lease renewed?",
+        {"address_gone", fmt::format("The address {} is gone from this machine, so no client reaches the "
+                                     "head there. Is the cable plugged in? Was the lease renewed?",
                                      address_text(address))});
   }
   return all;
@@ -266,8 +266,8 @@ void Head::Impl::look_at_addresses(const std::vector<InterfaceAddress>& now) {
   const OwnAddresses::News news = own_addresses.look(own, now);
   for (const Ipv4 address : news.gone) {
     address_log.warn(
-        "head={} its address {} is gone from this machine: no client reaches it there until it is "
-        "back (is the cable plugged in, and the lease renewed?)",
+        "head={} its address {} is gone from this machine: no client reaches the head there until it is back "
+        "(plug the cable in, or renew the lease)",
         config.name, address_text(address));
   }
   for (const Ipv4 address : news.back) {
@@ -279,7 +279,8 @@ void Head::Impl::look_at_addresses(const std::vector<InterfaceAddress>& now) {
 
 void Head::Impl::happen(Event event) {
   if (events.size() >= most_waiting_events && std::holds_alternative<BytesReceived>(event)) {
-    log.notice({Notice::Level::warning, "drops what clients send: nothing can be sent to them"});
+    log.notice({Notice::Level::warning,
+                "drops commands of clients, because it cannot send answers (do the clients read?)"});
     return;
   }
   events.push_back(std::move(event));
@@ -313,7 +314,7 @@ bool Head::Impl::done_or_lost(const Work& work) {
   } catch (const std::bad_alloc&) {
   }
   try {
-    log.notice({Notice::Level::warning, "memory has run out: a ping or an answer is lost"});
+    log.notice({Notice::Level::warning, "out of memory: a ping or an answer is lost"});
   } catch (const std::bad_alloc&) {
     // The log line is lost, too.
   }

@@ -80,7 +80,7 @@ void HeadLog::rates(const HeadCounts& total, std::chrono::duration<double> perio
   log_skipped(head_, total.rendering.skipped - before.rendering.skipped);
   const std::uint64_t missed = total.rendering.pings_without_pose - before.rendering.pings_without_pose;
   if (missed > 0) {
-    spdlog::warn("head={} {} pings not made: no pose, or only a stale one", head_, missed);
+    spdlog::warn("head={} {} pings not made: no pose, or the last one is too old", head_, missed);
   }
   warn_of(before.device, total.device);
   warn_of(before.transport, total.transport);

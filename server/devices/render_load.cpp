@@ -96,8 +96,9 @@ std::optional<Notice> RenderLoad::decide(const Load& load) {
     const Preset before = std::exchange(preset_, next);
     return Notice{
         Notice::Level::info,
-        fmt::format("rendering takes {:.0f} % of the time, {:.1f} ms a ping: sampling goes from {} {}to {}",
-                    100 * load.share, load.mean_ms, name_of(before), back, name_of(next))};
+        fmt::format(
+            "rendering takes {:.0f} % of the time, {:.1f} ms per ping: sampling changes from {} {}to {}",
+            100 * load.share, load.mean_ms, name_of(before), back, name_of(next))};
   };
   const std::optional<Preset> faster = faster_than(preset_);
   mean_ms_[static_cast<std::size_t>(preset_)] = load.mean_ms;
@@ -108,11 +109,10 @@ std::optional<Notice> RenderLoad::decide(const Load& load) {
       !std::exchange(told_, true)) {
     return Notice{
         Notice::Level::warning,
-        fmt::format(
-            "the renderer is too slow: {:.1f} of {:.1f} pings per second asked for, {:.0f} ms a ping; "
-            "try {}{}",
-            load.pings_per_s, load.asked_per_s, load.mean_ms,
-            faster ? "sampling.preset: fast or sampling.adaptive_quality: on, " : "", advice_)};
+        fmt::format("the renderer is too slow: {:.1f} of {:.1f} requested pings per second, {:.0f} ms per "
+                    "ping; try {}{}",
+                    load.pings_per_s, load.asked_per_s, load.mean_ms,
+                    faster ? "sampling.preset: fast or sampling.adaptive_quality: on, " : "", advice_)};
   }
   if (load.share < has_time) {
     told_ = false;

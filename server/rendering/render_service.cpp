@@ -283,7 +283,7 @@ RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob
   } catch (const std::bad_alloc&) {  // a too large request must not end other clients
     result.samples = {};
     renderer.forget(job.stream);
-    result.error = "memory has run out for this ping; a shorter range or fewer bins take less";
+    result.error = "out of memory for this ping; use a shorter range or fewer bins";
   }
   return result;
 }
@@ -293,7 +293,7 @@ void RenderService::Impl::move_bodies(PingRenderer& renderer, const RenderJob& j
     // Names come from the network: invented names must not fill memory or log.
     if (!renderer.set_body_pose(body.name, body.T_world_body) &&
         unknown_bodies.size() < most_unknown_bodies && unknown_bodies.insert(body.name).second) {
-      spdlog::warn("the pose stream moves body '{}', which the world does not have", body.name);
+      spdlog::warn("pose stream: body '{}' is not in the world (ignored)", body.name);
     }
   }
 }

@@ -91,8 +91,7 @@ RendererFactory world_renderer_factory(const render::World& world, render::Rende
                                        std::filesystem::path choices) {
   return [&world, options = std::move(options), choices = std::move(choices)] {
     const render::SelfTestResult tested = render::run_self_test(options);
-    spdlog::info("renderer self-test passed: error={:.2f}% engine=\"{}\"", 100.0 * tested.error,
-                 tested.engine);
+    spdlog::info("engine: self-test passed error={:.2f}% engine=\"{}\"", 100.0 * tested.error, tested.engine);
     return std::make_unique<WorldRenderer>(world, options, choices);
   };
 }

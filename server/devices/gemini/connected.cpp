@@ -117,11 +117,14 @@ class ConnectedGemini final : public ConnectedDevice {
     transport_.set_own_address(addresses_.alternate);
     if (!owner) {
       log_.warn(
-          "head={} reports the address {}, which this machine does not have: clients will send there in vain",
+          "head={} reports the address {}, which this machine does not have, so commands to it are lost (set "
+          "network.alternate_address to an address of this machine)",
           name_, address_text(addresses_.alternate));
     } else if (owner->netmask != addresses_.netmask) {
-      log_.warn("head={} reports the netmask {}, but {} has {}: later clients stay silent when masks differ",
-                name_, address_text(addresses_.netmask), owner->interface, address_text(owner->netmask));
+      log_.warn(
+          "head={} reports the netmask {}, but {} has {}: some clients send nothing if the masks differ (set "
+          "network.netmask to the mask of the interface)",
+          name_, address_text(addresses_.netmask), owner->interface, address_text(owner->netmask));
     }
   }
 

@@ -98,7 +98,7 @@ class GeminiKind final : public DeviceKind {
     // If the head is bound to this address, trying the socket has already reported it.
     if (!owner && config.bind_address != device.alternate_address) {
       return {{"network.alternate_address",
-               fmt::format("{} is not an address of this machine, but clients will send there",
+               fmt::format("{} is not an address of this machine, but clients send commands to it",
                            address_text(device.alternate_address))}};
     }
     return {};
@@ -169,7 +169,7 @@ class GeminiKind final : public DeviceKind {
     }
     if (const double worst_rad = worst_bearing_error_rad(logged); worst_rad > bearing_tolerance_rad) {
       problems.push_back(
-          fmt::format("bearings of the recording are up to {:.1f} degrees from those of a 720i: clients will "
+          fmt::format("bearings of the recording differ by up to {:.1f} degrees from a 720i: clients will "
                       "show wrong bearings",
                       worst_rad * 180.0 / std::numbers::pi));
     }

@@ -94,12 +94,12 @@ class MicronKind final : public DeviceKind {
   std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
     const auto told = [](const LoggedPing& ping) { return micron::recorded_line(ping.wire).has_value(); };
     if (!std::ranges::all_of(logged.pings, told)) {
-      return fmt::format("scan lines of node {} do not say how they travelled (expected wire_line)",
+      return fmt::format("scan lines of node {} lack their wire format (expected wire_line)",
                          logged.device_id);
     }
     const auto short_enough = [](const LoggedPing& ping) { return ping.settings.bins <= micron::max_bins; };
     if (!std::ranges::all_of(logged.pings, short_enough)) {
-      return fmt::format("scan lines of node {} have more than the {} bins that a Micron sends",
+      return fmt::format("scan lines of node {} have too many bins (expected at most {}, as a Micron sends)",
                          logged.device_id, micron::max_bins);
     }
     return std::nullopt;

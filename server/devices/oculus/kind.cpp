@@ -96,8 +96,7 @@ class OculusKind final : public DeviceKind {
   std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
     const auto told = [](const LoggedPing& ping) { return oculus::recorded_form(ping.wire).has_value(); };
     if (!std::ranges::all_of(logged.pings, told)) {
-      return fmt::format("pings of device {} do not say how they travelled (expected wire_head)",
-                         logged.device_id);
+      return fmt::format("pings of device {} lack their wire format (expected wire_head)", logged.device_id);
     }
     return std::nullopt;
   }

@@ -51,8 +51,9 @@ class Discovery {
     const std::span<const std::uint8_t> bytes(asked.bytes.data(), asked.bytes.size());
     const std::optional<Ipv4> wanted = ping360::set_ip(bytes);
     if (wanted) {
-      log_.warn("head={} was told by {} to take the address {}: this machine's network is left as it is",
-                head_, address_text(asked.remote.address), address_text(*wanted));
+      log_.warn(
+          "head={} {} requested the address {}: ignored, sonard does not change the network of this machine",
+          head_, address_text(asked.remote.address), address_text(*wanted));
     }
     if (ping360::is_discovery(bytes) || wanted.value_or(0) != 0) {
       const std::string text = ping360::discovery_reply(config_.mac, config_.address);

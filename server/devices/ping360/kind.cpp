@@ -92,8 +92,7 @@ class Ping360Kind final : public DeviceKind {
   std::optional<std::string> why_not_played(const LoggedHead& logged) const override {
     const auto told = [](const LoggedPing& ping) { return ping360::recorded_form(ping.wire).has_value(); };
     if (!std::ranges::all_of(logged.pings, told)) {
-      return fmt::format("pings of device {} do not say how they travelled (expected wire_line)",
-                         logged.device_id);
+      return fmt::format("pings of device {} lack their wire format (expected wire_line)", logged.device_id);
     }
     return std::nullopt;
   }

@@ -72,7 +72,7 @@ class Discovery(TwoMachines):
         asker = self.asker()
         self.assertEqual(self.ask(asker, b"SetSS1IP 010.061.019.077", to=HEAD_ADDRESS)[0], TEXT)
         self.assertIsNone(self.ask(asker, b"SetSS1IP 000.000.000.000", to=HEAD_ADDRESS, seconds=0.3), "it would reboot")
-        self.daemon.wait_for_line(r"warning head=found was told by 10\.61\.19\.10 to take the address 10\.61\.19\.77: ", 5)
+        self.daemon.wait_for_line(r"warning head=found 10\.61\.19\.10 requested the address 10\.61\.19\.77: ", 5)
         self.assertEqual(self.ask(asker, to=HEAD_ADDRESS)[0], TEXT)
 
     def test_all_else_gets_no_answer(self):

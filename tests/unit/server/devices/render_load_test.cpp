@@ -76,7 +76,7 @@ TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
   Client client(load);
   const auto lines = client.ask(std::chrono::seconds(20), milliseconds(60), milliseconds_of);
   ASSERT_THAT(lines, ElementsAre(HasSubstr("sampling.preset: fast")));
-  EXPECT_THAT(lines[0], HasSubstr("too slow: 8.3 of 16.7 pings per second asked for, 120 ms a ping"));
+  EXPECT_THAT(lines[0], HasSubstr("too slow: 8.3 of 16.7 requested pings per second, 120 ms per ping"));
   EXPECT_EQ(load.preset(), Preset::normal);
 }
 

@@ -200,7 +200,7 @@ TEST_F(RenderServiceTest, MemoryThatRunsOutFailsOnePingOnly) {
                    });
   }
   ASSERT_TRUE(inbox.run_until([&] { return errors[1] != "none yet"; }));
-  EXPECT_NE(errors[0].find("memory has run out for this ping"), std::string::npos) << errors[0];
+  EXPECT_NE(errors[0].find("out of memory for this ping"), std::string::npos) << errors[0];
   EXPECT_EQ(errors[1], "");
   EXPECT_EQ(control->forgotten, 1);
   EXPECT_EQ(failure, "");
