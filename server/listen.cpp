@@ -53,8 +53,8 @@ void print_names(const char* what, const std::vector<std::string>& names) {
 
 void print_newest(const pose::PoseSample& sample) {
   const pose::Vec3& p = sample.T_world_vehicle.position_m;
-  fmt::print("  vehicle  last at ({:.3f}, {:.3f}, {:.3f}) m east, north, up; {}; its time {:.3f} s\n", p.x,
-             p.y, p.z, angles_text(sample.T_world_vehicle.orientation),
+  fmt::print("  vehicle  last at ({:.3f}, {:.3f}, {:.3f}) m east, north, up; {}; stamp {:.3f} s\n", p.x, p.y,
+             p.z, angles_text(sample.T_world_vehicle.orientation),
              1e-9 * static_cast<double>(sample.time_ns));
   print_names("bodies  ", names_of(sample.bodies));
 }
@@ -63,17 +63,16 @@ void print_newest(const pose::PoseSample& sample) {
 std::string likely_cause(const PoseSource& source) {
   const PoseSourceCounters& counters = source.counters();
   if (counters.bad_value > 0) {
-    return fmt::format("{} messages had no pose that can be used; the log says why", counters.bad_value);
+    return fmt::format("{} messages had no usable pose (the log gives the reasons)", counters.bad_value);
   }
   if (counters.malformed > 0) {
-    return fmt::format("{} messages were none that is expected here; the log says what they were",
-                       counters.malformed);
+    return fmt::format("{} messages have another format (the log gives the reasons)", counters.malformed);
   }
   if (counters.refused > 0) {
-    return "what came was refused: is the sender in the `allow` list?";
+    return "all messages were refused: is the sender in the `allow` list?";
   }
   if (counters.connections > 0) {
-    return "somebody connected, and sent no whole message";
+    return "a publisher connected but sent no complete message";
   }
   return "nothing arrived: " + source.silence_hint();
 }

@@ -75,7 +75,8 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
 void HeadDiagnosis::no_pose() {
   sees_surface_.reset();
   stands_out_.reset();
-  found({{"no_pose", "No pose of the vehicle has come, or only a stale one: no ping is made."}});
+  found({{"no_pose",
+          "No pose of the vehicle has arrived, or the last one is too old, so the head does not ping."}});
 }
 
 void HeadDiagnosis::found(std::vector<Finding> findings) {
@@ -87,7 +88,7 @@ void HeadDiagnosis::found(std::vector<Finding> findings) {
     }
   }
   if (findings.empty() && !findings_.empty()) {
-    spdlog::info("head={} nothing looks wrong any more", config_.name);
+    spdlog::info("head={} problem resolved", config_.name);
   }
   findings_ = std::move(findings);
 }

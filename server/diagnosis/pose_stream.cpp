@@ -32,22 +32,21 @@ std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
   const double time_rate = *summary.time_rate;
   if (time_rate < 0.0) {
     return Finding{"stamps_backwards",
-                   fmt::format("Stamps run backwards, by {:.2g} s each second: poses are used by "
+                   fmt::format("Stamps run backwards by {:.2g} s per second, but sonard orders poses by "
                                "their stamps. Send the time of each pose.",
                                -time_rate)};
   }
   for (const Unit& unit : units) {
     if (time_rate > 0.2 * unit.time_rate && time_rate < 5 * unit.time_rate) {
       return Finding{wrong_unit,
-                     fmt::format("Stamps of poses look like {}: they are to be in nanoseconds.", unit.name)};
+                     fmt::format("Stamps of poses look like {}. Send them in nanoseconds.", unit.name)};
     }
   }
   const double run_s = time_rate * static_cast<double>(summary.poses) / summary.rate_hz;
   if (run_s < shortest_run_s) {
-    return Finding{"stamps_count",
-                   fmt::format("Stamps went on by {:.2g} s over {} poses: do they count poses? Send the time "
-                               "of each pose, in nanoseconds.",
-                               run_s, summary.poses)};
+    return Finding{"stamps_count", fmt::format("Stamps advanced by only {:.2g} s over {} poses: do they "
+                                               "count poses? Send the time of each pose, in nanoseconds.",
+                                               run_s, summary.poses)};
   }
   return std::nullopt;
 }
@@ -58,29 +57,25 @@ std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::strin
     case StampWatch::Looks::good:
       break;
     case StampWatch::Looks::stand_still:
-      return Finding{"stamps_stand_still",
-                     fmt::format("The stamps stand still while the vehicle moves: is {0} left out? Send the "
-                                 "time of each pose as {0}.",
-                                 name)};
+      return Finding{"stamps_stand_still", fmt::format("The stamps do not change while the vehicle moves: is "
+                                                       "{0} missing? Send the time of each pose as {0}.",
+                                                       name)};
     case StampWatch::Looks::in_steps: {
       const double step_s = 1e-9 * static_cast<double>(stamps.last_step().count());
-      return Finding{
-          "stamps_in_steps",
-          fmt::format("The stamps stand still for {:.2g} s at a time while the vehicle moves: is {} {}? "
-                      "Send the time of each pose, with its fraction.",
-                      step_s, name, step_s > 0.5 ? "in whole seconds" : "rounded")};
+      return Finding{"stamps_in_steps",
+                     fmt::format("The stamps change only every {:.2g} s while the vehicle moves: is {} {}? "
+                                 "Send the time of each pose, with its fraction.",
+                                 step_s, name, step_s > 0.5 ? "in whole seconds" : "rounded")};
     }
     case StampWatch::Looks::never_moved:
       if (clock == PingClock::wall) {
-        return Finding{
-            "stamps_stand_still",
-            fmt::format("The stamps have not moved since the first pose: is {0} left out? Send the time "
-                        "of each pose as {0}.",
-                        name)};
+        return Finding{"stamps_stand_still", fmt::format("The stamps have not changed since the first pose: "
+                                                         "is {0} missing? Send the time of each pose as {0}.",
+                                                         name)};
       }
       return Finding{no_ping_by_stamps,
-                     fmt::format("The stamps have not moved since the first pose, so no ping is made "
-                                 "(poses.clock): is the simulation paused, or {} left out?",
+                     fmt::format("The stamps have not changed since the first pose, so the heads do not ping "
+                                 "(poses.clock): is the simulation paused, or is {} missing?",
                                  name)};
   }
   return std::nullopt;
@@ -93,14 +88,14 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
   const PoseStatistics::Summary summary = inputs.statistics(index).in_all(now);
   const std::vector<std::string> publishers = inputs.publishers(index, now);
   if (publishers.size() > 1) {
-    findings.push_back({"several_publishers", fmt::format("{} publishers send poses at once: {}.",
-                                                          publishers.size(), fmt::join(publishers, ", "))});
+    findings.push_back(
+        {"several_publishers", fmt::format("{} publishers send poses at the same time: {}. Stop all but one.",
+                                           publishers.size(), fmt::join(publishers, ", "))});
   } else if (summary.since_restart && *summary.since_restart < worth_saying) {
     findings.push_back(
-        {"clock_backwards",
-         fmt::format("The publisher's clock runs backwards: it went back {} time{}. A simulation was "
-                     "started anew, or stamps are not those of one clock.",
-                     summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
+        {"clock_backwards", fmt::format("The publisher's clock went back {} time{}: a simulation was "
+                                        "restarted, or the stamps come from several clocks.",
+                                        summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
   }
   auto of_rate = look_at_rate(summary);
   // Stamps in seconds also stand still for a second at a time.

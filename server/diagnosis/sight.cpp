@@ -244,8 +244,8 @@ class LookAround {
     const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
     if (up_of(q) < 0.7 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.98) {
       add("quaternion_w_first",
-          "The vehicle lies on its side or upside down (is its quaternion sent with w first? Read so, it is "
-          "level; in a message the parts of an orientation have names, in a trajectory file w comes last).");
+          "The vehicle lies on its side or upside down (is its quaternion sent with w first? With w first, "
+          "it would be level. A message names x, y, z and w; a trajectory file has w last).");
     }
   }
 
@@ -263,8 +263,8 @@ class LookAround {
                                  !is_vehicle && glm::length(size) > 5.0;
       if (within != Within::outside && !holds_a_sonar) {
         add(is_vehicle ? "inside_vehicle" : "inside_body",
-            fmt::format("The sonar is inside of the body '{}'{}.", body.name,
-                        is_vehicle ? ", its own vehicle (hides_vehicle: true leaves it out)" : ""));
+            fmt::format("The sonar is inside the body '{}'{}.", body.name,
+                        is_vehicle ? ", its own vehicle (to hide it, set hides_vehicle: true)" : ""));
       }
     }
   }
@@ -307,10 +307,9 @@ class LookAround {
                             [&](const Neighbour& other) { return straight(other, -1.0).count > 0; })) {
       return;
     }
-    add("under_ground",
-        fmt::format("The sonar is {:.4g} m below the body '{}', and nothing is below it: is it under the bed "
-                    "(is z of the pose right)?",
-                    overhead.nearest, ground->body->name));
+    add("under_ground", fmt::format("The sonar is {:.4g} m below the body '{}', and nothing is below the "
+                                    "sonar: is it under the bed (is z of the pose correct)?",
+                                    overhead.nearest, ground->body->name));
   }
 
   void note_what_is_near(bool sees_surface) {
@@ -336,17 +335,18 @@ class LookAround {
     }
     if (nearest == nullptr) {
       if (world_.triangle_count() > 0) {  // else it is open water by configuration
-        add("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden.");
+        add("empty_world",
+            "The world has no body that reflects sound, because the vehicle's own model is hidden.");
       }
     } else if (!sees_surface && least_m > sight_.range_m) {
       note_far(*nearest, least_m);
     } else if (sees_surface) {
       const double below_db = -10.0 * std::log10(std::max(sight_.echo_over_floor, 1e-10));
       add("too_faint",
-          fmt::format(
-              "No echo stands out: the strongest one is {:.0f} dB{} below the noise and the least step "
-              "of the samples. {} Turn the sonar towards it, or come nearer.",
-              below_db, below_db < 100.0 ? "" : " or more", where_is("The", *nearest, least_m, point_world)));
+          fmt::format("No echo stands out: the strongest one is {:.0f} dB{} below the noise and the smallest "
+                      "step of the samples. {} Turn the sonar towards it, or move closer.",
+                      below_db, below_db < 100.0 ? "" : " or more",
+                      where_is("The", *nearest, least_m, point_world)));
     } else if (sight_.sees_surface) {
       add("nothing_in_fan", "Nothing is in the fan; " + where_is("the", *nearest, least_m, point_world));
     }
@@ -360,16 +360,15 @@ class LookAround {
     const glm::dvec3 there = nearest.T_world_body * (0.5 * (nearest.box.min_m + nearest.box.max_m));
     if (looks_like_utm(p) != looks_like_utm(there)) {
       add("utm",
-          fmt::format("{}. {} looks like UTM (easting, northing) and the {} not: subtract the place of the "
-                      "world's origin from the poses, or give both in the same coordinates.",
+          fmt::format("{}. {} looks like UTM (easting, northing), but the {} not: subtract the position of "
+                      "the world's origin from the poses, or use the same coordinates for both.",
                       text, looks_like_utm(p) ? "The position" : "The world",
                       looks_like_utm(p) ? "world does" : "position does"));
     } else if (const std::string unit = wrong_unit(); !unit.empty()) {
-      add("wrong_unit",
-          fmt::format("{}. Read as {} the position would be in the world: positions look like {}.", text,
-                      unit, unit));
+      add("wrong_unit", fmt::format("{}. In {}, the position would be inside the world: are positions in {}?",
+                                    text, unit, unit));
     } else if (is_in_the_world({p.x, p.y, -p.z})) {
-      add("z_down", text + ". With z the other way it would be in the world (is z down?).");
+      add("z_down", text + ". With the opposite sign of z, it would be inside the world (is z down?).");
     } else {
       add("nothing_near", text + ".");
     }

@@ -33,7 +33,7 @@ std::optional<BedView> view_of_bed(const render::World& world, const std::vector
                                    const std::string& without, const render::Pose& T_world_sonar,
                                    const render::SonarSettings& settings);
 
-/// "the bed below ('seabed') is seen from 6.1 to 40 m"
+/// "the bed below ('seabed') is visible from 6.1 to 40 m"
 std::string bed_text(const std::optional<BedView>& view, double range_m);
 
 }  // namespace sonard::server

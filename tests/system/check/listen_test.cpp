@@ -75,7 +75,7 @@ TEST_F(Listen, says_that_a_sender_is_not_allowed) {
   const ProcessResult result = listen(", allow: [10.0.0.0/8]");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.out,
-              HasSubstr("no pose of the vehicle: what came was refused: is the sender in the `allow`"));
+              HasSubstr("no pose of the vehicle: all messages were refused: is the sender in the `allow`"));
   EXPECT_THAT(result.err, HasSubstr("not in the allow list"));
 }
 

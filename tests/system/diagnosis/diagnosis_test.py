@@ -140,7 +140,7 @@ class Diagnosis(OwnMachine):
             daemon.wait_for_line("warning head=bow .*" + pose["says"], PATIENCE_S)
             self.wait_for_finding(lambda status: status["heads"][0]["findings"], pose["says"])
             publisher.pose = GOOD
-            daemon.wait_for_line("head=bow nothing looks wrong any more", PATIENCE_S, count=number)
+            daemon.wait_for_line("head=bow problem resolved", PATIENCE_S, count=number)
         for pose in wrong_poses():
             said = [line for line in daemon.lines if re.search("warning head=bow .*" + pose["says"], line)]
             self.assertEqual(len(said), 1, said)
@@ -192,7 +192,7 @@ class Diagnosis(OwnMachine):
     def test_check_tells_of_the_own_hull(self):
         start = "initial: {position_m: [30, 0, -5]}"
         printed = self.check(self.config(start, ", vehicle_model: rov"))
-        self.assertIn("inside of the body 'rov', its own vehicle (hides_vehicle: true leaves it out)", printed)
+        self.assertIn("inside the body 'rov', its own vehicle (to hide it, set hides_vehicle: true)", printed)
         with open(self.config(start, ", vehicle_model: rov"), "a", encoding="utf-8") as file:
             file.write("    hides_vehicle: true\n")
         self.assertNotIn("inside of", self.check(file.name))
@@ -216,7 +216,7 @@ class Diagnosis(OwnMachine):
 
     def test_no_pose_is_said(self):
         daemon = self.start()
-        daemon.wait_for_line("head=bow No pose of the vehicle has come", PATIENCE_S)
+        daemon.wait_for_line("head=bow No pose of the vehicle has arrived", PATIENCE_S)
 
     def inputs_findings(self, status):
         return status["poses"]["inputs"][0]["findings"]
@@ -224,7 +224,7 @@ class Diagnosis(OwnMachine):
     def test_two_publishers_are_named(self):
         daemon = self.start()
         one, other = self.publish(GOOD), self.publish(GOOD)
-        says = "2 publishers send poses at once: .*127"
+        says = "2 publishers send poses at the same time: .*127"
         line = daemon.wait_for_line(says, PATIENCE_S)
         self.assertIn(one.address, line)
         self.assertIn(other.address, line)
@@ -236,7 +236,7 @@ class Diagnosis(OwnMachine):
         for ticks_per_s, unit in ((1e6, "microseconds"), (1e3, "milliseconds"), (1.0, "seconds")):
             with self.subTest(unit):
                 publisher = self.publish(GOOD, ticks_per_s=ticks_per_s)
-                says = f"Stamps of poses look like {unit}: they are to be in nanoseconds"
+                says = f"Stamps of poses look like {unit}[.] Send them in nanoseconds"
                 self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
                 daemon = self.start()
                 daemon.wait_for_line(says, PATIENCE_S)
@@ -252,22 +252,22 @@ class Diagnosis(OwnMachine):
 
     def test_stamps_that_run_backwards_are_named(self):
         self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: 10**15 - round(since_s * 1e9))
-        says = "Stamps run backwards, by (1|0\\.9\\d?) s each second"
+        says = "Stamps run backwards by (1|0\\.9\\d?) s per second"
         self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
 
     def test_stamps_that_count_poses_are_named(self):
         numbers = itertools.count(1)
         self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: next(numbers))
-        says = r"Stamps went on by \S+ s over \d+ poses: do they count poses\? Send the time of each pose, in nanoseconds"
+        says = r"Stamps advanced by only \S+ s over \d+ poses: do they count poses\? Send the time of each pose, in nanoseconds"
         self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
         self.start()
         self.wait_for_finding(self.inputs_findings, says)
 
     STANDING = {  # what is made of the seconds since the first pose
-        "left out": (lambda since_s: 0, "The stamps stand still while the vehicle moves: is time_ns left out\\?"),
-        "all alike": (lambda since_s: 1732800000123456789, "The stamps stand still while the vehicle moves"),
+        "left out": (lambda since_s: 0, "The stamps do not change while the vehicle moves: is time_ns missing\\?"),
+        "all alike": (lambda since_s: 1732800000123456789, "The stamps do not change while the vehicle moves"),
         "whole seconds": (lambda since_s: int(1732800000 + since_s) * 10**9,
-                          "The stamps stand still for (1|0\\.9\\d?) s at a time while the vehicle moves: is time_ns in whole"),
+                          "The stamps change only every (1|0\\.9\\d?) s while the vehicle moves: is time_ns in whole"),
     }
 
     def test_stamps_that_stand_still_are_named(self):
@@ -296,14 +296,14 @@ class Diagnosis(OwnMachine):
     def test_stamps_that_never_moved_are_named_though_the_vehicle_is_at_rest(self):
         self.publish(GOOD, stamp=lambda since_s: 0)
         self.assertRegex(self.check("--listen", "3", self.config()),
-                         "wrong\\?   The stamps have not moved since the first pose: is time_ns left out\\?")
-        says = "The stamps have not moved since the first pose, so no ping is made \\(poses.clock\\)"
+                         "wrong\\?   The stamps have not changed since the first pose: is time_ns missing\\?")
+        says = "The stamps have not changed since the first pose, so the heads do not ping \\(poses.clock\\)"
         source = self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: source")
         self.assertRegex(self.check("--listen", "3", source), "wrong\\?   " + says)
 
     BLACK = {  # start pose in bed_and_wall.sdf, acoustics of the head, what is said
-        "under the bed": ("[30, 0, -24]", "", "The sonar is 4 m below the body 'bed', and nothing is below it"),
-        "inside of a wall": ("[0, 40, -15]", "", "The sonar is inside of the body 'wall'"),
+        "under the bed": ("[30, 0, -24]", "", "The sonar is 4 m below the body 'bed', and nothing is below the sonar"),
+        "inside of a wall": ("[0, 40, -15]", "", "The sonar is inside the body 'wall'"),
         "turned away": ("[30, 0, -17], rpy_deg: [0, -60, 0]", "",
                         "Nothing is in the fan; the nearest body, 'bed', is 3 m away, .* and 30 degrees below the axis"),
         "below the noise": ("[30, 0, -17]", "{physical: {noise_level_db: -50}}",
@@ -327,7 +327,7 @@ class Diagnosis(OwnMachine):
         """5 m above it, 30 degrees down, a beam of 20 degrees: 5 / sin 40 = 7.78 m to 5 / sin 20 = 14.6 m."""
         printed = self.check(self.config(poses="initial: {position_m: [30, 0, -15]}", world="bed_and_wall.sdf",
                                          head="    mount: {rpy_deg: [0, 30, 0]}\n"))
-        self.assertIn("looks    bow: forward and 30 degrees down; the bed below ('bed') is seen from 7.78 to 14.6 m\n", printed)
+        self.assertIn("looks    bow: forward and 30 degrees down; the bed below ('bed') is visible from 7.78 to 14.6 m\n", printed)
         self.assertNotIn("warning", printed)
 
     def test_a_mount_in_radians_is_named_and_shows_where_it_looks(self):
@@ -343,7 +343,7 @@ class Diagnosis(OwnMachine):
         daemon.wait_for_line("[1-9][0-9]* pings|connected", PATIENCE_S)
         time.sleep(1)
         publisher.back_s = 100.0
-        says = "The publisher's clock runs backwards: it went back 1 time\\."
+        says = "The publisher's clock went back 1 time:"
         daemon.wait_for_line(says, PATIENCE_S)
         self.wait_for_finding(self.inputs_findings, says)
 

@@ -167,14 +167,14 @@ test("the vehicle's own hull around a head is named", async () => {
   await startDaemon({ world: "pier_and_hull.sdf", vehicle_model: "rov", initial_m: [30, 0, -5] });
   startClients(20);
   await openPage();
-  await says(head(page, 0).locator(".findings"), /inside of the body 'rov', its own vehicle \(hides_vehicle: true/);
+  await says(head(page, 0).locator(".findings"), /inside the body 'rov', its own vehicle \(to hide it, set hides_vehicle: true/);
 });
 
 test("a pose that never came is missed", async () => {
   await startDaemon({ initial_m: null });
   startClients();
   await openPage();
-  await says(head(page, 0).locator(".findings"), /No pose of the vehicle has come/);
+  await says(head(page, 0).locator(".findings"), /No pose of the vehicle has arrived/);
 });
 
 test("two publishers are named", async () => {
@@ -182,7 +182,7 @@ test("two publishers are named", async () => {
   publish([0, 0, 0]);
   publish([0, 0, 0]);
   await openPage();
-  await says(page.locator("#pose-findings"), /2 publishers send poses at once/);
+  await says(page.locator("#pose-findings"), /2 publishers send poses at the same time/);
 });
 
 test("stamps in another unit are named", async () => {
@@ -204,5 +204,5 @@ test("a clock that runs backwards is named", async () => {
   await openPage();
   await until("the publisher", async () => /127\.0\.0\.1:\d+/.test(await page.locator("#pose-body td[data-label=Publisher]").first().textContent()));
   publisher.back_s = 100;
-  await says(page.locator("#pose-findings"), /clock runs backwards: it went back 1 time/);
+  await says(page.locator("#pose-findings"), /clock went back 1 time/);
 });

@@ -89,10 +89,10 @@ TEST(LookAround, SuspectsMillimetresAndCentimetres) {
   auto found = look(pier(), {}, at({7000, 0, -20000}));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "wrong_unit");
-  EXPECT_NE(found[0].text.find("positions look like millimetres"), std::string::npos);
+  EXPECT_NE(found[0].text.find("are positions in millimetres?"), std::string::npos);
   found = look(pier(), {}, at({700, 0, -2000}));
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_NE(found[0].text.find("positions look like centimetres"), std::string::npos);
+  EXPECT_NE(found[0].text.find("are positions in centimetres?"), std::string::npos);
 }
 
 TEST(LookAround, SuspectsAQuaternionWithWFirst) {
@@ -124,10 +124,10 @@ TEST(LookAround, TakesAVehicleThatLeansForOne) {
 TEST(LookAround, SaysThatTheSonarIsInsideOfABody) {
   Sight sight = at({10.2, 0.1, -20.3});
   sight.sees_surface = true;  // the inner side of the cube
-  EXPECT_EQ(look(pier(), {}, sight), only("inside_body", "The sonar is inside of the body 'pier'."));
+  EXPECT_EQ(look(pier(), {}, sight), only("inside_body", "The sonar is inside the body 'pier'."));
   sight.vehicle_model = "pier";
   EXPECT_EQ(look(pier(), {}, sight)[0].text,
-            "The sonar is inside of the body 'pier', its own vehicle (hides_vehicle: true leaves it out).");
+            "The sonar is inside the body 'pier', its own vehicle (to hide it, set hides_vehicle: true).");
   sight.hides_vehicle = true;
   EXPECT_TRUE(look(pier(), {}, sight).empty());
 }
@@ -140,9 +140,9 @@ TEST(LookAround, SaysThatTheOnlyBodyIsHidden) {
   Sight sight = at({2, 0, -20});
   sight.vehicle_model = "pier";
   sight.hides_vehicle = true;
-  EXPECT_EQ(
-      look(pier(), {}, sight),
-      only("empty_world", "The world has no body that could send an echo, as the vehicle's own is hidden."));
+  EXPECT_EQ(look(pier(), {}, sight),
+            only("empty_world",
+                 "The world has no body that reflects sound, because the vehicle's own model is hidden."));
 }
 
 /// A box with these edges and its middle at the origin. Its faces point outwards or inwards.
@@ -172,7 +172,7 @@ Sight seeing(const glm::dvec3& position_m) {
 TEST(LookAround, ASolidWallIsNamedHoweverLargeItIs) {
   for (const glm::vec3& size : {glm::vec3(6, 40, 40), glm::vec3(30, 1, 8), glm::vec3(200, 200, 30)}) {
     EXPECT_EQ(look(one("wall", box(size)), {}, seeing({0.1, 0.2, -20.3})),
-              only("inside_body", "The sonar is inside of the body 'wall'."));
+              only("inside_body", "The sonar is inside the body 'wall'."));
   }
 }
 
@@ -191,10 +191,9 @@ std::shared_ptr<const render::TriangleMesh> sheet() {
 }
 
 TEST(LookAround, SaysThatTheSonarIsUnderTheBed) {
-  const auto expected =
-      only("under_ground",
-           "The sonar is 3.5 m below the body 'bed', and nothing is below it: is it under the "
-           "bed (is z of the pose right)?");
+  const auto expected = only("under_ground",
+                             "The sonar is 3.5 m below the body 'bed', and nothing is below the sonar: is it "
+                             "under the bed (is z of the pose correct)?");
   EXPECT_EQ(look(one("bed", sheet()), {}, at({7, 3, -23.5})), expected);
   EXPECT_EQ(look(one("bed", sheet()), {}, seeing({7, 3, -23.5})), expected) << "it sees the back of it";
   // A slab 1 m thick, with its lower side at z = -20.5.
@@ -225,9 +224,9 @@ TEST(LookAround, SaysThatNoEchoStandsOut) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].code, "too_faint");
   for (const char* part :
-       {"No echo stands out: the strongest one is 20 dB below the noise and the least step of the "
+       {"No echo stands out: the strongest one is 20 dB below the noise and the smallest step of the "
         "samples. The nearest body, 'bed', is 3 m away, 180 degrees to ",
-        " and 60 degrees below the axis of the sonar. Turn the sonar towards it, or come nearer."}) {
+        " and 60 degrees below the axis of the sonar. Turn the sonar towards it, or move closer."}) {
     EXPECT_NE(found[0].text.find(part), std::string::npos) << found[0].text;
   }
   sight.echo_over_floor = 0.5;
@@ -240,7 +239,7 @@ TEST(LookAround, SuspectsUtmCoordinatesInALocalWorld) {
     const auto found = look(one("bed", sheet()), {}, at(p));
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].code, "utm");
-    EXPECT_NE(found[0].text.find("The position looks like UTM (easting, northing) and the world does not"),
+    EXPECT_NE(found[0].text.find("The position looks like UTM (easting, northing), but the world does not"),
               std::string::npos)
         << found[0].text;
   }
@@ -251,7 +250,7 @@ TEST(LookAround, SuspectsALocalPoseInAWorldOfUtmCoordinates) {
   world.bodies[0].T_world_body.position_m = {569000, 7034000, -20};
   const auto found = look(world, {}, at({7, 3, -15}));
   ASSERT_EQ(found.size(), 1U);
-  EXPECT_NE(found[0].text.find("The world looks like UTM (easting, northing) and the position does not"),
+  EXPECT_NE(found[0].text.find("The world looks like UTM (easting, northing), but the position does not"),
             std::string::npos)
       << found[0].text;
   EXPECT_EQ(look(world, {}, at({569300, 7034000, -15}))[0].code, "nothing_near") << "both are";

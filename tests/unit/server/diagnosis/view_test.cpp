@@ -78,7 +78,7 @@ TEST(BedWindow, IsWhereTheBeamMeetsIt) {
   EXPECT_NEAR(seen->below_m, 10.0, 1e-6);
   EXPECT_NEAR(*seen->nearest_m, 20.0, 1e-3);
   EXPECT_NEAR(*seen->farthest_m, 10.0 / std::sin(glm::radians(10.0)), 1e-3);
-  EXPECT_EQ(bed_text(seen, 100), "the bed below ('seabed') is seen from 20 to 57.6 m");
+  EXPECT_EQ(bed_text(seen, 100), "the bed below ('seabed') is visible from 20 to 57.6 m");
 }
 
 TEST(BedWindow, EndsWithTheRange) {
@@ -93,7 +93,7 @@ TEST(BedWindow, OfALevelBeamBeginsAtItsLowerEdge) {
   const auto beyond = view(mount(0, 0, 0), -10, 50);
   ASSERT_TRUE(beyond);
   EXPECT_FALSE(beyond->nearest_m);
-  EXPECT_EQ(bed_text(beyond, 50), "the bed below ('seabed', 10 m down) is out of its beam within 50 m");
+  EXPECT_EQ(bed_text(beyond, 50), "the bed below ('seabed', 10 m down) is outside the beam within 50 m");
 }
 
 TEST(BedWindow, StraightDownItBeginsAtTheFoot) {

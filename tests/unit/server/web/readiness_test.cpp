@@ -60,11 +60,11 @@ TEST(Readiness, NamesWhatIsMissing) {
 
 TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
   DaemonStatus status = ready_status();
-  status.inputs[0].findings = {{"several_publishers", "2 publishers send poses at once."}};
+  status.inputs[0].findings = {{"several_publishers", "2 publishers send poses at the same time."}};
   EXPECT_THAT(why_not_ready(status), IsEmpty()) << "pings are made all the same";
-  status.inputs[0].findings.push_back({no_ping_by_stamps, "The stamps have not moved."});
+  status.inputs[0].findings.push_back({no_ping_by_stamps, "The stamps have not changed."});
   EXPECT_THAT(why_not_ready(status),
-              ElementsAre("pose stream udp 127.0.0.1:14600: The stamps have not moved."));
+              ElementsAre("pose stream udp 127.0.0.1:14600: The stamps have not changed."));
 }
 
 }  // namespace
