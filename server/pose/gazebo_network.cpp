@@ -65,7 +65,7 @@ void drop_other_machines(int socket) {
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   if (setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) != 0) {
     throw PoseSourceError(
-        fmt::format("gazebo: cannot keep discovery to this machine: {}", std::strerror(errno)));
+        fmt::format("pose gazebo: cannot limit discovery to this machine: {}", std::strerror(errno)));
   }
 }
 
@@ -75,7 +75,7 @@ void set_gazebo_address(Ipv4 address) {
   const std::string text = address_text(address);
   if (const auto own = interface_addresses(); !own.empty() && !owner_of(address, own)) {
     throw PoseSourceError(
-        fmt::format("gazebo: {} is not an address of this machine (poses.gazebo.address)", text));
+        fmt::format("pose gazebo: {} is not an address of this machine (poses.gazebo.address)", text));
   }
   setenv("IGN_IP", text.c_str(), /*overwrite=*/1);
   setenv("GZ_IP", text.c_str(), /*overwrite=*/1);

@@ -77,7 +77,7 @@ Result<EntityPoses, std::string> parse(const Message& message) {
   if (name == "Pose_V") {
     gazebo::msgs::Pose_V list;
     if (!list.ParseFromString(message.bytes)) {
-      return fmt::format("its bytes are no {}", message.type);
+      return fmt::format("its bytes are not a {}", message.type);
     }
     poses.time_ns = stamp_ns(list.header());
     for (const gazebo::msgs::Pose& pose : list.pose()) {
@@ -88,7 +88,7 @@ Result<EntityPoses, std::string> parse(const Message& message) {
   if (name == "Pose") {
     gazebo::msgs::Pose pose;
     if (!pose.ParseFromString(message.bytes)) {
-      return fmt::format("its bytes are no {}", message.type);
+      return fmt::format("its bytes are not a {}", message.type);
     }
     poses.time_ns = stamp_ns(pose.header());
     poses.entities.push_back(entity(pose));
@@ -155,7 +155,7 @@ void GazeboPoseSource::Impl::take(const Message& message) {
   }
   for (; dropped > 0; --dropped) {
     ++counters.refused;
-    complain("too many wait");
+    complain("too many messages wait");
   }
   const auto parsed = parse(message);
   if (!parsed) {
@@ -165,7 +165,8 @@ void GazeboPoseSource::Impl::take(const Message& message) {
   }
   const auto mapped = entities.map(*parsed);
   if (const std::vector<std::string> ignored = entities.take_ignored(); !ignored.empty()) {
-    spdlog::info("gazebo {}: entities without a part here: {}", input.topic, fmt::join(ignored, ", "));
+    spdlog::info("pose gazebo {}: ignored entities (not in this world): {}", input.topic,
+                 fmt::join(ignored, ", "));
   }
   if (!mapped) {
     ++counters.bad_value;
@@ -178,15 +179,16 @@ void GazeboPoseSource::Impl::take(const Message& message) {
 void GazeboPoseSource::Impl::deliver(const pose::PoseSample& sample, TimePoint arrival) {
   if (++counters.samples == 1) {
     const pose::Vec3& p = sample.T_world_vehicle.position_m;
-    spdlog::info("gazebo {}: the vehicle is entity '{}', first at ({:.3f}, {:.3f}, {:.3f}), time {:.3f} s",
-                 input.topic, input.vehicle.name, p.x, p.y, p.z, 1e-9 * static_cast<double>(sample.time_ns));
+    spdlog::info(
+        "pose gazebo {}: the vehicle is entity '{}', first at ({:.3f}, {:.3f}, {:.3f}), time {:.3f} s",
+        input.topic, input.vehicle.name, p.x, p.y, p.z, 1e-9 * static_cast<double>(sample.time_ns));
   }
   sink(sample, arrival);
 }
 
 void GazeboPoseSource::Impl::complain(const std::string& problem) {
   if (const std::uint64_t count = complaints.count(problem); std::has_single_bit(count)) {
-    spdlog::warn("gazebo {}: message dropped: {} ({} so far)", input.topic, problem, count);
+    spdlog::warn("pose gazebo {}: message dropped: {} ({} so far)", input.topic, problem, count);
   }
 }
 
@@ -209,7 +211,7 @@ void GazeboPoseSource::start() {
   const GazeboPoseInput& input = impl_->input;
   gazebo::transport::NodeOptions options;
   if (!input.partition.empty() && !options.SetPartition(input.partition)) {
-    throw PoseSourceError(fmt::format("gazebo: '{}' is no partition", input.partition));
+    throw PoseSourceError(fmt::format("pose gazebo: '{}' is not a valid partition", input.partition));
   }
   take_lines_of_the_library();
   set_gazebo_address(input.address);
@@ -222,7 +224,7 @@ void GazeboPoseSource::start() {
     impl->on_message(data, size, info.Type());
   };
   if (!subscription_->node.SubscribeRaw(input.topic, receive)) {
-    throw PoseSourceError(fmt::format("gazebo: cannot subscribe to '{}'", input.topic));
+    throw PoseSourceError(fmt::format("pose gazebo: cannot subscribe to '{}'", input.topic));
   }
 }
 
@@ -235,7 +237,7 @@ void GazeboPoseSource::stop() {
 }
 
 std::string GazeboPoseSource::description() const {
-  return fmt::format("gazebo {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
+  return fmt::format("pose gazebo {} entity '{}'", impl_->input.topic, impl_->input.vehicle.name);
 }
 
 std::vector<std::string> GazeboPoseSource::entities() const {
@@ -246,8 +248,8 @@ std::string GazeboPoseSource::silence_hint() const {
   const std::string reach = is_loopback(impl_->input.address)
                                 ? "does it run on this machine (another one needs poses.gazebo.address)"
                                 : "does multicast reach it";
-  return "is the simulator running, is the topic spelt as it spells it, is the partition the same, and " +
-         reach + " (docs/simulators/gazebo.md)?";
+  return "is the simulator running, are topic and partition the same as in the simulator, and " + reach +
+         " (docs/simulators/gazebo.md)?";
 }
 
 const PoseSourceCounters& GazeboPoseSource::counters() const {

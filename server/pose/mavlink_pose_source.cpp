@@ -60,7 +60,7 @@ std::string_view expected_of(MavlinkMessages messages) {
 struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource::Impl> {
   Impl(boost::asio::io_context& io, MavlinkPoseInput configured, const Clock& clock, PoseSink poses_go_to)
       : input(std::move(configured)),
-        listener(io, "mavlink udp", input.bind, input.allow, clock),
+        listener(io, "pose mavlink udp", input.bind, input.allow, clock),
         sink(std::move(poses_go_to)),
         poses(input) {}
 
@@ -149,23 +149,21 @@ std::string MavlinkPoseSource::Impl::what_is_missing() const {
     return "";
   }
   if (poses.counters().without_place > 0) {
-    return "GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is; "
-           "poses.mavlink.messages: auto takes its depth alone";
+    return "GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle has no position; "
+           "poses.mavlink.messages: auto uses only its depth";
   }
   if (received.attitude == 0) {
-    return "GLOBAL_POSITION_INT arrives, and no attitude: ask the vehicle for ATTITUDE";
+    return "GLOBAL_POSITION_INT arrives without an attitude: request ATTITUDE from the vehicle";
   }
   switch (input.messages) {
     case MavlinkMessages::automatic:
-      return input.world_origin
-                 ? ""
-                 : "GLOBAL_POSITION_INT arrives, for which the place of the world on Earth has to be "
-                   "known (world.origin)";
+      return input.world_origin ? ""
+                                : "GLOBAL_POSITION_INT arrives, which requires the position of the world on "
+                                  "Earth (set world.origin)";
     case MavlinkMessages::odometry:
     case MavlinkMessages::local_position:
-      return "GLOBAL_POSITION_INT arrives, which poses.mavlink.messages leaves out: auto and global_position "
-             "take "
-             "it";
+      return "GLOBAL_POSITION_INT arrives, which poses.mavlink.messages excludes: auto and global_position "
+             "accept it";
     case MavlinkMessages::global_position:
       break;
   }
@@ -180,8 +178,9 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
   missing_said = true;
   const std::string lacks = what_is_missing();
   spdlog::warn(
-      "{}: system {} has given no pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, GLOBAL_POSITION_INT {}, "
-      "ATTITUDE or ATTITUDE_QUATERNION {}, others {} (expected {}, by poses.mavlink.messages){}{}",
+      "{}: system {} has sent no usable pose in {} s: ODOMETRY {}, LOCAL_POSITION_NED {}, "
+      "GLOBAL_POSITION_INT {}, ATTITUDE or ATTITUDE_QUATERNION {}, others {} (expected {}, by "
+      "poses.mavlink.messages){}{}",
       listener.description(), input.system_id, patience.count(), received.odometry, received.local_position,
       received.global_position, received.attitude, received.other, expected_of(input.messages),
       lacks.empty() ? "" : ": ", lacks);
@@ -193,9 +192,10 @@ void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
   }
   ++counters.malformed;
   if (std::has_single_bit(++broken_datagrams)) {
-    spdlog::warn("{}: datagram from {} holds {} bytes of no valid frame (bad checksums {} so far)",
-                 listener.description(), endpoint_text(listener.peer()), frames.stray_bytes - before,
-                 frames.bad_checksums);
+    spdlog::warn(
+        "{}: datagram from {} contains {} bytes that are not a valid frame (bad checksums {} so far)",
+        listener.description(), endpoint_text(listener.peer()), frames.stray_bytes - before,
+        frames.bad_checksums);
   }
 }
 
@@ -247,12 +247,11 @@ std::string MavlinkPoseSource::received() const {
 }
 
 std::string MavlinkPoseSource::remark() const {
-  return impl_->poses.knows_depth_alone() ? "The vehicle knows its depth, and not where it is "
-                                            "(GLOBAL_POSITION_INT is at latitude 0, longitude "
-                                            "0): it stays at poses.mavlink.origin. Set its origin in the "
-                                            "ground station, or send poses that "
-                                            "have a position."
-                                          : "";
+  return impl_->poses.knows_depth_alone()
+             ? "The vehicle has a depth but no position (GLOBAL_POSITION_INT is at latitude 0, longitude 0), "
+               "so it stays at poses.mavlink.origin. Set its origin in the ground station, or send poses "
+               "with a position."
+             : "";
 }
 
 std::string MavlinkPoseSource::silence_hint() const {
@@ -263,11 +262,11 @@ std::string MavlinkPoseSource::silence_hint() const {
   if (received.odometry + received.local_position + received.global_position + received.attitude +
           received.other >
       0) {
-    return "messages of the vehicle arrive, but none says where it is: ask it for positions and attitudes "
+    return "messages of the vehicle arrive, but no positions with attitudes: request them "
            "(docs/simulators/ardusub.md)";
   }
   if (impl_->wrong_system + impl_->wrong_component > 0) {
-    return "messages arrive from other systems or components only: is poses.mavlink.system_id that of the "
+    return "messages arrive only from other systems or components: is poses.mavlink.system_id the ID of the "
            "vehicle?";
   }
   return PoseSource::silence_hint();

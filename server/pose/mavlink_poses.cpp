@@ -155,7 +155,7 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Global
   }
   if (no_place) {
     ++counters_.without_place;
-    complain("GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle does not know where it is");
+    complain("GLOBAL_POSITION_INT is at latitude 0, longitude 0: the vehicle has no position");
     return std::nullopt;
   }
   if (!earth_) {
@@ -166,7 +166,7 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Global
   const double latitude_deg = 1e-7 * position.lat, longitude_deg = 1e-7 * position.lon;
   if (std::abs(latitude_deg) > 90.0 || std::abs(longitude_deg) > 180.0) {
     ++counters_.bad_value;
-    complain("GLOBAL_POSITION_INT: no place on Earth");
+    complain("GLOBAL_POSITION_INT: latitude or longitude is out of range");
     return std::nullopt;
   }
   const render::Pose T_world_place = earth_->T_world_place(latitude_deg, longitude_deg, 1e-3 * position.alt);
@@ -194,7 +194,7 @@ std::optional<pose::PoseSample> MavlinkPoses::joined(const Place& place,
                                                      const std::optional<Heading>& heading) {
   if (!heading) {
     ++counters_.without_attitude;
-    complain("a position without an attitude of its time");
+    complain("a position without an attitude of the same time");
     return std::nullopt;
   }
   std::optional<pose::Velocity> twist_frd;
@@ -278,7 +278,7 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odomet
     if (!frames_said_.test(number)) {
       frames_said_.set(number);
       spdlog::warn(
-          "mavlink: ODOMETRY with frame_id {} is dropped (expected 1, MAV_FRAME_LOCAL_NED, or 20, "
+          "pose mavlink: ODOMETRY with frame_id {} is dropped (expected 1, MAV_FRAME_LOCAL_NED, or 20, "
           "MAV_FRAME_LOCAL_FRD)",
           number);
     }
@@ -329,7 +329,7 @@ std::optional<pose::Velocity> MavlinkPoses::twist_of(const mavlink::Odometry& od
   if (!velocity_frames_said_.test(number)) {
     velocity_frames_said_.set(number);
     spdlog::warn(
-        "mavlink: the velocity of ODOMETRY with child_frame_id {} is not used (expected 12, "
+        "pose mavlink: the velocity of ODOMETRY with child_frame_id {} is not used (expected 12, "
         "MAV_FRAME_BODY_FRD)",
         number);
   }
@@ -345,7 +345,7 @@ bool MavlinkPoses::observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint
   const bool restarted = back_ns > PoseHistory::reset_threshold.count();
   clock.newest_ns = restarted ? stamp_ns : std::max(clock.newest_ns, stamp_ns);
   if (restarted && std::has_single_bit(++counters_.clock_restarts)) {
-    spdlog::warn("mavlink: the vehicle's clock restarted, {:.3f} s back ({} so far)",
+    spdlog::warn("pose mavlink: the vehicle's clock restarted, {:.3f} s back ({} so far)",
                  1e-9 * static_cast<double>(back_ns), counters_.clock_restarts);
   }
   return restarted;
@@ -371,7 +371,7 @@ std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns,
 
 void MavlinkPoses::complain(const std::string& problem) {
   if (const std::uint64_t count = complaints_.count(problem); std::has_single_bit(count)) {
-    spdlog::warn("mavlink: message dropped: {} ({} so far)", problem, count);
+    spdlog::warn("pose mavlink: message dropped: {} ({} so far)", problem, count);
   }
 }
 

@@ -16,7 +16,7 @@ using std::chrono::nanoseconds;
 void note(std::uint64_t& count, std::uint64_t more, const char* reason) {
   const std::uint64_t before = std::exchange(count, count + more);
   if (std::bit_width(before) != std::bit_width(count)) {
-    spdlog::warn("pings left out: {} ({} so far)", reason, count);
+    spdlog::warn("pings skipped: {} ({} so far)", reason, count);
   }
 }
 
@@ -61,7 +61,7 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
   };
   const TimePoint newest = *poses_.newest();
   if (const TimePoint oldest = *poses_.oldest(); *next_ < oldest) {
-    note(counters_.lost, skip_to(oldest), "their poses were overtaken by too many newer ones");
+    note(counters_.lost, skip_to(oldest), "too many newer poses arrived before they were rendered");
   }
   if (poses_.ping_clock() == PingClock::source && *next_ + listening + period <= newest) {
     // Skips to the last ping that can begin.
@@ -69,7 +69,7 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
   }
   for (auto known = poses_.known_from(*next_); known && *known > *next_; known = poses_.known_from(*next_)) {
     note(counters_.unknown, skip_to(*known),
-         "the poses around them are further apart than poses.extrapolation_limit_ms");
+         "the nearest poses are further apart than poses.extrapolation_limit_ms");
   }
 }
 

@@ -59,8 +59,8 @@ void PoseHistory::restart_if_clock_went_back(std::int64_t time_ns) {
   ++counters_.clock_restarts;
   if (std::has_single_bit(counters_.clock_restarts)) {
     const double back_s = 1e-9 * static_cast<double>(vehicle_.newest().time_ns - time_ns);
-    spdlog::warn("the clock of the pose stream went back by {:.3f} s: older poses dropped ({} so far)",
-                 back_s, counters_.clock_restarts);
+    spdlog::warn("pose stream: its clock went back by {:.3f} s, older poses dropped ({} so far)", back_s,
+                 counters_.clock_restarts);
   }
   clock_.restart();
   vehicle_.clear();
@@ -78,7 +78,7 @@ void PoseHistory::insert_body(const pose::NamedTransform& body, std::int64_t tim
   if (track == bodies_.end()) {
     if (bodies_.size() == max_bodies) {
       if (++counters_.bodies_ignored == 1) {
-        spdlog::warn("the pose stream names more than {} bodies: '{}' and later ones are ignored", max_bodies,
+        spdlog::warn("pose stream: more than {} bodies, '{}' and later ones are ignored", max_bodies,
                      body.name);
       }
       return;

@@ -53,8 +53,8 @@ void PoseInputs::stop() {
     sources_[i]->stop();
     const PoseSourceCounters& done = sources_[i]->counters();
     const std::string name = sources_[i]->description();
-    spdlog::info("{} in all: {}", name, to_string(statistics_[i]->in_all(clock_.now())));
-    spdlog::info("{} ends: samples={} malformed={} bad_value={} refused={}{}", name, done.samples,
+    spdlog::info("{}: in total {}", name, to_string(statistics_[i]->in_all(clock_.now())));
+    spdlog::info("{}: ended samples={} malformed={} bad_value={} refused={}{}", name, done.samples,
                  done.malformed, done.bad_value, done.refused, sources_[i]->details());
   }
 }

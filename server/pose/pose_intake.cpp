@@ -18,8 +18,10 @@ void PoseIntake::take(const pose::PoseSample& sample, TimePoint arrival) {
   }
   if (waiting_.size() == most_waiting) {
     if (std::has_single_bit(++lost_)) {
-      spdlog::warn("poses dropped: too many wait for pings from before the clock went back ({} so far)",
-                   lost_);
+      spdlog::warn(
+          "pose stream: poses dropped, because too many wait for pings from before the clock went back ({} "
+          "so far)",
+          lost_);
     }
     return;
   }

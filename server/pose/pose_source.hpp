@@ -69,7 +69,7 @@ class PoseSource {
   virtual std::string remark() const { return {}; }
   /// Advice if nothing at all has arrived, in one line.
   virtual std::string silence_hint() const {
-    return "is the publisher running, does it send to this address and port, and is no firewall between?";
+    return "is the publisher running, does it send to this address and port, and does a firewall block it?";
   }
 };
 

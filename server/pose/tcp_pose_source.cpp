@@ -71,7 +71,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
 
   TimePoint newest_message() const { return newest_message_; }
 
-  void give_place() { close_faulty("it is silent, and another publisher wants its place"); }
+  void give_place() { close_faulty("it was silent, and another publisher needs its place"); }
 
   /// Ends the session; pending handlers find the socket closed.
   void close() {
@@ -88,7 +88,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       return;
     }
     if (error) {
-      source_->log.info("{}: {} left", source_->listener->description(), endpoint_text(peer_));
+      source_->log.info("{}: {} disconnected", source_->listener->description(), endpoint_text(peer_));
       close();
       return;
     }
@@ -123,7 +123,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       const std::ptrdiff_t frame_bytes = pose::next_frame(rest);
       if (frame_bytes < 0) {
         ++source_->counters.malformed;
-        close_faulty("a message length is none, or beyond 65507 bytes");
+        close_faulty("a message length is invalid, or above 65507 bytes");
         break;
       }
       if (frame_bytes == 0) {
@@ -176,7 +176,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       // A wait that had expired before the timer was set again also comes here; the expiry shows it.
       const bool due = !error && self->timer_.expiry() <= std::chrono::steady_clock::now();
       if (due && self->unfinished_ && self->socket_.is_open()) {
-        self->close_faulty("a message was left unfinished");
+        self->close_faulty("a message is incomplete");
       }
     });
   }

@@ -50,7 +50,7 @@ void TrajectoryPoseSource::Impl::tick() {
   ++counters.samples;
   sink(sample, now);
   if (pose::finished(trajectory, playback, now - started)) {
-    spdlog::info("the trajectory {} has ended; the vehicle rests at its last pose", input.file.string());
+    spdlog::info("pose trajectory {}: ended; the vehicle stays at its last pose", input.file.string());
     return;
   }
   timer.expires_after(period);
@@ -82,7 +82,7 @@ void TrajectoryPoseSource::stop() {
 }
 
 std::string TrajectoryPoseSource::description() const {
-  return "trajectory " + impl_->input.file.string();
+  return "pose trajectory " + impl_->input.file.string();
 }
 
 const PoseSourceCounters& TrajectoryPoseSource::counters() const {

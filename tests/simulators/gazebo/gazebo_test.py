@@ -122,10 +122,10 @@ class Gazebo(link_test.LinkTest):
         self.publish(("rov", 0, 0, -0.6, 0, 90, 0), kind=kind)
         self.check_range(4.0)
         self.end_daemon(self.daemon)
-        ends = link_test.key_values(self.daemon.wait_for_line(r"gazebo .* ends: ", link_test.PATIENCE_S))
+        ends = link_test.key_values(self.daemon.wait_for_line(r"pose gazebo .*: ended ", link_test.PATIENCE_S))
         self.assertGreater(int(ends["samples"]), 0)
         self.assertEqual((ends["malformed"], ends["bad_value"]), ("0", "0"), ends)
-        in_all = link_test.key_values(self.daemon.wait_for_line(r"gazebo .* in all: ", link_test.PATIENCE_S))
+        in_all = link_test.key_values(self.daemon.wait_for_line(r"pose gazebo .*: in total ", link_test.PATIENCE_S))
         self.assertEqual(in_all["poses"], ends["samples"])
 
     def test_range_follows_the_pose(self):

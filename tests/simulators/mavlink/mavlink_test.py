@@ -53,7 +53,7 @@ class Mavlink(walls.WallTest):
         self.check_ranges({AHEAD: 4.0})
         vehicle.kill()
         self.end_daemon(self.daemon)
-        ends = link_test.key_values(self.daemon.wait_for_line(r"mavlink udp .* ends: ", link_test.PATIENCE_S))
+        ends = link_test.key_values(self.daemon.wait_for_line(r"pose mavlink udp .*: ended ", link_test.PATIENCE_S))
         self.assertGreater(int(ends["samples"]), 0)
         for never in ("malformed", "bad_value", "bad_checksums", "stray_bytes", "wrong_system", "unknown_frame"):
             self.assertEqual(ends[never], "0", ends)

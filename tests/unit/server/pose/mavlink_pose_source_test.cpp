@@ -82,7 +82,7 @@ TEST_F(MavlinkPoseSourceTest, ListensOnlyToWhomItIsAllowed) {
 TEST_F(MavlinkPoseSourceTest, NamesItselfAndWhatTheOsRefuses) {
   const auto first = started();
   EXPECT_EQ(first->description(),
-            "mavlink udp " + endpoint_text(first->local_endpoint()) + " system 1 component 1");
+            "pose mavlink udp " + endpoint_text(first->local_endpoint()) + " system 1 component 1");
   MavlinkPoseInput input;
   input.bind = first->local_endpoint();
   MavlinkPoseSource second{io_, input, clock_, sink_};
@@ -90,7 +90,7 @@ TEST_F(MavlinkPoseSourceTest, NamesItselfAndWhatTheOsRefuses) {
     second.start();
     FAIL() << "two sockets on one port";
   } catch (const PoseSourceError& error) {
-    EXPECT_EQ(error.what(), "mavlink udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
+    EXPECT_EQ(error.what(), "pose mavlink udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
                                 ": Address already in use");
   }
 }

@@ -70,8 +70,8 @@ TEST_F(PoseInputsTest, ReportsWhileItIsHeardAndTellsOfSilenceOnce) {
   EXPECT_EQ(said("poses=0 "), 2U) << text_.str();
   EXPECT_EQ(delivered_.size(), 1U);
   inputs.stop();
-  EXPECT_EQ(said(" in all: poses=1 "), 1U) << text_.str();
-  EXPECT_EQ(said(" ends: samples=1 malformed=0 bad_value=0 refused=0\n"), 1U) << text_.str();
+  EXPECT_EQ(said(": in total poses=1 "), 1U) << text_.str();
+  EXPECT_EQ(said(": ended samples=1 malformed=0 bad_value=0 refused=0\n"), 1U) << text_.str();
 }
 
 TEST_F(PoseInputsTest, SaysNothingMoreOnceStopped) {

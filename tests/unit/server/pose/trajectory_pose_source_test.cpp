@@ -88,7 +88,7 @@ TEST_F(TrajectoryPoseSourceTest, EachConfiguredInputBecomesASource) {
   ASSERT_EQ(sources.size(), 3U);
   EXPECT_EQ(sources[0]->description(), "pose stream udp 127.0.0.1:0");
   EXPECT_EQ(sources[1]->description(), "pose stream tcp 127.0.0.1:0");
-  EXPECT_EQ(sources[2]->description(), "trajectory " + file().string());
+  EXPECT_EQ(sources[2]->description(), "pose trajectory " + file().string());
 }
 
 }  // namespace
