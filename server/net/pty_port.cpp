@@ -81,9 +81,10 @@ void make_link(const fs::path& link, const std::string& target) {
   if (error == std::errc::file_exists) {
     const std::string before = linked_slave(link);
     if (before.empty()) {
-      throw SocketError(fmt::format(
-          "cannot make the link {}: what stands there is no link to a pseudo terminal, and is not replaced",
-          link.string()));
+      throw SocketError(
+          fmt::format("cannot create the link {}: the path exists and is not a link to a pseudo terminal, so "
+                      "sonard does not replace it",
+                      link.string()));
     }
     spdlog::info("serial pty: {} now leads to {} (before: {})", link.string(), target, before);
     fs::remove(link, error);
@@ -91,7 +92,7 @@ void make_link(const fs::path& link, const std::string& target) {
   }
   if (error) {
     throw SocketError(
-        fmt::format("cannot make the link {} to {}: {}", link.string(), target, error.message()));
+        fmt::format("cannot create the link {} to {}: {}", link.string(), target, error.message()));
   }
 }
 

@@ -31,17 +31,16 @@ std::vector<Counter> SerialTransport::counts() const {
   using Shown = Counter::Shown;
   const SerialLinkCounters link = link_.counters();
   const SerialPortCounters& ports = link.ports;
-  std::vector<Counter> counts{
-      {"connections", ports.connections},
-      {"refused", ports.refused, Shown::warns,
-       "{} clients or datagrams were turned away: not in `allow`, too many, or too long"},
-      {"locked_out", link.locked_out, Shown::warns,
-       "{} reads were dropped: another client has the line (lock_to_first)"},
-      {"bytes_in", ports.bytes_in},
-      {"bytes_out", ports.bytes_out},
-      {"frames_dropped", ports.frames_dropped},
-      {"frames_lost", ports.frames_lost},
-      {"frames_unheard", link.frames_unheard}};
+  std::vector<Counter> counts{{"connections", ports.connections},
+                              {"refused", ports.refused, Shown::warns,
+                               "{} clients or datagrams were refused: not in `allow`, too many, or too long"},
+                              {"locked_out", link.locked_out, Shown::warns,
+                               "{} reads were dropped: another client has the line (lock_to_first)"},
+                              {"bytes_in", ports.bytes_in},
+                              {"bytes_out", ports.bytes_out},
+                              {"frames_dropped", ports.frames_dropped},
+                              {"frames_lost", ports.frames_lost},
+                              {"frames_unheard", link.frames_unheard}};
   for (const SerialPortReport& port : link.each) {
     counts.push_back({"", port.counters.frames_dropped, Shown::warns,
                       port.description + ": {} frames were dropped: a client reads too slowly"});

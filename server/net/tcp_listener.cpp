@@ -95,7 +95,7 @@ void TcpListener::on_accepted(const error_code& error, tcp::socket socket) {
     return;
   }
   // Probably out of file descriptors: retrying at once would only spin.
-  log_.error("{}: accept: {}", description(), error.message());
+  log_.error("{}: cannot accept a connection: {}", description(), error.message());
   retry_.expires_after(accept_retry);
   retry_.async_wait([self = shared_from_this()](const error_code& cancelled) {
     if (!cancelled && self->acceptor_.is_open()) {

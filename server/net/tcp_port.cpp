@@ -98,7 +98,7 @@ class TcpPort::Impl::Session : public std::enable_shared_from_this<Session> {
       return;
     }
     if (error) {
-      leave("left");
+      leave("disconnected");
       return;
     }
     newest_bytes_ = port_->clock.now();
@@ -137,7 +137,7 @@ bool TcpPort::Impl::make_room() {
   if (clock.now() - silent->newest_bytes() < most_silence) {
     return false;
   }
-  silent->leave("is closed: it is silent, and another client wants its place");
+  silent->leave("was closed, because it was silent and another client needs its place");
   return true;
 }
 

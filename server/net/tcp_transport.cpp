@@ -297,7 +297,7 @@ std::vector<Counter> TcpTransport::counts() const {
   using Shown = Counter::Shown;
   return {{"connections", impl_->connections},
           {"refused", impl_->listener->refused(), Shown::warns,
-           "{} clients were turned away: not in `allow`, or too many"},
+           "{} clients were refused: not in `allow`, or too many"},
           {"bytes_in", impl_->bytes_in},
           {"bytes_out", impl_->bytes_out},
           {"messages_dropped", impl_->dropped, Shown::warns,

@@ -103,8 +103,8 @@ void UdpTransport::Impl::take(const Datagram& datagram) {
 
 void UdpTransport::Impl::tell_unauthorised(Ipv4 address) {
   if (unauthorised.size() < most_unauthorised && unauthorised.insert(address).second) {
-    events.notice({Notice::Level::warning,
-                   fmt::format("drops what {} sends: the address is not in `allow`", address_text(address))});
+    events.notice({Notice::Level::warning, fmt::format("drops datagrams of {}: the address is not in `allow`",
+                                                       address_text(address))});
   }
 }
 

@@ -219,8 +219,9 @@ TEST_F(PtyLinkName, replaces_one_that_a_crash_left_behind) {
 
 TEST_F(PtyLinkName, spares_a_file) {
   std::ofstream(link_name_) << "precious";
-  EXPECT_THAT(complaint(), "cannot make the link " + link_name_.string() +
-                               ": what stands there is no link to a pseudo terminal, and is not replaced");
+  EXPECT_THAT(complaint(),
+              "cannot create the link " + link_name_.string() +
+                  ": the path exists and is not a link to a pseudo terminal, so sonard does not replace it");
   ASSERT_TRUE(fs::is_regular_file(fs::symlink_status(link_name_)));
   std::ostringstream content;
   content << std::ifstream(link_name_).rdbuf();
@@ -229,11 +230,11 @@ TEST_F(PtyLinkName, spares_a_file) {
 
 TEST_F(PtyLinkName, spares_a_folder_and_other_links) {
   fs::create_directory(link_name_);
-  EXPECT_THAT(complaint(), HasSubstr("is not replaced"));
+  EXPECT_THAT(complaint(), HasSubstr("does not replace it"));
   fs::remove(link_name_);
   for (const char* target : {"/dev/null", "/nowhere/at/all", "pts/3"}) {
     fs::create_symlink(target, link_name_);
-    EXPECT_THAT(complaint(), HasSubstr(link_name_.string() + ": what stands there")) << target;
+    EXPECT_THAT(complaint(), HasSubstr(link_name_.string() + ": the path exists")) << target;
     EXPECT_EQ(fs::read_symlink(link_name_), target);
     fs::remove(link_name_);
   }
@@ -242,7 +243,7 @@ TEST_F(PtyLinkName, spares_a_folder_and_other_links) {
 TEST_F(PtyLinkName, names_the_path_that_cannot_be_made) {
   link_name_ = folder_.path() / "no" / "such" / "folder";
   EXPECT_THAT(complaint(),
-              testing::AllOf(StartsWith("cannot make the link " + link_name_.string() + " to /dev/"),
+              testing::AllOf(StartsWith("cannot create the link " + link_name_.string() + " to /dev/"),
                              HasSubstr("No such file or directory")));
 }
 
