@@ -44,7 +44,7 @@ void McapFile::publish(const std::string& name) {
   log_.close();
   check();
   if (std::rename((folder_.path() / part_name).c_str(), (folder_.path() / name).c_str()) != 0) {
-    throw OutputError(folder_.path() / name, "cannot make it: " + std::generic_category().message(errno));
+    throw OutputError(folder_.path() / name, "cannot create it: " + std::generic_category().message(errno));
   }
 }
 

@@ -62,10 +62,10 @@ std::string difference(const std::string& name, const std::string& before, const
   constexpr std::string_view file = "_crc32";
   if (const std::size_t end = name.find(file); end != std::string::npos) {
     const std::string body = name.substr(end + file.size());  // ".NAME" of a body's trajectory
-    return name.substr(0, end) + body + " is another file, or was changed";
+    return name.substr(0, end) + body + " is a different file, or was changed";
   }
   const auto text = [](const std::string& value) { return value.empty() ? std::string("not set") : value; };
-  return fmt::format("{} was {} and is {} now", name, text(before), text(now));
+  return fmt::format("{} was {} and now is {}", name, text(before), text(now));
 }
 
 /// The first differences of two manifests.
@@ -103,7 +103,7 @@ PartFile::PartFile(const std::filesystem::path& folder) : folder_(folder) {
   std::string name = (folder / (std::string(part_prefix) + "XXXXXX")).string();
   file_ = mkstemp(name.data());
   if (file_ < 0) {
-    fail(folder, "make a file in it");
+    fail(folder, "create a file in it");
   }
   path_ = name;
   fchmod(file_, file_mode);
@@ -146,7 +146,7 @@ void PartFile::publish(const std::string& name) {
     fail(folder_, "write a file in it");
   }
   if (rename(path_.c_str(), (folder_ / name).c_str()) != 0) {
-    fail(folder_ / name, "make it");
+    fail(folder_ / name, "create it");
   }
   path_.clear();
 }
@@ -155,7 +155,7 @@ OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(fol
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) {
-    throw OutputError(folder_, "cannot make the folder: " + error.message());
+    throw OutputError(folder_, "cannot create the folder: " + error.message());
   }
 }
 
@@ -196,8 +196,8 @@ void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
     }
     if (!overwrite) {
       throw OutputError(folder_ / manifest_name,
-                        fmt::format("the folder holds another run: {} (expected the same settings and files, "
-                                    "another folder, or --overwrite)",
+                        fmt::format("the folder contains another run: {} (expected the same settings and "
+                                    "files, another folder, or --overwrite)",
                                     differences(before, manifest)));
     }
     remove_if(is_frame_or_log);
@@ -233,7 +233,7 @@ OutputFolder::Lock::Lock(const OutputFolder& folder) {
     close_file();
     file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, file_mode);
     if (file_ < 0) {
-      fail(folder.path(), "make a file in it");
+      fail(folder.path(), "create a file in it");
     }
     while (flock(file_, LOCK_EX) != 0) {
       if (errno != EINTR) {

@@ -31,18 +31,18 @@ std::string progress_text(const ProgressState& state) {
   const double seconds = std::chrono::duration<double>(state.elapsed).count();
   if (state.made > 0 && seconds > 0.0) {
     const double per_second = state.made / seconds;
-    text +=
-        fmt::format(", {:.1f} a second, {} left", per_second, time_text((state.frames - done) / per_second));
+    text += fmt::format(", {:.1f} per second, {} left", per_second,
+                        time_text((state.frames - done) / per_second));
   }
   return text;
 }
 
 std::string found_text(int frames, int found) {
-  return fmt::format("{} of {} frames are there; {} to render", found, frames, frames - found);
+  return fmt::format("{} of {} frames exist; {} to render", found, frames, frames - found);
 }
 
 std::string interrupted_text(const ProgressState& state) {
-  return fmt::format("interrupted: {} of {} frames are there; the same command goes on with the rest",
+  return fmt::format("interrupted: {} of {} frames exist; run the same command again to render the rest",
                      state.found + state.made, state.frames);
 }
 

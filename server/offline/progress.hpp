@@ -16,12 +16,12 @@ struct ProgressState {
   std::chrono::nanoseconds elapsed{0};
 };
 
-/// "120 of 300 frames, 40 %, 8.1 a second, 0:22 left"; the last two when the rate is known.
+/// "120 of 300 frames, 40 %, 8.1 per second, 0:22 left"; the last two when the rate is known.
 std::string progress_text(const ProgressState& state);
 
-/// First line of a run that continues another: "40 of 300 frames are there; 260 to render".
+/// First line of a run that continues another: "40 of 300 frames exist; 260 to render".
 std::string found_text(int frames, int found);
-/// Last line of an interrupted run: "interrupted: 120 of 300 frames are there; the same command goes on".
+/// Last line of an interrupted run: "interrupted: 120 of 300 frames exist; run the same command again ...".
 std::string interrupted_text(const ProgressState& state);
 
 /// Prints progress on standard error: a bar on a terminal, otherwise a line from time to time.

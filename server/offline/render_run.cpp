@@ -139,7 +139,7 @@ VehicleTrajectory with_rests(VehicleTrajectory trajectory, const OfflineOptions&
 void warn_of_rate(const FrameSource& frames, const std::string& head) {
   if (frames.period_s() < frames.natural_period_s() * (1.0 - 1e-9)) {
     spdlog::warn(
-        "--rate {:g} is beyond head '{}', which sends {:.4g} pings per second at most with these settings",
+        "--rate {:g} exceeds the limit of head '{}': at most {:.4g} pings per second with these settings",
         1.0 / frames.period_s(), head, 1.0 / frames.natural_period_s());
   }
 }
@@ -168,7 +168,7 @@ std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, s
 }
 
 OutputError not_of_this_frame(const std::filesystem::path& file) {
-  return {file, "does not hold the samples of this frame (delete it, and it is rendered again)"};
+  return {file, "does not contain the samples of this frame (delete it to render it again)"};
 }
 
 std::uint32_t crc_of(const std::filesystem::path& path) {
@@ -220,8 +220,9 @@ class RenderRun {
 // existing frames are not rendered again. If the GPU is lost, the run ends.
 render::RendererOptions tested(render::RendererOptions options) {
   options.report = [](const std::string& line) {
-    throw render::RendererError(line + " (all frames of a run come from one engine: run it again to go on " +
-                                "where it stopped, or into another folder with engine: cpu)");
+    throw render::RendererError(line +
+                                " (all frames of a run must come from one engine: run the command again to "
+                                "continue, or render into another folder with engine: cpu)");
   };
   render::run_self_test(options);
   return options;
@@ -442,7 +443,7 @@ bool RenderRun::all_whole() const {
 void RenderRun::finish() {
   const std::string out = printable(folder_.path().string());
   if (!all_whole()) {
-    fmt::print("{}: this share is there; of the {} frames others are missing\n", out, frames_->count());
+    fmt::print("{}: this share is complete; other frames of all {} are missing\n", out, frames_->count());
     return;
   }
   const OutputFolder::Lock lock(folder_);

@@ -234,7 +234,7 @@ class JobArray(Files):
         done = {job["ArrayTaskId"]: (job["JobState"], job["Restarts"]) for job in self.slurm.jobs(array)}
         self.assertEqual(done, {"1": ("COMPLETED", "0"), "2": ("COMPLETED", "1")})
         self.assertIn("ended by signal 9; queued again", self.log_of("killed", 2))
-        self.assertRegex(self.log_of("killed", 2), rf"\d+ of {FRAMES // 2} frames are there; \d+ to render")
+        self.assertRegex(self.log_of("killed", 2), rf"\d+ of {FRAMES // 2} frames exist; \d+ to render")
         self.expect_kept("killed", before)
         self.expect_whole("killed")
 
@@ -242,7 +242,7 @@ class JobArray(Files):
         array, log, before = self.start_and_kill("lost", ["slurm_script", "sonard"])
         self.assertEqual([job["JobState"] for job in self.slurm.end(log)], ["COMPLETED"])
         self.assertEqual(sorted(job["JobState"] for job in self.slurm.jobs(array)), ["COMPLETED", "FAILED"])
-        self.assertRegex(self.log_of("lost", "log"), rf"\d+ of {FRAMES} frames are there; \d+ to render")
+        self.assertRegex(self.log_of("lost", "log"), rf"\d+ of {FRAMES} frames exist; \d+ to render")
         self.expect_kept("lost", before)
         self.expect_whole("lost")
 
@@ -268,7 +268,7 @@ class JobArray(Files):
         done = {job["ArrayTaskId"]: (job["JobState"], job["Restarts"]) for job in self.slurm.jobs(array)}
         self.assertEqual(done, {"1": ("COMPLETED", "0"), "2": ("COMPLETED", "1")})
         self.assertIn("its time is up; queued again", self.log_of("late", 2))
-        self.assertRegex(self.log_of("late", 2), rf"interrupted: \d+ of {FRAMES // 2} frames are there")
+        self.assertRegex(self.log_of("late", 2), rf"interrupted: \d+ of {FRAMES // 2} frames exist")
         self.expect_whole("late")
 
     def test_a_mistake_is_not_tried_again(self):

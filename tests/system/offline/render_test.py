@@ -541,7 +541,7 @@ class Bytes(Case):
         said = [shard.communicate(timeout=PATIENCE_S)[0] for shard in shards]
         self.assertEqual([shard.returncode for shard in shards], [0, 0, 0])
         whole, part = (f"{self.path('three')}: {text}\n"
-                       for text in ("16 frames", "this share is there; of the 16 frames others are missing"))
+                       for text in ("16 frames", "this share is complete; other frames of all 16 are missing"))
         self.assertIn(whole, said)
         self.assertLessEqual(set(said), {whole, part})
         self.assertEqual(sums(self.path("three")), sums(self.path("one")))
@@ -595,15 +595,15 @@ class Bytes(Case):
         said = program.communicate(timeout=PATIENCE_S)[1]
         self.assertEqual(program.returncode, -signal.SIGINT)
         there = len([name for name in os.listdir(out) if name.endswith(".json") and name.startswith("ping")])
-        self.assertIn(f"{out}: interrupted: {there} of 31 frames are there; the same command goes on with the rest\n", said)
+        self.assertIn(f"{out}: interrupted: {there} of 31 frames exist; run the same command again to render the rest\n", said)
         done = render(*arguments)
-        self.assertIn(f"{out}: {there} of 31 frames are there; {31 - there} to render\n", done.stderr)
+        self.assertIn(f"{out}: {there} of 31 frames exist; {31 - there} to render\n", done.stderr)
         self.assertEqual(done.stdout, f"{out}: 31 frames\n")
 
     def test_warns_of_a_rate_beyond_the_head(self):
         arguments = [self.config(), "--trajectory", self.way(0.02), "--compression", "4", "--picture-every", "0"]
         fast = render(*arguments, "--out", self.path("fast"), "--rate", "200")
-        self.assertRegex(fast.stderr, r"--rate 200 is beyond head 'bow', which sends [0-9.]+ pings per second at most")
+        self.assertRegex(fast.stderr, r"--rate 200 exceeds the limit of head 'bow': at most [0-9.]+ pings per second")
         usual = render(*arguments, "--out", self.path("usual"), "--rate", "4")
         self.assertNotIn("beyond", usual.stderr)
 
@@ -711,13 +711,13 @@ class Complaints(Case):
                     out, "--shard", "4/3")
         self.assertEqual(render(config, "--out", out, check=False).returncode, 64)
         self.assertFalse(os.path.exists(out))
-        self.expect(5, "/proc/sonard: cannot make the folder: No such file or directory", config, "--trajectory", way, "--out",
+        self.expect(5, "/proc/sonard: cannot create the folder: No such file or directory", config, "--trajectory", way, "--out",
                     "/proc/sonard")
         render(config, "--trajectory", way, "--out", out, "--rate", "1", "--compression", "4")
         done = render(config, "--trajectory", way, "--out", out, "--rate", "1", check=False)
         self.assertEqual(done.returncode, 5)
         self.assertRegex(done.stderr.strip().splitlines()[-1],
-                         f"^{re.escape(out)}/run.json: the folder holds another run: settings.compression was 4 and is 0 now"
+                         f"^{re.escape(out)}/run.json: the folder contains another run: settings.compression was 4 and now is 0"
                          ".* \\(expected the same settings and files, another folder, or --overwrite\\)$")
 
 

@@ -108,11 +108,11 @@ TEST_F(OutputFolderTest, AnotherRunIsToldByWhatDiffers) {
               HasSubstr("another run: settings.range_m was 30.0 and is 50.0 now (expected"));
   EXPECT_THAT(
       complaint(R"({"world_crc32": "1", "truth": false})", R"({"world_crc32": "2", "truth": true})"),
-      HasSubstr("another run: truth was false and is true now; world is another file, or was changed ("));
+      HasSubstr("another run: truth was false and now is true; world is a different file, or was changed ("));
   EXPECT_THAT(complaint(R"({"head": "bow"})", R"({"head": "bow", "seed": 7})"),
               HasSubstr("another run: seed was not set and is 7 now ("));
   EXPECT_THAT(complaint(R"({"bodies_crc32": {"crab": "1"}})", R"({"bodies_crc32": {"crab": "2"}})"),
-              HasSubstr("another run: bodies.crab is another file, or was changed ("));
+              HasSubstr("another run: bodies.crab is a different file, or was changed ("));
   EXPECT_THAT(complaint(R"({"a": 1, "b": 1, "c": 1, "d": 1, "e": 1, "f": 1, "g": 1})", "{}"),
               HasSubstr("e was 1 and is not set now; and 2 more ("));
   EXPECT_THAT(complaint("cut", "{}"), HasSubstr("another run: its run.json cannot be read ("));
@@ -179,7 +179,7 @@ TEST(OutputFolder, SaysWhatItCannotMakeOrWrite) {
     OutputFolder("/proc/sonard");
     FAIL() << "made";
   } catch (const OutputError& error) {
-    EXPECT_THAT(error.what(), StartsWith("/proc/sonard: cannot make the folder: "));
+    EXPECT_THAT(error.what(), StartsWith("/proc/sonard: cannot create the folder: "));
   }
   EXPECT_THROW(OutputFolder("/proc").write("x", "y"), OutputError);
 }
