@@ -63,7 +63,8 @@ std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, con
     const LoggedPing& image = head.pings[ping];
     const picture::FanShape shape = shape_of(head, image.settings);
     if (!drawable(shape, image.settings)) {
-      throw file.error(fmt::format("ping {} of sonar {} has beams that make no fan", ping, head.device_id));
+      throw file.error(
+          fmt::format("ping {} of sonar {} has beams that do not form a fan", ping, head.device_id));
     }
     if (!fan || fan->geometry().shape() != shape) {
       fan.emplace(shape, thumbnail_style);
@@ -113,7 +114,7 @@ std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw LogError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    throw LogError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   }
   std::uint64_t written = 0;
   for (const LoggedHead& head : recording.heads()) {

@@ -100,11 +100,11 @@ std::vector<std::string> GlfRecording::problems() const {
              [](const Damage&) { return std::string("the images and statuses in them are lost"); });
   add_damage(problems, damaged_images_, [](const Damage&) { return std::string("1 ping is lost"); });
   if (index.tail_size > 0) {
-    problems.push_back(
-        fmt::format("cut or damaged: of {} bytes after the last whole record no more can be read ({})",
-                    index.tail_size, index.tail_error ? to_string(*index.tail_error) : "no record"));
+    problems.push_back(fmt::format("cut or damaged: {} bytes after the last whole record cannot be read ({})",
+                                   index.tail_size,
+                                   index.tail_error ? to_string(*index.tail_error) : "no record"));
   } else if (!index.closed && !archive_error_) {
-    problems.emplace_back("not closed: still being written, or its writer went away");
+    problems.emplace_back("not closed: still being written, or the writing program ended early");
   }
   if (bad_images_ > 0) {
     problems.push_back(fmt::format("{} images have impossible values and are left out", bad_images_));

@@ -47,7 +47,7 @@ std::string_view name_of(LogKind kind) {
 
 LogFile::LogFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
   if (file_.error() == std::errc::invalid_argument) {
-    throw error("is no file (expected a log)");
+    throw error("is not a file (expected a log)");
   }
   if (file_.error()) {
     throw error(fmt::format("cannot be opened: {}", file_.error().message()));
@@ -79,7 +79,7 @@ LogKind LogFile::find_kind() const {
       return start.kind;
     }
   }
-  throw error(file_.bytes().empty() ? "is empty" : "is no log (expected a .glf, .dat, .mcap or .pcapng)");
+  throw error(file_.bytes().empty() ? "is empty" : "is not a log (expected a .glf, .dat, .mcap or .pcapng)");
 }
 
 }  // namespace sonard::server

@@ -176,7 +176,7 @@ std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) cons
 std::vector<std::string> McapRecording::problems() const {
   std::vector<std::string> problems;
   if (!reader_.finished()) {
-    problems.emplace_back("not closed: cut, still being written, or its writer went away");
+    problems.emplace_back("not closed: cut, still being written, or the writing program ended early");
   } else if (reader_.lacks_summary()) {
     problems.emplace_back("the index at its end is damaged: the whole log was searched for pings");
   }
@@ -184,7 +184,7 @@ std::vector<std::string> McapRecording::problems() const {
     problems.push_back(fmt::format("damaged: the last {} bytes cannot be read ({})", reader_.tail_size(),
                                    to_string(*error)));
   } else if (reader_.tail_size() > 0) {
-    problems.push_back(fmt::format("the last {} bytes are no whole record", reader_.tail_size()));
+    problems.push_back(fmt::format("the last {} bytes are an incomplete record", reader_.tail_size()));
   }
   add_damage(problems, damaged_, [&](const mcap::DamagedChunk& part) { return lost_pings(part); });
   std::uint64_t unknown = 0;

@@ -40,7 +40,7 @@ std::unique_ptr<Recording> open_recording(const LogFile& file) {
     case LogKind::pcapng:
       break;
   }
-  throw file.error("has packets, no images (expected a .glf, .dat or .mcap)");
+  throw file.error("contains packets, but no images (expected a .glf, .dat or .mcap)");
 }
 
 }  // namespace sonard::server

@@ -121,11 +121,11 @@ void LogPlayback::log_totals() const {
       text += fmt::format(" {}={}", kind, pings);
     }
     if (!text.empty()) {
-      spdlog::info("head={} pings that differ from what was asked for:{}", head.played.name, text);
+      spdlog::info("head={} pings that differ from the request:{}", head.played.name, text);
     }
   }
   if (schedule_.skipped() > 0) {
-    spdlog::info("{} pings of the recording were skipped: no client wanted them in time",
+    spdlog::info("replay: {} pings of the recording were skipped, because no client requested them in time",
                  schedule_.skipped());
   }
 }

@@ -91,8 +91,7 @@ const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
     std::vector<std::string_view> types;
     std::ranges::transform(kinds, std::back_inserter(types), &DeviceKind::type);
     throw file.error(
-        fmt::format("head {} was a '{}', which this program does not know (expected {}, or --config "
-                    "with a head that is to play it)",
+        fmt::format("head {} has the unknown type '{}' (expected {}, or --config with a head to play it)",
                     logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
                     logged.device, fmt::join(types, " or ")));
   }
@@ -106,7 +105,7 @@ const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
       reason = reason.value_or(*hindrance);
     }
   }
-  throw file.error(reason.value_or(fmt::format("head {} is of no kind that is known", logged.device_id)));
+  throw file.error(reason.value_or(fmt::format("head {} is of an unknown type", logged.device_id)));
 }
 
 }  // namespace
@@ -133,7 +132,7 @@ ReplayConfig replay_config(DaemonConfig config, const std::vector<LoggedHead>& l
     cast(head, find_logged(logged, head, number == 1), file, replay);
   }
   if (replay.daemon.heads.empty()) {
-    throw file.error("has no pings of a head that is to be served");
+    throw file.error("has no pings for the heads to serve");
   }
   check_span(replay.played, file);
   replay.daemon.poses = {};

@@ -540,7 +540,7 @@ class Replays(RecordingTest):
         self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
         self.assertEqual(daemon.output().count("head=stern differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
                          1, daemon.tail())
-        self.assertIn(f"pings that differ from what was asked for: gain={count}", daemon.output())
+        self.assertIn(f"pings that differ from the request: gain={count}", daemon.output())
 
 
 class Faults(RecordingTest):

@@ -176,7 +176,7 @@ TEST_F(LoggedDifferences, each_kind_is_said_once_and_counted) {
   EXPECT_EQ(begin({range, {"16_bit", "16 bits asked for, 8 bits sent"}}),
             "warning head=bow differs from the recording: 16 bits asked for, 8 bits sent\n");
   playback.log_totals();
-  EXPECT_EQ(taken(), "info head=bow pings that differ from what was asked for: range=3 16_bit=1\n");
+  EXPECT_EQ(taken(), "info head=bow pings that differ from the request: range=3 16_bit=1\n");
 }
 
 TEST_F(LoggedDifferences, of_none_nothing_is_said) {

@@ -150,7 +150,7 @@ TEST_F(ReplayConfigTest, one_head_plays_one_recording_whatever_the_ids) {
 
 TEST_F(ReplayConfigTest, no_head_at_all_is_an_error) {
   config.heads = {gemini("a", 600), gemini("b", 601)};
-  EXPECT_EQ(configured_complaint({fan(513)}), "has no pings of a head that is to be served");
+  EXPECT_EQ(configured_complaint({fan(513)}), "has no pings for the heads to serve");
 }
 
 TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
@@ -265,7 +265,7 @@ TEST_F(ReplayConfigTest, without_a_configuration_microns_are_behind_the_geminis_
 TEST_F(ReplayConfigTest, lines_that_do_not_say_how_they_travelled_are_an_error) {
   config.heads = {micron("a", 2)};
   std::vector<LoggedHead> logged{scan("a", 2)};
-  const std::string why = "scan lines of node 2 do not say how they travelled (expected wire_line)";
+  const std::string why = "scan lines of node 2 lack their wire format (expected wire_line)";
   logged[0].pings.push_back(logged[0].pings[0]);
   logged[0].pings[1].wire.clear();
   EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
@@ -280,7 +280,8 @@ TEST_F(ReplayConfigTest, lines_that_are_too_long_are_an_error) {
   logged[0].pings[0].settings.bins = 1500;
   EXPECT_EQ(configured_complaint(logged), "it is played");
   logged[0].pings[0].settings.bins = 1501;
-  const std::string why = "scan lines of node 2 have more than the 1500 bins that a Micron sends";
+  const std::string why =
+      "scan lines of node 2 have too many bins (expected at most 1500, as a Micron sends)";
   EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
   EXPECT_EQ(complaint(logged), why);
 }
@@ -312,8 +313,7 @@ TEST_F(ReplayConfigTest, heads_of_a_device_that_nobody_knows_are_an_error) {
   for (LoggedHead head : {fan(513, "bow"), wide, scan("bow", 7)}) {
     head.device = "other_900";
     EXPECT_THAT(complaint({head}),
-                StartsWith("head 'bow' was a 'other_900', which this program does not know "
-                           "(expected gemini_720i or micron"));
+                StartsWith("head 'bow' has the unknown type 'other_900' (expected gemini_720i or micron"));
   }
 }
 
