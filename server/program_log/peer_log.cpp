@@ -27,7 +27,7 @@ void PeerLog::say(spdlog::level::level_enum level, const std::string& text) {
   }
   tokens_ = std::max(0, tokens_ - 1);
   if (const std::uint64_t missing = std::exchange(left_out_, 0); missing > 0) {
-    spdlog::log(level, "{} ({} lines before it were left out: too many in a short time)", text, missing);
+    spdlog::log(level, "{} ({} earlier lines were dropped: too many in a short time)", text, missing);
   } else {
     spdlog::log(level, "{}", text);
   }

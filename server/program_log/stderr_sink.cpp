@@ -63,8 +63,7 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
 
 /// Formatted like the lines around it.
 std::string StderrSink::dropped_text(const spdlog::details::log_msg& next) {
-  const std::string text =
-      fmt::format("{} lines of this log were dropped: nobody read them in time", dropped_);
+  const std::string text = fmt::format("log: {} lines were dropped, because stderr was blocked", dropped_);
   spdlog::memory_buf_t line;
   formatter_->format({next.time, {}, next.logger_name, spdlog::level::warn, text}, line);
   return {line.data(), line.size()};

@@ -77,7 +77,7 @@ TEST_F(PeerLogTest, the_first_line_of_each_reason_comes_through) {
   log.warn("the checksum of datagram {} is wrong", 101);
   ASSERT_EQ(lines->texts.size(), 12U);
   EXPECT_THAT(lines->texts[10],
-              testing::StartsWith("the checksum of datagram 100 is wrong (90 lines before it"));
+              testing::StartsWith("the checksum of datagram 100 is wrong (90 earlier lines"));
   EXPECT_EQ(lines->texts[11], "client 10.0.0.7:4000 is not in the allow list");
 }
 

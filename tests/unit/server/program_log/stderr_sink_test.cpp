@@ -79,8 +79,8 @@ TEST_P(StderrSinkTest, a_reader_that_stops_blocks_nobody_and_is_told_what_it_mis
   const auto whole = static_cast<int>(first.size() / 73);
   EXPECT_EQ(first.size() % 73, 0U) << "whole lines";
   logger.info("last");
-  EXPECT_EQ(ends.take(), std::to_string(lines - whole) +
-                             " lines of this log were dropped: nobody read them in time\nlast\n");
+  EXPECT_EQ(ends.take(), "log: " + std::to_string(lines - whole) +
+                             " lines were dropped, because stderr was blocked\nlast\n");
 }
 
 TEST_P(StderrSinkTest, the_descriptor_itself_stays_as_it_was) {
