@@ -75,7 +75,7 @@ bool GlfPacking::close_dat() {
   closed_ = glf::civil_time(config.close_time_s);
   dat_size_ = index.whole_size + glf::dat_terminator.size();
   if (dat_size_ > glf::max_dat_size) {
-    return give_up("it is longer than readers take");
+    return give_up("it is too long for readers of this format");
   }
   if (index.closed) {
     return true;

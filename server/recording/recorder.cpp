@@ -67,11 +67,12 @@ std::string obstacle(const fs::path& directory) {
   std::error_code error;
   const fs::space_info space = fs::space(directory, error);
   if (error) {
-    return fmt::format("{} cannot be used ({}; make the folder again)", directory.string(), error.message());
+    return fmt::format("{} cannot be used ({}; create the folder again)", directory.string(),
+                       error.message());
   }
   return space.available >= Recorder::least_room_bytes
              ? ""
-             : fmt::format("{} has no room for new logs (free at least {} MiB)", directory.string(),
+             : fmt::format("{} has no space for new logs (free at least {} MiB)", directory.string(),
                            Recorder::least_room_bytes >> 20);
 }
 
@@ -292,7 +293,7 @@ void Recorder::Impl::log_unwritten() const {
 void Recorder::Impl::log_totals() const {
   const RecorderCounters total = counters();
   spdlog::info(
-      "recording ends: images={} images_lost={} logs_written={} logs_failed={} dropped_images={} "
+      "recording: ended images={} images_lost={} logs_written={} logs_failed={} dropped_images={} "
       "dropped_wire_pieces={} dropped_others={}",
       total.images, total.images_lost, total.logs_written, total.logs_failed, total.dropped.images,
       total.dropped.pieces, total.dropped.others);

@@ -66,11 +66,10 @@ void keep_as_damaged(const fs::path& path, std::uint64_t whole_size) {
 
 void tell_recovered(const fs::path& path, std::uint64_t lost_size) {
   if (lost_size == 0) {
-    spdlog::info("recording: recovered {}: all of it is kept", path.string());
+    spdlog::info("recording: recovered {}: nothing is lost", path.string());
   } else {
     spdlog::info(
-        "recording: recovered {}: all whole records are kept; {} bytes of one that was being written are "
-        "gone",
+        "recording: recovered {}: all whole records are kept; {} bytes of an incomplete record are lost",
         path.string(), lost_size);
   }
 }
@@ -171,7 +170,7 @@ bool recover_dat(const fs::path& path) {
   if (is_packed(path, index)) {
     std::error_code ignored;
     fs::remove(path, ignored);
-    spdlog::info("recording: removed {}, which was packed", path.string());
+    spdlog::info("recording: removed {}, which was already packed", path.string());
     return false;
   }
   const bool cut = !index.tail_error || index.tail_error->reason == WireErrorReason::truncated;

@@ -34,6 +34,6 @@ options=("$@")
 for ((round = 1; round <= rounds; ++round)); do
   off=$(rate "$without")
   on=$(rate "$config")
-  dropped=$(sed -n 's/.*recording ends: .*\(dropped_images=[0-9]*\).*/\1/p' "$log")
+  dropped=$(sed -n 's/.*recording: ended .*\(dropped_images=[0-9]*\).*/\1/p' "$log")
   echo "round $round: off ${off} Hz, on ${on} Hz, $(awk "BEGIN { printf \"%+.1f\", 100 * ($on - $off) / $off }") %, $dropped"
 done

@@ -572,7 +572,7 @@ class Faults(RecordingTest):
         self.check_folder()
         rendered, images, messages = self.rendered(), self.glf_images(), self.mcap_messages()
         head = key_values(next(line for line in daemon.lines if "head=bow ends:" in line))
-        recorder = key_values(next(line for line in daemon.lines if "recording ends:" in line))
+        recorder = key_values(next(line for line in daemon.lines if "recording: ended" in line))
 
         # The daemon counts every ping that began; each client left at most one unfinished.
         count = len(messages["image"])
@@ -702,14 +702,14 @@ class FullDisk(RecordingTest):
         without_room = self.pings_per_s(viewer, 2)
         print(f"pings per second: {with_room:.1f} with room, {without_room:.1f} without")
         self.assertGreater(without_room, 0.9 * with_room)
-        daemon.wait_for_line("has no room for new logs", 60)
-        self.assertEqual(daemon.output().count("has no room for new logs"), 1, "it is said once")
+        daemon.wait_for_line("has no space for new logs", 60)
+        self.assertEqual(daemon.output().count("has no space for new logs"), 1, "it is said once")
         viewer.signal(signal.SIGINT)
         viewer.wait(10)
         self.assertEqual([ping for ping in self.received(viewer) if ping["lines_lost"] != "0"], [])
         code, _ = daemon.terminate(30)
         self.assertEqual(code, 0, daemon.tail())
-        ends = key_values(daemon.wait_for_line("recording ends:", 5))
+        ends = key_values(daemon.wait_for_line("recording: ended", 5))
         self.assertGreater(int(ends["logs_failed"]), 0)
         self.assertGreater(int(ends["images_lost"]), 0)
 

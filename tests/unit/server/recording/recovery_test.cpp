@@ -90,9 +90,9 @@ TEST_F(RecoveryTest, EndsAnMcapFile) {
 // Recovery writes the open chunk again with its true length, so no message is lost.
 TEST_F(RecoveryTest, TellsThatNothingIsLostOfALogWithoutEnd) {
   killed<McapLog>();
-  EXPECT_THAT(told(), HasSubstr("log_stem.mcap: all of it is kept"));
+  EXPECT_THAT(told(), HasSubstr("log_stem.mcap: nothing is lost"));
   killed<GlfLog>(0);
-  EXPECT_THAT(told(), HasSubstr(".dat: all of it is kept"));
+  EXPECT_THAT(told(), HasSubstr(".dat: nothing is lost"));
 }
 
 TEST_F(RecoveryTest, TellsTheSizeOfTheRecordThatWasBeingWritten) {
@@ -101,8 +101,7 @@ TEST_F(RecoveryTest, TellsTheSizeOfTheRecordThatWasBeingWritten) {
   test::write_file(path, whole);
   EXPECT_THAT(
       told(),
-      HasSubstr(
-          "log_stem.mcap: all whole records are kept; 11 bytes of one that was being written are gone"));
+      HasSubstr("log_stem.mcap: all whole records are kept; 11 bytes of an incomplete record are lost"));
 }
 
 TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {

@@ -97,10 +97,10 @@ TEST_F(SlowDisk, AFolderThatWasRemovedIsNamed) {
   std::filesystem::remove_all(config.directory);
   recorder.push(test::ping_event(0, 200, clock.now()));
   recorder.stop();
-  EXPECT_NE(log.str().find("cannot be used (No such file or directory; make the folder again)"),
+  EXPECT_NE(log.str().find("cannot be used (No such file or directory; create the folder again)"),
             std::string::npos)
       << log.str();
-  EXPECT_EQ(log.str().find("no room"), std::string::npos) << log.str();
+  EXPECT_EQ(log.str().find("no space"), std::string::npos) << log.str();
 }
 
 }  // namespace
