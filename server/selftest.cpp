@@ -87,9 +87,9 @@ void print_devices(const Report& report) {
     fmt::print("         {}\n", printable(line));
   }
   if (report.taken) {
-    fmt::print("         {} is taken: {}\n", report.taken->number, printable(report.taken->reason));
+    fmt::print("         {} is used: {}\n", report.taken->number, printable(report.taken->reason));
   } else {
-    fmt::print("         none is taken: {}\n", printable(report.device_problem));
+    fmt::print("         no device is used: {}\n", printable(report.device_problem));
   }
   const bool hardware = std::ranges::any_of(report.devices, [](const render::GlDevice& device) {
     return !device.software && !device.description.empty();
@@ -105,7 +105,7 @@ void print_text(const Report& report, bool with_devices) {
   }
   for (const Report::Engine& engine : report.engines) {
     if (engine.problem.empty()) {
-      fmt::print("{}      a wall is {:.3f} % RMS from its closed form: {}\n", name_of(engine.kind),
+      fmt::print("{}      a wall differs by {:.3f} % RMS from its closed form: {}\n", name_of(engine.kind),
                  100.0 * engine.result.error, printable(engine.result.engine));
     } else {
       fmt::print("{}      {}\n", name_of(engine.kind), printable(engine.problem));
@@ -117,7 +117,7 @@ void print_text(const Report& report, bool with_devices) {
         report.trial->software_gl.empty()
             ? "Timed before that wall, with 256 beams of 1000 range lines; `sonard run` measures in its "
               "own world"
-            : "`sonard run` takes it in the same way");
+            : "`sonard run` chooses in the same way");
   }
   fmt::print("{}\n", report.problem.empty() ? "PASS" : "FAIL");
 }

@@ -37,13 +37,15 @@ TEST(SelfTest, passes_on_every_engine_and_names_it) {
   const ProcessResult gpu = selftest("A=", "gpu");
   EXPECT_EQ(gpu.exit_code, 0) << gpu.err;
   EXPECT_THAT(gpu.out, ContainsRegex("OpenGL   devices of EGL:\n         0: "));
-  EXPECT_THAT(gpu.out, ContainsRegex("\n         [0-9]+ is taken: "));
-  EXPECT_THAT(gpu.out, ContainsRegex("\ngpu      a wall is [0-9.]+ % RMS from its closed form: gpu, "));
+  EXPECT_THAT(gpu.out, ContainsRegex("\n         [0-9]+ is used: "));
+  EXPECT_THAT(gpu.out,
+              ContainsRegex("\ngpu      a wall differs by [0-9.]+ % RMS from its closed form: gpu, "));
   EXPECT_THAT(gpu.out, HasSubstr("\nPASS\n"));
   const ProcessResult cpu = selftest("A=", "cpu");
   EXPECT_EQ(cpu.exit_code, 0) << cpu.err;
-  EXPECT_THAT(cpu.out,
-              ContainsRegex("^cpu      a wall is [0-9.]+ % RMS from its closed form: cpu, Embree [34]."));
+  EXPECT_THAT(
+      cpu.out,
+      ContainsRegex("^cpu      a wall differs by [0-9.]+ % RMS from its closed form: cpu, Embree [34]."));
   EXPECT_THAT(cpu.out, HasSubstr("\nPASS\n"));
 }
 
