@@ -153,7 +153,7 @@ void Head::Impl::start() {
   running = true;
   connected->transport().start(transport_events());
   for (const std::string& way : connected->transport().descriptions()) {
-    spdlog::info("head={} serves {}", config.name, way);
+    spdlog::info("head={}: serves {}", config.name, way);
   }
   connected->start([weak = weak_from_this()](Event event) {
     if (const auto self = weak.lock()) {
@@ -266,12 +266,12 @@ void Head::Impl::look_at_addresses(const std::vector<InterfaceAddress>& now) {
   const OwnAddresses::News news = own_addresses.look(own, now);
   for (const Ipv4 address : news.gone) {
     address_log.warn(
-        "head={} its address {} is gone from this machine: no client reaches the head there until it is back "
-        "(plug the cable in, or renew the lease)",
+        "head={}: its address {} is gone from this machine: no client reaches the head there until it is "
+        "back (plug the cable in, or renew the lease)",
         config.name, address_text(address));
   }
   for (const Ipv4 address : news.back) {
-    address_log.info("head={} its address {} is back", config.name, address_text(address));
+    address_log.info("head={}: its address {} is back", config.name, address_text(address));
   }
 }
 

@@ -84,11 +84,11 @@ void HeadDiagnosis::found(std::vector<Finding> findings) {
     const bool known =
         std::ranges::any_of(findings_, [&](const Finding& before) { return before.code == finding.code; });
     if (!known) {
-      spdlog::warn("head={} {}", config_.name, finding.text);
+      spdlog::warn("head={}: {}", config_.name, finding.text);
     }
   }
   if (findings.empty() && !findings_.empty()) {
-    spdlog::info("head={} problem resolved", config_.name);
+    spdlog::info("head={}: problem resolved", config_.name);
   }
   findings_ = std::move(findings);
 }

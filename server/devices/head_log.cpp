@@ -41,9 +41,9 @@ std::string growth_text(const std::vector<Counter>& before, const std::vector<Co
 
 void HeadLog::notice(const Notice& notice) {
   if (notice.level == Notice::Level::warning) {
-    notices_.warn("head={} {}", head_, notice.text);
+    notices_.warn("head={}: {}", head_, notice.text);
   } else {
-    notices_.info("head={} {}", head_, notice.text);
+    notices_.info("head={}: {}", head_, notice.text);
   }
 }
 
@@ -56,7 +56,7 @@ void HeadLog::settings(const PingJob& job) {
   for (const Setting& setting : settings_) {
     text += fmt::format(" {}={}", setting.name, setting.value);
   }
-  setting_changes_.info("head={} pings:{}", head_, text);
+  setting_changes_.info("head={}: pings{}", head_, text);
 }
 
 void HeadLog::ping(const PingJob& job, bool scanning, const render::Pose& T_world_sonar) {
@@ -65,7 +65,7 @@ void HeadLog::ping(const PingJob& job, bool scanning, const render::Pose& T_worl
   const glm::dvec3 axis = T_world_sonar.orientation * glm::dvec3(1, 0, 0);
   const std::string bearing = scanning ? fmt::format(" bearing={:.3f}deg", job.bearing_rad / degree) : "";
   spdlog::debug(
-      "head={} ping number={}{} transmit_us={} position_m=[{:.3f}, {:.3f}, {:.3f}] axis=[{:.4f}, {:.4f}, "
+      "head={}: ping number={}{} transmit_us={} position_m=[{:.3f}, {:.3f}, {:.3f}] axis=[{:.4f}, {:.4f}, "
       "{:.4f}]",
       head_, job.number, bearing, job.transmit_us, p.x, p.y, p.z, axis.x, axis.y, axis.z);
 }
@@ -73,14 +73,14 @@ void HeadLog::ping(const PingJob& job, bool scanning, const render::Pose& T_worl
 void HeadLog::rates(const HeadCounts& total, std::chrono::duration<double> period) {
   const HeadCounts before = std::exchange(reported_, total);
   if (const std::uint64_t sent = total.pings.sent - before.pings.sent; sent > 0) {
-    spdlog::info("head={} pings_per_s={:.1f} render_ms={:.2f}{}", head_,
+    spdlog::info("head={}: pings_per_s={:.1f} render_ms={:.2f}{}", head_,
                  static_cast<double>(sent) / period.count(),
                  mean_render_ms(before.rendering, total.rendering), growth_text(before.device, total.device));
   }
   log_skipped(head_, total.rendering.skipped - before.rendering.skipped);
   const std::uint64_t missed = total.rendering.pings_without_pose - before.rendering.pings_without_pose;
   if (missed > 0) {
-    spdlog::warn("head={} {} pings not made: no pose, or the last one is too old", head_, missed);
+    spdlog::warn("head={}: {} pings not made: no pose, or the last one is too old", head_, missed);
   }
   warn_of(before.device, total.device);
   warn_of(before.transport, total.transport);
@@ -90,15 +90,15 @@ void HeadLog::warn_of(const std::vector<Counter>& before, const std::vector<Coun
   for (std::size_t i = 0; i < now.size(); ++i) {
     const std::uint64_t growth = now[i].value - value_before(before, i);
     if (now[i].shown == Counter::Shown::warns && growth > 0) {
-      spdlog::warn("head={} {}", head_, fmt::format(fmt::runtime(now[i].warning), growth));
+      spdlog::warn("head={}: {}", head_, fmt::format(fmt::runtime(now[i].warning), growth));
     }
   }
 }
 
 void HeadLog::totals(const HeadCounts& total) const {
-  spdlog::info("head={} ends:{} render_ms={:.2f} pings_without_pose={}", head_, counters_text(total.device),
+  spdlog::info("head={}: ended{} render_ms={:.2f} pings_without_pose={}", head_, counters_text(total.device),
                mean_render_ms({}, total.rendering), total.rendering.pings_without_pose);
-  spdlog::info("head={} transport:{}", head_, counters_text(total.transport));
+  spdlog::info("head={}: transport{}", head_, counters_text(total.transport));
   log_skipped(head_, total.rendering.skipped);
 }
 

@@ -128,7 +128,7 @@ bool HeadRendering::take(const RenderResult& result) {
   submitted_ = false;
   if (const auto news = load_.answered(services_.clock.now())) {
     spdlog::log(news->level == Notice::Level::warning ? spdlog::level::warn : spdlog::level::info,
-                "head={} {}", config_.name, news->text);
+                "head={}: {}", config_.name, news->text);
   }
   if (result.error.empty()) {
     ++counters_.pings_rendered;
@@ -142,7 +142,7 @@ bool HeadRendering::take(const RenderResult& result) {
   }
   if (result.error != last_error_) {
     last_error_ = result.error;
-    errors_.error("head={} cannot render: {}", config_.name, result.error);
+    errors_.error("head={}: cannot render: {}", config_.name, result.error);
   }
   return false;
 }
@@ -165,7 +165,7 @@ void log_skipped(const std::string& head, const render::SkipCounts& skipped) {
     }
   }
   if (!text.empty()) {
-    spdlog::debug("head={} skipped:{}", head, text);
+    spdlog::debug("head={}: skipped{}", head, text);
   }
 }
 

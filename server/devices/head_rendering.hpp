@@ -108,7 +108,7 @@ class HeadRendering {
   PeerLog errors_;
 };
 
-/// Logs "head=NAME skipped: rule=count ..." at level debug, with every rule that has skipped something.
+/// Logs "head=NAME: skipped rule=count ..." at level debug, with every rule that has skipped something.
 void log_skipped(const std::string& head, const render::SkipCounts& skipped);
 /// Mean rendering time of a ping between two states of the counters, in milliseconds; 0 if there was no ping.
 double mean_render_ms(const RenderCounters& before, const RenderCounters& now);

@@ -45,7 +45,7 @@ void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
          << std::flush;
   if ((!file || !index_) && !failed_) {
     failed_ = true;
-    spdlog::error("head={} cannot write {}; the dump lacks this ping and may lack later ones", head_,
+    spdlog::error("head={}: cannot write {}; the dump lacks this ping and may lack later ones", head_,
                   path.string());
   }
 }

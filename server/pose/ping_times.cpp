@@ -16,7 +16,7 @@ using std::chrono::nanoseconds;
 void note(std::uint64_t& count, std::uint64_t more, const char* reason) {
   const std::uint64_t before = std::exchange(count, count + more);
   if (std::bit_width(before) != std::bit_width(count)) {
-    spdlog::warn("pings skipped: {} ({} so far)", reason, count);
+    spdlog::warn("pose stream: pings skipped: {} ({} so far)", reason, count);
   }
 }
 

@@ -95,7 +95,7 @@ void LogPlayback::count(Head& head, const Difference& difference) {
     ++known->second;
   } else {
     head.differences.emplace_back(difference.kind, 1);
-    spdlog::warn("head={} differs from the recording: {}", head.played.name, difference.text);
+    spdlog::warn("head={}: differs from the recording: {}", head.played.name, difference.text);
   }
 }
 
@@ -121,7 +121,7 @@ void LogPlayback::log_totals() const {
       text += fmt::format(" {}={}", kind, pings);
     }
     if (!text.empty()) {
-      spdlog::info("head={} pings that differ from the request:{}", head.played.name, text);
+      spdlog::info("head={}: pings that differ from the request:{}", head.played.name, text);
     }
   }
   if (schedule_.skipped() > 0) {

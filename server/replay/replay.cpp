@@ -20,7 +20,7 @@ int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config,
       config ? std::move(*config) : loopback_config(recording->heads(), file), recording->heads(), file);
   for (const PlayedHead& head : replayed.played) {
     const std::vector<std::int64_t> times_ns = head.times_ns();
-    spdlog::info("head={} replays sonar {}: {} pings of {:.1f} s", head.name, head.logged->device_id,
+    spdlog::info("head={}: replays sonar {}: {} pings of {:.1f} s", head.name, head.logged->device_id,
                  times_ns.size(), 1e-9 * static_cast<double>(times_ns.back() - times_ns.front()));
   }
   render::World world;

@@ -63,19 +63,19 @@ void check_span(const std::vector<PlayedHead>& played, const LogFile& file) {
 /// Adds a head that plays `logged` to the served heads; only logs a warning if `logged` is null.
 void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file, ReplayConfig& replay) {
   if (logged == nullptr) {
-    spdlog::warn("head={} is not served: {} has no pings of it", head.name, file.path().string());
+    spdlog::warn("head={}: is not served: {} has no pings of it", head.name, file.path().string());
     return;
   }
   const DeviceKind& kind = kind_of(head);
   if (logged->device_id != kind.device_id(head)) {
-    spdlog::warn("head={} replays sonar {} under its own ID {}", head.name, logged->device_id,
+    spdlog::warn("head={}: replays sonar {} under its own ID {}", head.name, logged->device_id,
                  kind.device_id(head));
   }
   if (const std::optional<std::string> reason = kind.why_not_played(*logged)) {
     throw file.error(fmt::format("head '{}' cannot play it: {}", head.name, *reason));
   }
   for (const std::string& problem : kind.played_wrongly(*logged)) {
-    spdlog::warn("head={} {}", head.name, problem);
+    spdlog::warn("head={}: {}", head.name, problem);
   }
   replay.played.push_back({head.name, logged});
   replay.daemon.heads.push_back(kind.held_to_recording(head));

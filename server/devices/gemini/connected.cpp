@@ -59,7 +59,7 @@ class ConnectedGemini final : public ConnectedDevice {
       return;
     }
     const gemini::DeviceAddresses before = std::exchange(addresses_, current);
-    log_.info("head={} now answers on {} mask {}", name_, address_text(current.alternate),
+    log_.info("head={}: now answers on {} mask {}", name_, address_text(current.alternate),
               address_text(current.netmask));
     if (current.alternate != before.alternate && transport_.local_endpoint().address == before.alternate) {
       move_from(before.alternate);
@@ -72,7 +72,7 @@ class ConnectedGemini final : public ConnectedDevice {
     const InterfaceAddress current{"", addresses_.alternate, addresses_.netmask};
     const auto found = followed(config_.interface, config_.netmask_interface, current, now);
     if (found && addresses_.alternate == followed_) {
-      log_.info("head={} follows {}", name_, followed_text(current, *found));
+      log_.info("head={}: follows {}", name_, followed_text(current, *found));
       followed_ = found->address;
       device_.move_to(found->address, found->netmask);
       after_step();
@@ -97,7 +97,7 @@ class ConnectedGemini final : public ConnectedDevice {
     try {
       transport_.rebind({addresses_.alternate, config_.command_port});
     } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is free
-      log_.error("head={} cannot change its address, stays on {}: {}", name_, address_text(before),
+      log_.error("head={}: cannot change its address, stays on {}: {}", name_, address_text(before),
                  error.what());
     }
   }
@@ -117,13 +117,13 @@ class ConnectedGemini final : public ConnectedDevice {
     transport_.set_own_address(addresses_.alternate);
     if (!owner) {
       log_.warn(
-          "head={} reports the address {}, which this machine does not have, so commands to it are lost (set "
-          "network.alternate_address to an address of this machine)",
+          "head={}: reports the address {}, which this machine does not have, so commands to it are lost "
+          "(set network.alternate_address to an address of this machine)",
           name_, address_text(addresses_.alternate));
     } else if (owner->netmask != addresses_.netmask) {
       log_.warn(
-          "head={} reports the netmask {}, but {} has {}: some clients send nothing if the masks differ (set "
-          "network.netmask to the mask of the interface)",
+          "head={}: reports the netmask {}, but {} has {}: some clients send nothing if the masks differ "
+          "(set network.netmask to the mask of the interface)",
           name_, address_text(addresses_.netmask), owner->interface, address_text(owner->netmask));
     }
   }

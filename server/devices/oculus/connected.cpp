@@ -45,11 +45,11 @@ class ConnectedOculus final : public ConnectedDevice {
         status_->rebind({found->address, 0});
       }
     } catch (const std::runtime_error& error) {  // a SocketError, or no descriptor is free
-      log_.error("head={} cannot follow {} to {}: {}", name_, found->interface, address_text(found->address),
+      log_.error("head={}: cannot follow {} to {}: {}", name_, found->interface, address_text(found->address),
                  error.what());
       return;
     }
-    log_.info("head={} follows {}", name_, followed_text(current, *found));
+    log_.info("head={}: follows {}", name_, followed_text(current, *found));
     address_ = found->address;
     netmask_ = found->netmask;
     device_.move_to(address_, netmask_);

@@ -52,7 +52,7 @@ class Discovery {
     const std::optional<Ipv4> wanted = ping360::set_ip(bytes);
     if (wanted) {
       log_.warn(
-          "head={} {} requested the address {}: ignored, sonard does not change the network of this machine",
+          "head={}: {} requested the address {}: ignored, sonard does not change the network of this machine",
           head_, address_text(asked.remote.address), address_text(*wanted));
     }
     if (ping360::is_discovery(bytes) || wanted.value_or(0) != 0) {

@@ -176,12 +176,12 @@ class AddressThatChanges(Machine):
         self.assertIn(socket.inet_aton(OLD)[::-1], first)
         self.take(OLD)
         self.give(NEW)
-        daemon.wait_for_line(f"head=g follows eth0: its address is {NEW} now", PATIENCE_S)
+        daemon.wait_for_line(f"head=g: follows eth0: its address is {NEW} now", PATIENCE_S)
         status = self.wait_for_status_from(listener, NEW)
         self.assertIn(socket.inet_aton(NEW)[::-1], status)
         self.take(NEW)
         self.give(OLD)
-        daemon.wait_for_line(f"head=g follows eth0: its address is {OLD} now", PATIENCE_S)
+        daemon.wait_for_line(f"head=g: follows eth0: its address is {OLD} now", PATIENCE_S)
         self.wait_for_status_from(listener, OLD)
         self.assertEqual(self.findings(), [])
 
@@ -193,7 +193,7 @@ class AddressThatChanges(Machine):
         self.wait_for_status_from(listener, OLD)
         self.take(OLD)
         self.give("10.61.0.7", 16)
-        daemon.wait_for_line("head=g now answers on 10.61.0.7 mask 255.255.0.0", PATIENCE_S)
+        daemon.wait_for_line("head=g: now answers on 10.61.0.7 mask 255.255.0.0", PATIENCE_S)
         status = self.wait_for_status_from(listener, "10.61.0.7")
         self.assertIn(socket.inet_aton("255.255.0.0")[::-1], status)
 
@@ -203,7 +203,7 @@ class AddressThatChanges(Machine):
         self.assertEqual(messages.status_of(self.wait_for_status_from(listener, OLD)).address, OLD)
         self.take(OLD)
         self.give(NEW)
-        daemon.wait_for_line(f"head=o follows eth0: its address is {NEW} now", PATIENCE_S)
+        daemon.wait_for_line(f"head=o: follows eth0: its address is {NEW} now", PATIENCE_S)
         self.assertEqual(messages.status_of(self.wait_for_status_from(listener, NEW)).address, NEW)
         client = self.far.tcp_socket()
         self.addCleanup(client.close)
@@ -217,7 +217,7 @@ class AddressThatChanges(Machine):
         self.take(OLD)
         self.give(OLD, 16)
         for name in ("g", "o"):
-            daemon.wait_for_line(f"head={name} follows eth0: its netmask is 255.255.0.0 now", PATIENCE_S)
+            daemon.wait_for_line(f"head={name}: follows eth0: its netmask is 255.255.0.0 now", PATIENCE_S)
         deadline = Deadline(PATIENCE_S)
         while socket.inet_aton("255.255.0.0")[::-1] not in self.wait_for_status_from(listeners[GEMINI], OLD):
             self.assertFalse(deadline.over())
@@ -229,7 +229,7 @@ class AddressThatChanges(Machine):
                 daemon = self.run_daemon(head)
                 self.take(OLD)
                 self.give(NEW)
-                daemon.wait_for_line(f"head={name} follows eth0: its address is {NEW} now", PATIENCE_S)
+                daemon.wait_for_line(f"head={name}: follows eth0: its address is {NEW} now", PATIENCE_S)
                 daemon.signal(signal.SIGHUP)
                 daemon.wait_for_line("beginning anew", PATIENCE_S)
                 daemon.wait_for_line("sonard ready", START_S, count=2)
@@ -250,11 +250,11 @@ class AddressThatChanges(Machine):
         for time in (1, 2):
             self.take(OLD)
             for head in "gopm":
-                daemon.wait_for_line(f"warning head={head} its address {OLD} is gone from this machine", PATIENCE_S, count=time)
+                daemon.wait_for_line(f"warning head={head}: its address {OLD} is gone from this machine", PATIENCE_S, count=time)
             self.assertEqual(len([text for text in self.findings() if f"The address {OLD} is gone" in text]), 4)
             self.give(OLD)
             for head in "gopm":
-                daemon.wait_for_line(f"head={head} its address {OLD} is back", PATIENCE_S, count=time)
+                daemon.wait_for_line(f"head={head}: its address {OLD} is back", PATIENCE_S, count=time)
             self.assertEqual([text for text in self.findings() if "is gone" in text], [])
         self.wait_for_status_from(self.far_socket(STATUS_OF_GEMINI), OLD)
 
@@ -262,15 +262,15 @@ class AddressThatChanges(Machine):
         head = PING360.replace("{address}", "0.0.0.0") + f"    discovery: {{{{address: {OLD}, allow: [10.61.0.0/16]}}}}\n"
         daemon = self.run_daemon(head)
         self.take(OLD)
-        daemon.wait_for_line(f"warning head=p its address {OLD} is gone from this machine", PATIENCE_S)
+        daemon.wait_for_line(f"warning head=p: its address {OLD} is gone from this machine", PATIENCE_S)
         self.give(OLD)
-        daemon.wait_for_line(f"head=p its address {OLD} is back", PATIENCE_S)
+        daemon.wait_for_line(f"head=p: its address {OLD} is back", PATIENCE_S)
 
     def test_a_head_that_is_named_by_its_address_stays_there(self):
         daemon = self.run_daemon(GEMINI, address=OLD, mask="255.255.255.0")
         self.take(OLD)
         self.give(NEW)
-        daemon.wait_for_line(f"warning head=g its address {OLD} is gone", PATIENCE_S)
+        daemon.wait_for_line(f"warning head=g: its address {OLD} is gone", PATIENCE_S)
         self.assertNotIn("follows", daemon.output())
 
 

@@ -563,7 +563,7 @@ class Exhaustion(DaemonCase):
             self.assertIn(514, heads, said)
             if 513 not in heads:
                 failed += 1
-                self.assertIn("head=bow cannot render: out of memory for this ping", said)
+                self.assertIn("head=bow: cannot render: out of memory for this ping", said)
         self.assertGreater(failed, 0, "memory was never short enough for this test to mean something")
 
 
@@ -712,10 +712,10 @@ class Micron(DaemonCase):
         client = self.client()
         self.configured(client)
         self.lines(client, 5)
-        daemon.wait_for_line(r"head=stern scanning$", PATIENCE_S)
+        daemon.wait_for_line(r"head=stern: scanning$", PATIENCE_S)
         daemon.wait_for_line(r"pings: range=10\.18m bins=400 .* scan=all_round step=1\.80deg direction=right inverted=no$",
                              PATIENCE_S)
-        daemon.wait_for_line(r"head=stern ready$", PATIENCE_S)
+        daemon.wait_for_line(r"head=stern: ready$", PATIENCE_S)
 
         command = bytearray(frame("head_command_ros"))
         command[14:16] = (0x2301).to_bytes(2, "little")
@@ -732,7 +732,7 @@ class Micron(DaemonCase):
             self.lines(client, 2)
         daemon.wait_for_line(r"gain=80\.0dB .* scan=stares at=179\.94deg inverted=yes$", PATIENCE_S)
         client.write(b"@noise@")
-        daemon.wait_for_line(r"head=stern \d bytes from clients belonged to no command", PATIENCE_S)
+        daemon.wait_for_line(r"head=stern: \d bytes from clients belonged to no command", PATIENCE_S)
         for once in ("equal limits", "gain byte 232", "left and right are swapped"):
             self.assertEqual(daemon.output().count(once), 1, daemon.output())
 

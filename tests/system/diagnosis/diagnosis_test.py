@@ -137,12 +137,12 @@ class Diagnosis(OwnMachine):
         publisher = self.publish(GOOD)
         for number, pose in enumerate(wrong_poses(), 1):
             publisher.pose = pose
-            daemon.wait_for_line("warning head=bow .*" + pose["says"], PATIENCE_S)
+            daemon.wait_for_line("warning head=bow: .*" + pose["says"], PATIENCE_S)
             self.wait_for_finding(lambda status: status["heads"][0]["findings"], pose["says"])
             publisher.pose = GOOD
-            daemon.wait_for_line("head=bow problem resolved", PATIENCE_S, count=number)
+            daemon.wait_for_line("head=bow: problem resolved", PATIENCE_S, count=number)
         for pose in wrong_poses():
-            said = [line for line in daemon.lines if re.search("warning head=bow .*" + pose["says"], line)]
+            said = [line for line in daemon.lines if re.search("warning head=bow: .*" + pose["says"], line)]
             self.assertEqual(len(said), 1, said)
 
     @staticmethod
@@ -216,7 +216,7 @@ class Diagnosis(OwnMachine):
 
     def test_no_pose_is_said(self):
         daemon = self.start()
-        daemon.wait_for_line("head=bow No pose of the vehicle has arrived", PATIENCE_S)
+        daemon.wait_for_line("head=bow: No pose of the vehicle has arrived", PATIENCE_S)
 
     def inputs_findings(self, status):
         return status["poses"]["inputs"][0]["findings"]
@@ -319,7 +319,7 @@ class Diagnosis(OwnMachine):
                           "head": f"    acoustics: {acoustics}\n" if acoustics else ""}
                 self.assertRegex(self.check(self.config(**config)), "warning: .*poses.initial: head 'bow': " + says)
                 daemon = self.start(**config)
-                daemon.wait_for_line("warning head=bow " + says, PATIENCE_S)
+                daemon.wait_for_line("warning head=bow: " + says, PATIENCE_S)
                 self.wait_for_finding(lambda status: status["heads"][0]["findings"], says)
                 daemon.kill()
 

@@ -271,7 +271,7 @@ class Topsides(LinkTest):
         viewer.wait_for_line("^ping ", PATIENCE_S, count=5)
         seconds = self.end_daemon(daemon)
         self.assertLess(seconds, 1.0)
-        self.assertIn("head=bow ends: pings_sent=", daemon.output())
+        self.assertIn("head=bow: ended pings_sent=", daemon.output())
 
 
 class RawTopside:
@@ -399,7 +399,7 @@ class Wire(LinkTest):
         ping = topside.next_ping()
         self.assertEqual(ping.crc32(), int(self.rendered()[ping.transmit_us], 16))
         self.end_daemon(daemon)
-        socket_line = key_values(daemon.wait_for_line("head=bow transport: ", PATIENCE_S))
+        socket_line = key_values(daemon.wait_for_line("head=bow: transport ", PATIENCE_S))
         self.assertGreater(int(socket_line["blocked"]), 0, "the link was not slow enough for this test to mean something")
         self.assertEqual((socket_line["send_failed"], socket_line["overflowed"]), ("0", "0"))
 
@@ -483,7 +483,7 @@ class SecondTopside(LinkTest):
         self.second.send(wire.ping_config(513, lines=128))
         self.second.next_ping()
         self.end_daemon(daemon)
-        self.assertRegex(daemon.output(), "head=bow ends: .* locked_out=21 ")
+        self.assertRegex(daemon.output(), "head=bow: ended .* locked_out=21 ")
 
 
 class StalePoses(LinkTest):
@@ -535,7 +535,7 @@ class StalePoses(LinkTest):
         self.send_poses(topside, 0.3, 2.0)
         topside.next_ping()
         daemon.terminate(10)
-        self.assertRegex(daemon.output(), r"head=bow ends: .* pings_without_pose=[1-9]")
+        self.assertRegex(daemon.output(), r"head=bow: ended .* pings_without_pose=[1-9]")
 
 
 def main():

@@ -158,7 +158,7 @@ class Demo(HeadCase):
     def test_a_slow_reader_misses_whole_pings(self):
         client = self.client(receive_buffer=8192)
         client.write(messages.fire(mode=LOW, rate=1, flags=0x4B, range_m=20.0, speed=1500.0))  # 1.2 MB each, 15 a second
-        self.daemon.wait_for_line("head=oculus pings: .* bits=16", PATIENCE_S)
+        self.daemon.wait_for_line("head=oculus: pings .* bits=16", PATIENCE_S)
         # The client does not read.
         self.daemon.wait_for_line(TOO_SLOW, PATIENCE_S)
         ids = []

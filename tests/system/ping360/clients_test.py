@@ -242,7 +242,7 @@ class Clients(HeadCase):
         client.write(AutoTransmit(samples=200).bytes())
         client.all_until_quiet()
         self.assertAlmostEqual(time.monotonic() - begin, 0.5 + QUIET_S, delta=0.3)
-        self.daemon.wait_for_line(r"head=forgetful auto scan ended: ", 5)
+        self.daemon.wait_for_line(r"head=forgetful: auto scan ended: ", 5)
 
     def test_forty_pings_of_a_turn_take_as_long_as_an_owner_measured(self):
         """3.29 s by the clock, within 5 % (docs/protocols/ping360.md 3.7). A busy machine can only make a turn longer, so the

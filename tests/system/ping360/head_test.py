@@ -38,7 +38,7 @@ class Demo(HeadCase):
         return DEMO
 
     def pty(self):
-        return re.search(r"head=ping360 serves pty (\S+)", self.daemon.output()).group(1)
+        return re.search(r"head=ping360: serves pty (\S+)", self.daemon.output()).group(1)
 
     def quiet_state(self, client):
         """The answer to a request for 2300, byte for byte."""
@@ -247,8 +247,8 @@ class Log(HeadCase):
         return DEMO
 
     def test_it_says_where_it_is_and_what_it_does_and_ends_within_a_second(self):
-        self.daemon.wait_for_line(r"head=ping360 serves udp 127\.0\.0\.1:12345$", 1)
-        self.daemon.wait_for_line(r"head=ping360 serves pty /dev/pts/\d+$", 1)
+        self.daemon.wait_for_line(r"head=ping360: serves udp 127\.0\.0\.1:12345$", 1)
+        self.daemon.wait_for_line(r"head=ping360: serves pty /dev/pts/\d+$", 1)
         socket = self.machine.udp_socket("127.0.0.1", 0)
         client = UdpClient(socket, ("127.0.0.1", 12345))
         self.addCleanup(client.close)
@@ -261,16 +261,16 @@ class Log(HeadCase):
         second = UdpClient(self.machine.udp_socket("127.0.0.1", 0), ("127.0.0.1", 12345))
         self.addCleanup(second.close)
         second.ask(messages.request(PROTOCOL_VERSION), PROTOCOL_VERSION)
-        self.daemon.wait_for_line("head=ping360 client 127.0.0.1:%d connected$" % second.socket.getsockname()[1], PATIENCE_S)
+        self.daemon.wait_for_line("head=ping360: client 127.0.0.1:%d connected$" % second.socket.getsockname()[1], PATIENCE_S)
         address = "127.0.0.1:%d" % socket.getsockname()[1]
-        for line in (rf"info head=ping360 client {address} connected$",
-                     rf"info head=ping360 auto scan by client {address}: 390 to 10 gradians, step 2$",
-                     r"info head=ping360 pings: range=9\.99m samples=1200 sample=8\.3mm sample_period=11\.10us pulse=53us "
+        for line in (rf"info head=ping360: client {address} connected$",
+                     rf"info head=ping360: auto scan by client {address}: 390 to 10 gradians, step 2$",
+                     r"info head=ping360: pings range=9\.99m samples=1200 sample=8\.3mm sample_period=11\.10us pulse=53us "
                      r"frequency=740kHz gain=normal scan=auto from=390grad to=10grad step=2grad delay=0ms$",
-                     r"info head=ping360 auto scan ended: motor_off$",
-                     r"info head=ping360 the client's angle 400 is taken as 0$",
-                     r"info head=ping360 pings: range=1\.98m samples=1200 .* frequency=750kHz gain=low$",
-                     r"warning head=ping360 the client's sample_period 79 is refused: 80 to 40000 is taken$"):
+                     r"info head=ping360: auto scan ended: motor_off$",
+                     r"info head=ping360: the client's angle 400 is taken as 0$",
+                     r"info head=ping360: pings range=1\.98m samples=1200 .* frequency=750kHz gain=low$",
+                     r"warning head=ping360: the client's sample_period 79 is refused: 80 to 40000 is taken$"):
             self.daemon.wait_for_line(line, PATIENCE_S)
         self.assertEqual(self.daemon.output().count("is refused"), 1, "it is said once")
 
@@ -279,7 +279,7 @@ class Log(HeadCase):
         code, seconds = self.daemon.terminate(10)
         self.assertEqual(code, 0, self.daemon.tail())
         self.assertLess(seconds, 1.0)
-        self.daemon.wait_for_line("head=ping360 ends: pings_sent=.* refused=2 commands_joined=0 commands_dropped=0 dropped_bytes=0 ", 1)
+        self.daemon.wait_for_line("head=ping360: ended pings_sent=.* refused=2 commands_joined=0 commands_dropped=0 dropped_bytes=0 ", 1)
 
 
 if __name__ == "__main__":

@@ -72,7 +72,7 @@ class Discovery(TwoMachines):
         asker = self.asker()
         self.assertEqual(self.ask(asker, b"SetSS1IP 010.061.019.077", to=HEAD_ADDRESS)[0], TEXT)
         self.assertIsNone(self.ask(asker, b"SetSS1IP 000.000.000.000", to=HEAD_ADDRESS, seconds=0.3), "it would reboot")
-        self.daemon.wait_for_line(r"warning head=found 10\.61\.19\.10 requested the address 10\.61\.19\.77: ", 5)
+        self.daemon.wait_for_line(r"warning head=found: 10\.61\.19\.10 requested the address 10\.61\.19\.77: ", 5)
         self.assertEqual(self.ask(asker, to=HEAD_ADDRESS)[0], TEXT)
 
     def test_all_else_gets_no_answer(self):
@@ -121,7 +121,7 @@ class Link(TwoMachines):
 
     def counts(self, head):
         """The daemon's counters of this head and of its link."""
-        said = " ".join(re.findall(rf"head={head} (?:ends|transport): (.*)", self.daemon.output()))
+        said = " ".join(re.findall(rf"head={head}: (?:ended|transport) (.*)", self.daemon.output()))
         return {name: int(value) for name, value in re.findall(r"(\w+)=(\d+)(?= |$)", said)}
 
     def check_faults(self, counts, side):

@@ -98,7 +98,7 @@ class Recording(HeadCase):
 
     def pings_recorded(self):
         """The daemon's count; the scan may have gone on until the stop command arrived."""
-        line = self.daemon.wait_for_line("head=ping360 ends: ", 1)
+        line = self.daemon.wait_for_line("head=ping360: ended ", 1)
         count = int(line.split("pings_sent=")[1].split()[0])
         self.assertGreaterEqual(count, len(self.live))
         return count

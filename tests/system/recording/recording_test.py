@@ -528,7 +528,7 @@ class Replays(RecordingTest):
         self.check_same(first, again)
         self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
         self.assertIn(2, {line["sweep"] for line in heard}, "it has not turned back at the right limit")
-        self.assertNotIn("head=stern differs", daemon.output())
+        self.assertNotIn("head=stern: differs", daemon.output())
 
     def test_four_bits_for_a_client_with_another_gain(self):
         options = ["--bins", "301", "--four-bit", "--ad-low", "10", "--ad-span", "30"]
@@ -538,7 +538,7 @@ class Replays(RecordingTest):
                                                  play=self.files(".mcap")[0])
         self.check_same(first, again)
         self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
-        self.assertEqual(daemon.output().count("head=stern differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
+        self.assertEqual(daemon.output().count("head=stern: differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
                          1, daemon.tail())
         self.assertIn(f"pings that differ from the request: gain={count}", daemon.output())
 
@@ -571,7 +571,7 @@ class Faults(RecordingTest):
         self.end_daemon(daemon)
         self.check_folder()
         rendered, images, messages = self.rendered(), self.glf_images(), self.mcap_messages()
-        head = key_values(next(line for line in daemon.lines if "head=bow ends:" in line))
+        head = key_values(next(line for line in daemon.lines if "head=bow: ended " in line))
         recorder = key_values(next(line for line in daemon.lines if "recording: ended" in line))
 
         # The daemon counts every ping that began; each client left at most one unfinished.

@@ -88,7 +88,7 @@ class SimulatedTime(link_test.LinkTest):
         lab = self.start(MICRON.format(dump=self.next_dump()), "lock_step", "tcp")
         viewer = lab.start(lab.topside, os.path.join(link_test.PROGRAMS, "sonarview"), "micron", "--tcp",
                            f"{link_test.HEAD_ADDRESS}:4001", "--range", "7", "--bins", "300", "--line-wait", "0", "--quiet")
-        self.daemon.wait_for_line(r"head=bow ready", PATIENCE_S)
+        self.daemon.wait_for_line(r"head=bow: ready", PATIENCE_S)
         self.simulate(lab, steps, "tcp")
         viewer.terminate(PATIENCE_S)
         self.end_daemon(self.daemon)

@@ -21,7 +21,7 @@ std::string line_of(spdlog::level::level_enum level, const std::string& text) {
 }
 
 TEST(JsonLines, AreOneObjectALine) {
-  EXPECT_EQ(line_of(spdlog::level::info, "head=bow pings_per_s=5.0 render_ms=38.15"),
+  EXPECT_EQ(line_of(spdlog::level::info, "head=bow: pings_per_s=5.0 render_ms=38.15"),
             R"({"time":"2000-02-29T12:34:56.042Z","level":"info","head":"bow",)"
             R"("message":"pings_per_s=5.0 render_ms=38.15","keys":{"pings_per_s":5.0,"render_ms":38.15}})"
             "\n");
