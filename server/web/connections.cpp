@@ -39,11 +39,13 @@ void Connections::leave(Place place) {
 
 std::string Connections::add_viewer(std::uint32_t address) {
   if (viewers_ >= most_viewers_) {
-    return fmt::format("All {} places of viewers are taken (web.max_viewers).", most_viewers_);
+    return fmt::format("Too many viewers: {} are connected, the maximum (web.max_viewers).", most_viewers_);
   }
   int& of_peer = viewers_of_peer_[address];
   if (of_peer >= most_viewers_per_peer_) {
-    return fmt::format("This address has {} viewers already (web.max_viewers_per_peer).", of_peer);
+    return fmt::format(
+        "Too many viewers from this address: {} are connected, the maximum (web.max_viewers_per_peer).",
+        of_peer);
   }
   ++of_peer;
   ++viewers_;

@@ -76,7 +76,7 @@ json transform_json(const render::Pose& T_world_head, const std::string& head, j
 /// @throws std::invalid_argument if the value is not an unsigned 32-bit integer
 std::uint32_t id_of(const json& value) {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::invalid_argument(text_of(value) + " is no ID");
+    throw std::invalid_argument(text_of(value) + " is not an ID");
   }
   return value.get<std::uint32_t>();
 }
@@ -144,7 +144,7 @@ void FoxgloveSession::take(const std::string& text) {
       for (const json& wish : message.at("subscriptions")) {
         const auto channel = channels_.find(id_of(wish.at("channelId")));
         if (channel == channels_.end()) {
-          complain(fmt::format("There is no channel {}.", text_of(wish["channelId"])));
+          complain(fmt::format("Channel {} does not exist.", text_of(wish["channelId"])));
         } else {
           subscriptions_[channel->second] = id_of(wish.at("id"));
           if (channel->second.kind != Kind::status) {
@@ -158,10 +158,10 @@ void FoxgloveSession::take(const std::string& text) {
         std::erase_if(subscriptions_, [&](const auto& known) { return known.second == id_of(id); });
       }
     } else {
-      complain("Expected {\"op\": \"subscribe\"} or {\"op\": \"unsubscribe\"}: nothing else is served here.");
+      complain("Unknown operation: expected {\"op\": \"subscribe\"} or {\"op\": \"unsubscribe\"}.");
     }
   } catch (const std::exception& error) {
-    complain(fmt::format("This message cannot be read: {}", error.what()));
+    complain(fmt::format("Invalid message: {}", error.what()));
   }
 }
 

@@ -55,7 +55,7 @@ void HttpSession::start() {
 void HttpSession::displace() {
   place_.reset();
   stream_.close();
-  site_.log_refusal(peer_, "too many connections; the one that was silent longest is closed");
+  site_.log_refusal(peer_, "too many connections; the connection idle longest is closed");
 }
 
 void HttpSession::leave() {
@@ -117,7 +117,8 @@ void HttpSession::refuse(beast::error_code why) {
     send(error_response(none, http::status::payload_too_large,
                         fmt::format("The body has more than {} bytes.", most_body_bytes)));
   } else {
-    send(error_response(none, http::status::bad_request, fmt::format("This is no HTTP: {}.", why.message())));
+    send(error_response(none, http::status::bad_request,
+                        fmt::format("Invalid HTTP request: {}.", why.message())));
   }
 }
 

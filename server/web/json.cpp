@@ -210,8 +210,8 @@ std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status)
 std::vector<std::string> why_not_ready(const DaemonStatus& status) {
   std::vector<std::string> reasons;
   if (!status.T_world_vehicle) {
-    reasons.push_back(status.inputs.empty() ? std::string("no pose of the vehicle is known")
-                                            : fmt::format("no pose of the vehicle is known: send poses to {}",
+    reasons.push_back(status.inputs.empty() ? std::string("the vehicle has no pose")
+                                            : fmt::format("the vehicle has no pose: send poses to {}",
                                                           status.inputs.front().input));
   }
   for (const PoseInputStatus& input : status.inputs) {

@@ -56,33 +56,33 @@ class Metric {
 };
 
 void add_pings(std::string& out, const std::vector<HeadStatus>& heads) {
-  Metric pings(out, "sonard_pings_total", "counter", "Pings that went out to their end.");
+  Metric pings(out, "sonard_pings_total", "counter", "Pings sent completely.");
   for (const HeadStatus& head : heads) {
     pings.value({{"head", head.name}}, head.counts.pings.sent);
   }
-  Metric rate(out, "sonard_pings_per_second", "gauge", "Pings a second over the last five seconds.");
+  Metric rate(out, "sonard_pings_per_second", "gauge", "Pings per second over the last five seconds.");
   for (const HeadStatus& head : heads) {
     rate.value({{"head", head.name}}, head.pings_per_s);
   }
-  Metric age(out, "sonard_last_ping_age_seconds", "gauge", "Time since the newest ping went out.");
+  Metric age(out, "sonard_last_ping_age_seconds", "gauge", "Time since the newest ping was sent.");
   for (const HeadStatus& head : heads) {
     if (head.since_last_ping) {
       age.value({{"head", head.name}}, std::chrono::duration<double>(*head.since_last_ping).count());
     }
   }
-  Metric rendered(out, "sonard_pings_rendered_total", "counter", "Pings that were rendered.");
+  Metric rendered(out, "sonard_pings_rendered_total", "counter", "Pings rendered.");
   for (const HeadStatus& head : heads) {
     rendered.value({{"head", head.name}}, head.counts.rendering.pings_rendered);
   }
   Metric without(out, "sonard_pings_without_pose_total", "counter",
-                 "Pings that were not made, as no pose was known.");
+                 "Pings not made because no pose was known.");
   for (const HeadStatus& head : heads) {
     without.value({{"head", head.name}}, head.counts.rendering.pings_without_pose);
   }
 }
 
 void add_stages(std::string& out, const std::vector<HeadStatus>& heads) {
-  Metric metric(out, "sonard_ping_seconds_total", "counter", "Time spent on rendering, by stage.");
+  Metric metric(out, "sonard_ping_seconds_total", "counter", "Rendering time by stage.");
   for (const HeadStatus& head : heads) {
     const StageSeconds& spent = head.counts.rendering.stages;
     const std::initializer_list<std::pair<std::string_view, double>> stages{
@@ -96,12 +96,12 @@ void add_stages(std::string& out, const std::vector<HeadStatus>& heads) {
 }
 
 void add_clients(std::string& out, const std::vector<HeadStatus>& heads) {
-  Metric clients(out, "sonard_clients", "gauge", "Clients that have sent something in the last minute.");
+  Metric clients(out, "sonard_clients", "gauge", "Clients that sent a message in the last minute.");
   for (const HeadStatus& head : heads) {
     clients.value({{"head", head.name}}, head.clients.size());
   }
   Metric latency(out, "sonard_ping_latency_seconds", "gauge",
-                 "From the transmission of the newest ping to when it went out.");
+                 "Time from the transmission of the newest ping until it was sent.");
   for (const HeadStatus& head : heads) {
     if (head.latency) {
       latency.value({{"head", head.name}}, std::chrono::duration<double>(*head.latency).count());
@@ -111,7 +111,7 @@ void add_clients(std::string& out, const std::vector<HeadStatus>& heads) {
 
 void add_events(std::string& out, const std::vector<HeadStatus>& heads) {
   Metric metric(out, "sonard_head_events_total", "counter",
-                "What the device and its transport count: retries, lines lost, bad messages, faults.");
+                "Events counted by the device and its transport: retries, lost lines, bad messages, faults.");
   for (const HeadStatus& head : heads) {
     for (const auto& [part, counters] :
          {std::pair("device", &head.counts.device), std::pair("transport", &head.counts.transport)}) {
@@ -126,7 +126,7 @@ void add_events(std::string& out, const std::vector<HeadStatus>& heads) {
 
 void add_skipped(std::string& out, const std::vector<HeadStatus>& heads) {
   Metric metric(out, "sonard_skipped_total", "counter",
-                "Work that was left out since it would not change the image, by rule.");
+                "Work skipped because it would not change the image, by rule.");
   for (const HeadStatus& head : heads) {
     for (const render::SkipRuleEntry& entry : render::skip_rules) {
       if (const std::uint64_t count = head.counts.rendering.skipped.of(entry.rule); count > 0) {
@@ -137,17 +137,17 @@ void add_skipped(std::string& out, const std::vector<HeadStatus>& heads) {
 }
 
 void add_poses(std::string& out, const std::vector<PoseInputStatus>& inputs) {
-  Metric poses(out, "sonard_poses_total", "counter", "Poses of the vehicle that arrived.");
+  Metric poses(out, "sonard_poses_total", "counter", "Vehicle poses received.");
   for (const PoseInputStatus& input : inputs) {
     poses.value({{"input", input.input}}, input.poses.poses);
   }
-  Metric age(out, "sonard_pose_age_seconds", "gauge", "Time since the newest pose arrived.");
+  Metric age(out, "sonard_pose_age_seconds", "gauge", "Time since the newest pose was received.");
   for (const PoseInputStatus& input : inputs) {
     if (input.poses.age) {
       age.value({{"input", input.input}}, std::chrono::duration<double>(*input.poses.age).count());
     }
   }
-  Metric bad(out, "sonard_bad_pose_messages_total", "counter", "Messages that gave no pose, by reason.");
+  Metric bad(out, "sonard_bad_pose_messages_total", "counter", "Messages without a usable pose, by reason.");
   for (const PoseInputStatus& input : inputs) {
     bad.value({{"input", input.input}, {"reason", "malformed"}}, input.counters.malformed);
     bad.value({{"input", input.input}, {"reason", "bad_value"}}, input.counters.bad_value);
@@ -161,11 +161,11 @@ void add_recording(std::string& out, const std::optional<RecordingStatus>& recor
   }
   const RecorderCounters& counters = recording->counters;
   Metric(out, "sonard_recording_on", "gauge", "1 while pings are recorded.").value({}, recording->on ? 1 : 0);
-  Metric(out, "sonard_recording_images_total", "counter", "Images that came to the recorder.")
+  Metric(out, "sonard_recording_images_total", "counter", "Images received by the recorder.")
       .value({}, counters.images);
-  Metric(out, "sonard_recording_images_lost_total", "counter", "Images that no log could take.")
+  Metric(out, "sonard_recording_images_lost_total", "counter", "Images that could not be written to any log.")
       .value({}, counters.images_lost);
-  Metric(out, "sonard_recording_dropped_total", "counter", "Events dropped since the disk is too slow.")
+  Metric(out, "sonard_recording_dropped_total", "counter", "Events dropped because the disk is too slow.")
       .value({}, counters.dropped.total());
   Metric(out, "sonard_recording_logs_failed_total", "counter", "Logs that could not be written.")
       .value({}, counters.logs_failed);
@@ -176,10 +176,10 @@ void add_recording(std::string& out, const std::optional<RecordingStatus>& recor
 std::string metrics_text(const DaemonIdentity& identity, const DaemonStatus& status,
                          std::chrono::duration<double> uptime) {
   std::string out;
-  Metric(out, "sonard_info", "gauge", "What runs.")
+  Metric(out, "sonard_info", "gauge", "Version, world and engine of this daemon, as labels.")
       .value({{"version", SONARD_VERSION}, {"world", identity.world}, {"engine", status.engine}}, 1);
-  Metric(out, "sonard_uptime_seconds", "gauge", "Time since the start.").value({}, uptime.count());
-  Metric(out, "sonard_ready", "gauge", "1 if /ready answers 200.")
+  Metric(out, "sonard_uptime_seconds", "gauge", "Time since sonard started.").value({}, uptime.count());
+  Metric(out, "sonard_ready", "gauge", "1 if /ready returns 200.")
       .value({}, why_not_ready(status).empty() ? 1 : 0);
   add_pings(out, status.heads);
   add_stages(out, status.heads);

@@ -96,11 +96,11 @@ Site::~Site() = default;
 std::optional<std::string> Site::refusal(const HttpRequest& request) const {
   const std::string_view host = as_view(request[http::field::host]);
   if (!trusted_host(host)) {
-    return "The Host of this request is neither an address nor localhost; open the page by its address.";
+    return "The Host header is neither an IP address nor localhost; open the page by its address.";
   }
   const std::string_view origin = as_view(request[http::field::origin]);
   if (!trusted_origin(origin, host, config_)) {
-    return fmt::format("Pages of {} may not connect; web.origins in the configuration lists who may.",
+    return fmt::format("Origin {} may not connect; to permit it, add it to web.origins in the configuration.",
                        origin);
   }
   return std::nullopt;
@@ -114,7 +114,7 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer,
   } else if (path == "/api/recording") {
     send(change_recording(request, peer));
   } else if (!reads(request)) {
-    send(error_response(request, http::status::method_not_allowed, "This address is only read (GET)."));
+    send(error_response(request, http::status::method_not_allowed, "Method not allowed; use GET."));
   } else if (path == "/api/status") {
     with_status_text([request, send](const std::shared_ptr<const std::string>& text) {
       send(response(request, http::status::ok, "application/json", *text));
@@ -140,7 +140,7 @@ void Site::answer(const HttpRequest& request, const Endpoint& peer,
   } else if (const Asset* asset = find_asset(path == "/" ? "/index.html" : path)) {
     send(response(request, http::status::ok, asset->type, std::string(asset->bytes)));
   } else {
-    send(error_response(request, http::status::not_found, "There is nothing at this address."));
+    send(error_response(request, http::status::not_found, "Not found."));
   }
 }
 
@@ -166,26 +166,29 @@ bool Site::answer_world(const HttpRequest& request, std::string_view path,
       [request, send, type = path.ends_with(".png") ? "image/png" : "application/json"](const Text& made) {
         send(made ? response(request, http::status::ok, type, *made)
                   : error_response(request, http::status::internal_server_error,
-                                   "This view of the world cannot be drawn; the log says why."));
+                                   "This view of the world cannot be drawn; see the log for the reason."));
       });
   return true;
 }
 
 HttpResponse Site::change_recording(const HttpRequest& request, const Endpoint& peer) {
   if (request.method() != http::verb::post) {
-    return error_response(request, http::status::method_not_allowed, "Send {\"on\": true or false} by POST.");
+    return error_response(request, http::status::method_not_allowed,
+                          "Method not allowed; use POST with {\"on\": true} or {\"on\": false}.");
   }
   if (!may_change(peer, as_view(request[http::field::authorization]), config_)) {
-    return error_response(request, http::status::forbidden,
-                          "Only this machine, or who sends the token of web.token, may change this.");
+    return error_response(
+        request, http::status::forbidden,
+        "Only clients on this machine, or clients that send the token (web.token), may change this.");
   }
   if (!sources_.turn_recording) {
     return error_response(request, http::status::conflict,
-                          "The configuration has no section recording, so nothing can be recorded.");
+                          "Recording is not configured; add a section `recording` to the configuration.");
   }
   const auto wish = json_of_peer(request.body());
   if (!wish.is_object() || !wish.contains("on") || !wish["on"].is_boolean()) {
-    return error_response(request, http::status::bad_request, "Send {\"on\": true} or {\"on\": false}.");
+    return error_response(request, http::status::bad_request,
+                          "Invalid body; expected {\"on\": true} or {\"on\": false}.");
   }
   sources_.turn_recording(wish["on"].get<bool>());
   return json_response(request, http::status::ok, {{"on", wish["on"]}});
@@ -222,7 +225,7 @@ void Site::with_status_text(std::function<void(std::shared_ptr<const std::string
 
 void Site::log_refusal(const Endpoint& peer, const std::string& why) {
   if (const std::uint64_t count = refusals_.count(why); std::has_single_bit(count)) {
-    spdlog::warn("page: {} refused: {} ({} so far)", endpoint_text(peer), why, count);
+    spdlog::warn("web: {} refused: {} ({} so far)", endpoint_text(peer), why, count);
   }
 }
 

@@ -35,7 +35,7 @@ constexpr int most_pings_waiting = 64;        // further pings are dropped while
 
 struct WebServer::Impl {
   explicit Impl(const WebConfig& web)
-      : config(web), listener(std::make_shared<TcpListener>(io, "page", web.bind, web.allow)) {}
+      : config(web), listener(std::make_shared<TcpListener>(io, "web", web.bind, web.allow)) {}
 
   void accept(asio::ip::tcp::socket socket, const Endpoint& peer) {
     set_client_options(socket, send_buffer_bytes);
@@ -48,7 +48,7 @@ struct WebServer::Impl {
       try {
         made = make();
       } catch (const std::exception& error) {
-        spdlog::error("page: cannot draw: {}", error.what());
+        spdlog::error("web: cannot draw: {}", error.what());
       }
       make = nullptr;  // destroys its captures on this thread, before the next drawing
       asio::post(io, [take = std::move(take), made = std::move(made)] { take(made); });
@@ -63,7 +63,7 @@ struct WebServer::Impl {
         io.run();
       } catch (const std::exception& error) {
         // An error must not end the daemon: this connection is lost, the others continue.
-        spdlog::error("page: {}", error.what());
+        spdlog::error("web: {}", error.what());
         again = true;
       }
     }

@@ -106,7 +106,7 @@ void WebSocket::write() {
   patience_.async_wait([weak = weak_from_this()](const boost::system::error_code& error) {
     const auto self = weak.lock();
     if (self && !error && self->waits_since_ && self->site_.now() - *self->waits_since_ >= write_patience) {
-      self->site_.log_refusal(self->peer_, "a viewer that reads too slowly");
+      self->site_.log_refusal(self->peer_, "the viewer reads too slowly");
       self->close();
     }
   });

@@ -10,12 +10,12 @@ export function readPing(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const start = 4 + length;
   if (length % 4 !== 0 || start > buffer.byteLength) {
-    throw new Error("A ping came with a header that is cut off.");
+    throw new Error("A ping has an incomplete header.");
   }
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
   const directions = header.scanning ? header.lines : header.beams;
   if (start + directions * (4 + header.rows) !== buffer.byteLength) {
-    throw new Error("A ping came with another number of samples than its header says.");
+    throw new Error("A ping does not have the number of samples in its header.");
   }
   return {
     ...header,

@@ -55,8 +55,8 @@ export class Head {
       this.picture.set("gain_db", Number(gain.value));
     });
     return make("div", { class: "controls" }, this.modes(),
-      make("label", { class: "gain", title: "Gain of the picture alone; it changes nothing at the sonar" }, "Gain", gain, shown), map,
-      this.freezeButton(), button("Save PNG", "Save the picture as it is now", () => this.save()));
+      make("label", { class: "gain", title: "Gain of the picture only; it does not change the sonar" }, "Gain", gain, shown), map,
+      this.freezeButton(), button("Save PNG", "Save the current picture", () => this.save()));
   }
 
   modes() {
@@ -78,7 +78,7 @@ export class Head {
   }
 
   freezeButton() {
-    const freeze = button("Freeze", "Hold the picture", () => {
+    const freeze = button("Freeze", "Stop updating the picture", () => {
       this.frozen = !this.frozen;
       freeze.setAttribute("aria-pressed", this.frozen);
       setText(freeze, this.frozen ? "Frozen" : "Freeze");
@@ -93,7 +93,7 @@ export class Head {
     this.stages = make("div", { class: "stages" });
     this.clients = make("div", { class: "clients" });
     this.lists = {};
-    for (const [name, title] of [["skipped", "Work that was not needed"], ["settings", "Settings"], ["counters", "Counters"]]) {
+    for (const [name, title] of [["skipped", "Skipped work"], ["settings", "Settings"], ["counters", "Counters"]]) {
       const list = make("dl", { class: name === "skipped" ? "rules" : "pairs" });
       const summary = make("summary", { text: title });
       this[name] = make("details", { class: "more", hidden: true }, summary, list);
@@ -128,7 +128,7 @@ export class Head {
     const old = age > OLD_PICTURE_MS && !this.frozen && this.inView;
     this.age.hidden = !old;
     if (old) {
-      setText(this.age, `The last ping came ${duration(age / 1000)} ago.`);
+      setText(this.age, `Last ping ${duration(age / 1000)} ago.`);
     }
   }
 
@@ -136,11 +136,11 @@ export class Head {
   updateEmpty({ clients = [], serves = [], pings_without_pose: withoutPose }, poses) {
     const inputs = poses.inputs.map((input) => input.input).join(", ");
     if (!clients.length) {
-      setText(this.empty, `No client has connected. Start your driver, or sonarview: this sonar serves ${serves.join(", ")}.`);
+      setText(this.empty, `No client has connected. Start your driver or sonarview. This sonar listens on ${serves.join(", ")}.`);
     } else if (!poses.vehicle && withoutPose > 0) {
-      setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. Send poses to ${inputs || "an input of the configuration"}.`);
+      setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. Send poses to ${inputs || "a configured input (poses)"}.`);
     } else {
-      setText(this.empty, "A client is connected. The picture begins with its next ping.");
+      setText(this.empty, "A client is connected. Its next ping starts the picture.");
     }
   }
 
@@ -192,17 +192,17 @@ export class Head {
       bar.append(part);
       list.append(make("li", { data: { stage: place } }, words(name), make("b", { text: milliseconds(spent) })));
     });
-    this.stages.replaceChildren(make("h3", { text: "Where a ping's time goes" }), bar, list);
+    this.stages.replaceChildren(make("h3", { text: "Rendering time of a ping" }), bar, list);
   }
 
   updateClients({ serves = [], clients = [] }) {
     const lines = clients.map((client) => make("li", {}, make("code", { text: client.address }),
       make("span", { text: `${count(client.messages)} messages, the last ${duration(client.idle_s)} ago` })));
     if (!lines.length) {
-      lines.push(make("li", { class: "none", text: "No client has come yet." }));
+      lines.push(make("li", { class: "none", text: "No client yet." }));
     }
     this.clients.replaceChildren(make("h3", { text: clients.length === 1 ? "Client" : "Clients" }), make("ul", {}, ...lines),
-      make("p", { class: "serves" }, "Serves ", ...serves.flatMap((place, i) => [i ? ", " : "", make("code", { text: place })])));
+      make("p", { class: "serves" }, "Listens on ", ...serves.flatMap((place, i) => [i ? ", " : "", make("code", { text: place })])));
   }
 
   updateLists(status) {

@@ -39,7 +39,7 @@ function showState(state) {
   setText(at("state"), STATES[state]);
   at("lost").hidden = state !== "lost";
   if (state === "lost") {
-    setText(at("lost"), `The daemon at ${location.host} does not answer. This page goes on as soon as it does; what is shown is old.`);
+    setText(at("lost"), `No connection to the daemon at ${location.host}. The page shows old values until the daemon answers again.`);
     document.title = "sonard (no connection)";
   }
 }
@@ -62,7 +62,7 @@ function showStatus(status) {
   document.title = `${status.heads.map((head) => head.name).join(", ")} | sonard`;
   onChange(at("about"), [status.version, status.configuration, status.engine, status.world?.name], () =>
     at("about").replaceChildren(...[status.version, status.configuration, status.world?.name, status.engine].filter(Boolean).map((text) => make("span", { text }))));
-  at("state").title = `The daemon has run for ${duration(status.uptime_s)}.`;
+  at("state").title = `Uptime of the daemon: ${duration(status.uptime_s)}`;
   showHeads(status.heads, status.poses);
   setFindings(at("pose-findings"), poseFindings(status.poses));
   if (at("poses").open) {
@@ -73,7 +73,7 @@ function showStatus(status) {
 }
 
 const WHY = {
-  403: "The daemon lets only its own machine switch the recording, or a page that was opened with the token.",
+  403: "Only pages on the daemon's machine, or pages opened with the token, can switch the recording.",
   409: "No recording is configured.",
 };
 
@@ -83,7 +83,7 @@ async function switchRecording() {
   try {
     const answer = await fetch("api/recording", { method: "POST", headers, body: JSON.stringify({ on }) });
     if (!answer.ok) {
-      say(WHY[answer.status] ?? `The daemon answered ${answer.status}.`);
+      say(WHY[answer.status] ?? `The daemon returned status ${answer.status}.`);
     }
   } catch {
     say("The daemon does not answer.");

@@ -7,7 +7,7 @@ import { bytes, count, degrees, duration, number, position } from "./text.js";
 const COLUMNS = ["Input", "Publisher", "Poses", "Rate", "Newest", "Gaps", "Jumps", "Clock restarts", "Bad", "Refused"];
 
 function inputRow(input) {
-  const cells = [input.input, input.publisher || "nobody yet", count(input.poses), number(input.rate_hz, 1, "/s"),
+  const cells = [input.input, input.publisher || "none yet", count(input.poses), number(input.rate_hz, 1, "/s"),
     input.age_s === null ? "never" : `${duration(input.age_s)} ago`, count(input.gaps), count(input.jumps), count(input.clock_restarts),
     count(input.bad_messages), count(input.refused)];
   return make("tr", {}, ...cells.map((text, i) => make("td", { text, data: { label: COLUMNS[i] } })));
@@ -30,7 +30,7 @@ export function showPoses(body, poses) {
     if (poses.inputs.length) {
       parts.push(table(COLUMNS, poses.inputs.map(inputRow)));
     } else {
-      parts.push(make("p", { class: "none", text: "No input for poses is configured: the vehicle stays where it is." }));
+      parts.push(make("p", { class: "none", text: "No pose input is configured. The vehicle does not move." }));
     }
     const posed = [...(poses.vehicle ? [poseRow("vehicle", poses.vehicle)] : []), ...(poses.bodies ?? []).map((one) => poseRow(one.name, one))];
     if (posed.length) {

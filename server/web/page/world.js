@@ -8,7 +8,7 @@ export class WorldPanel {
   constructor(details, body) {
     this.details = details;
     this.body = body;
-    this.note = make("p", { class: "none", text: "Fetching the world." });
+    this.note = make("p", { class: "none", text: "Loading the world." });
     this.near = make("select", {}, make("option", { value: "whole", text: "Whole world" }), make("option", { value: "near", text: "Around the sonars" }));
     this.near.setAttribute("aria-label", "What the views show");
     this.near.addEventListener("change", () => this.show());
@@ -47,7 +47,7 @@ export class WorldPanel {
     try {
       const answer = await fetch("api/world");
       if (!answer.ok) {
-        throw new Error(`The daemon answered ${answer.status}.`);
+        throw new Error(`the daemon returned status ${answer.status}`);
       }
       this.world = await answer.json();
       this.views = [
@@ -59,7 +59,7 @@ export class WorldPanel {
         make("p", { class: "views-head" }, make("span", { text: `${this.world.name}, ${bodies} ${bodies === 1 ? "body" : "bodies"}` }), this.near),
         ...this.views.map((view) => view.element));
     } catch (error) {
-      setText(this.note, `The world could not be fetched: ${error.message}`);
+      setText(this.note, `Cannot load the world: ${error.message}`);
     }
     this.fetching = false;
     if (this.world) {

@@ -172,7 +172,7 @@ test("nonsense is answered, and harms nobody", async () => {
     await new Promise((resolve) => setTimeout(resolve, 20));
   }
   socket.send(Buffer.from([1, 2, 3, 255]));
-  await until("complaints", () => seen.problems.some((text) => text.includes("no channel 99")));
+  await until("complaints", () => seen.problems.some((text) => text.includes("Channel 99 does not exist")));
   await first(subscribe("/bow/transform"));
   socket.close();
 });

@@ -84,7 +84,7 @@ test("a viewer that comes late sees the last ping, and how old it is", async () 
   mock.becomeIdle(75);
   await openPage();
   await until("the last ping", async () => (await framesOf(page, 0)) >= 1);
-  await until("the age of the ping", async () => /^The last ping came 7[5-9] s ago\.$/.test(await head(page, 0).locator(".age").textContent()));
+  await until("the age of the ping", async () => /^Last ping 7[5-9] s ago\.$/.test(await head(page, 0).locator(".age").textContent()));
   assert.ok(await head(page, 0).locator(".empty").isHidden());
 });
 
@@ -94,11 +94,11 @@ test("an empty picture says what it waits for: a client, a pose, or the next pin
   const clients = mock.clients;
   mock.clients = [];
   await openPage();
-  await says("No client has connected. Start your driver, or sonarview: this sonar serves udp 127.0.0.2:52900.");
+  await says("No client has connected. Start your driver or sonarview. This sonar listens on udp 127.0.0.2:52900.");
   Object.assign(mock, { clients, withoutPose: 3, vehicle: null });
   await says("A client requests pings, but no pose of the vehicle has arrived. Send poses to pose stream udp 127.0.0.1:14600.");
   mock.vehicle = MOUNT;
-  await says("A client is connected. The picture begins with its next ping.");
+  await says("A client is connected. Its next ping starts the picture.");
   assert.ok(await head(page, 0).locator(".empty").isVisible());
 });
 
@@ -218,7 +218,7 @@ test("a daemon that was lost is said to be, and regained", async () => {
   const { port } = mock;
   await mock.stop();
   await state(page, "lost");
-  assert.match(await page.locator("#lost").textContent(), /does not answer/);
+  assert.match(await page.locator("#lost").textContent(), /No connection/);
   await mock.start(port);
   await state(page, "live");
   assert.ok(await page.locator("#lost").isHidden());

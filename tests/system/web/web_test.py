@@ -114,7 +114,7 @@ class Web(OwnMachine):
         answer = json.loads(text)
         self.assertEqual((status, answer["ready"], answer["pose_known"], answer["pose_age_s"]), (503, False, False, None))
         self.assertEqual(answer["reasons"],
-                         ["no pose of the vehicle is known: send poses to pose stream udp 127.0.0.1:14600"])
+                         ["the vehicle has no pose: send poses to pose stream udp 127.0.0.1:14600"])
         self.assertEqual(self.ask("GET", "/health")[0], 200, "it is alive all the same")
         self.send_pose()
         end = time.monotonic() + PATIENCE_S
@@ -396,7 +396,7 @@ class Web(OwnMachine):
                 break
             self.assertLess(time.monotonic(), end, "a viewer that never reads is kept")
             time.sleep(0.02)
-        self.assertRegex(daemon.output(), r"page: 127\.0\.0\.1:\d+ refused: a viewer that reads too slowly")
+        self.assertRegex(daemon.output(), r"web: 127\.0\.0\.1:\d+ refused: the viewer reads too slowly")
         while not all(ended(raw) for raw in silent):
             self.assertLess(time.monotonic(), end, "a silent connection is kept")
             time.sleep(0.2)

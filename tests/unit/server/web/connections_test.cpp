@@ -17,10 +17,11 @@ TEST(Connections, ViewersAreLimitedForEachPeerAndInAll) {
     EXPECT_EQ(connections.add_viewer(attacker), "");
   }
   EXPECT_EQ(connections.add_viewer(attacker),
-            "This address has 3 viewers already (web.max_viewers_per_peer).");
+            "Too many viewers from this address: 3 are connected, the maximum (web.max_viewers_per_peer).");
   EXPECT_EQ(connections.add_viewer(monitor), "");
   EXPECT_EQ(connections.add_viewer(monitor), "");
-  EXPECT_EQ(connections.add_viewer(monitor), "All 5 places of viewers are taken (web.max_viewers).");
+  EXPECT_EQ(connections.add_viewer(monitor),
+            "Too many viewers: 5 are connected, the maximum (web.max_viewers).");
   connections.remove_viewer(attacker);
   EXPECT_EQ(connections.add_viewer(monitor), "");
 }

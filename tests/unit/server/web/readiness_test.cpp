@@ -51,11 +51,11 @@ TEST(Readiness, NamesWhatIsMissing) {
   status.T_world_vehicle.reset();
   status.heads.emplace_back().name = "stern";
   EXPECT_THAT(why_not_ready(status),
-              ElementsAre("no pose of the vehicle is known: send poses to pose stream udp 127.0.0.1:14600",
+              ElementsAre("the vehicle has no pose: send poses to pose stream udp 127.0.0.1:14600",
                           "head 'stern' serves no address"));
   EXPECT_EQ(readiness_json(status)["ready"], false);
   status.inputs.clear();
-  EXPECT_EQ(why_not_ready(status)[0], "no pose of the vehicle is known");
+  EXPECT_EQ(why_not_ready(status)[0], "the vehicle has no pose");
 }
 
 TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
