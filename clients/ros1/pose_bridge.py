@@ -45,7 +45,7 @@ def normalize(position, orientation):
         return "orientation is not finite"
     norm = math.hypot(*numbers(orientation, "wxyz"))
     if not MIN_QUATERNION_NORM <= norm <= MAX_QUATERNION_NORM:
-        return "orientation has a norm outside 0.001..1000, so it is no rotation"
+        return "orientation has a norm outside 0.001..1000, so it is not a rotation"
     for name in "wxyz":
         setattr(orientation, name, getattr(orientation, name) / norm)
     return None

@@ -24,7 +24,7 @@ struct Setting {
 /// A difference between a client's request and the recording.
 struct Difference {
   std::string kind;  ///< "range", "gain", ...
-  std::string text;  ///< one phrase: "range 20.00 m asked for, 4.00 m sent"
+  std::string text;  ///< one phrase: "range 20.00 m requested, 4.00 m sent"
 };
 
 /// One ping to render, in SI units. Members that a device does not set keep their defaults.

@@ -462,9 +462,10 @@ void Device::Impl::notice_topside() {
     return;
   }
   actions_.notices.push_back(
-      {Notice::Level::info, topside_ != 0 ? "topside " + address_text(topside_) + " connected"
-                                          : "topside " + address_text(noticed_topside_) +
-                                                " lost: no command for the time-out, or reboot"});
+      {Notice::Level::info, topside_ != 0
+                                ? "topside " + address_text(topside_) + " connected"
+                                : "topside " + address_text(noticed_topside_) +
+                                      " lost: no command within the time-out, or a reboot command"});
   noticed_topside_ = topside_;
 }
 
@@ -513,9 +514,9 @@ std::vector<Counter> Device::counts() const {
           {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
           {"unknown_type", count.unknown_type},
           {"unsupported_data", count.unsupported_data, Shown::warns,
-           "{} ping configurations asked for data that is not made here (I/Q, channels) or for run mode 3"},
+           "{} ping configurations requested unsupported data (I/Q, channels) or run mode 3"},
           {"locked_out", count.locked_out, Shown::warns,
-           "{} commands were dropped: another topside has the head (lock_to_first)"},
+           "{} commands were dropped: another topside uses the head (lock_to_first)"},
           {"topside_changes", count.topside_changes},
           {"topside_timeouts", count.topside_timeouts},
           {"reboots", count.reboots}};

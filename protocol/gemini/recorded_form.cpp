@@ -112,29 +112,29 @@ std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
   // Tolerance: one line for the remainder of the compression, and range_slack for the rounded line rate.
   if (std::abs(job.range_m() - recorded.range_m()) > recorded.bin_m + range_slack * recorded.range_m()) {
     found.push_back(
-        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", job.range_m(), recorded.range_m())});
+        {"range", fmt::format("range {:.2f} m requested, {:.2f} m sent", job.range_m(), recorded.range_m())});
   }
   if (job.compression_log2 != sent.job.compression_log2) {
-    found.push_back({"compression", fmt::format("compression x{} asked for, x{} sent",
+    found.push_back({"compression", fmt::format("compression x{} requested, x{} sent",
                                                 1 << job.compression_log2, 1 << sent.job.compression_log2)});
   }
   if (recorded.gain_percent >= 0.0 &&
       std::abs(job.gain_percent - recorded.gain_percent) > gain_step_percent) {
-    found.push_back({"gain", fmt::format("gain {:.0f} % asked for, {:.0f} % sent", job.gain_percent,
+    found.push_back({"gain", fmt::format("gain {:.0f} % requested, {:.0f} % sent", job.gain_percent,
                                          recorded.gain_percent)});
   }
   if (std::abs(job.assumed_sound_speed_mps - recorded.sound_speed_mps) > sound_speed_step_mps) {
-    found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s asked for, {:.1f} m/s sent",
+    found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s requested, {:.1f} m/s sent",
                                                 job.assumed_sound_speed_mps, recorded.sound_speed_mps)});
   }
   if (job.sixteen_bit) {
-    found.push_back({"16_bit", "16 bits asked for, 8 bits sent"});
+    found.push_back({"16_bit", "16 bits requested, 8 bits sent"});
   }
   if (asked.rle_threshold > 0) {
-    found.push_back({"run_lengths", "run lengths asked for, all samples sent"});
+    found.push_back({"run_lengths", "run lengths requested, all samples sent"});
   }
   if (!job.transmit) {
-    found.push_back({"listening_only", "listening only asked for, a ping with its echoes sent"});
+    found.push_back({"listening_only", "listening only requested, a ping with its echoes sent"});
   }
   return found;
 }

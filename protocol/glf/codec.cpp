@@ -36,10 +36,10 @@ CiHeader read_header_of(RecordType type, ByteReader& reader) {
 
 void require_consistent(const ImageRecord& image) {
   if (image.pixels.size() != std::uint64_t{image.lines} * image.beams || image.pixels.size() > max_pixels) {
-    throw std::invalid_argument("pixels of an image are not lines * beams, or too many");
+    throw std::invalid_argument("an image must have lines * beams pixels, at most max_pixels");
   }
   if (image.bearings_rad.size() != image.beams) {
-    throw std::invalid_argument("an image has not one bearing for each beam");
+    throw std::invalid_argument("an image must have one bearing for each beam");
   }
 }
 

@@ -56,7 +56,7 @@ Packer::Packer(const std::string& stamp, std::string config_xml, const DatSummar
     throw std::invalid_argument("the .cfg of a log must fit one block");
   }
   if (dat.size > max_dat_size) {
-    throw std::invalid_argument("a .dat of this size cannot be packed");
+    throw std::invalid_argument("the .dat is too large to be packed");
   }
   const auto config_size = static_cast<std::uint32_t>(config_xml_.size());
   files_[0] = {.name = config_name(stamp), .size = config_size, .crc = crc_of(config_xml_)};

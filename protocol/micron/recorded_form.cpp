@@ -51,31 +51,31 @@ std::vector<Difference> differences(const HeadCommand& asked, const PingJob& sen
   const double bin_m = bin_time_s(effective_ad_interval(asked)) * sent.sound_speed_mps / 2.0;
   if (std::abs(bins * bin_m - sent.range_m()) > std::max(bin_m, sent.bin_m())) {
     found.push_back(
-        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", bins * bin_m, sent.range_m())});
+        {"range", fmt::format("range {:.2f} m requested, {:.2f} m sent", bins * bin_m, sent.range_m())});
   }
   if (bins != sent.bins()) {
-    found.push_back({"bins", fmt::format("{} bins asked for, {} sent", bins, sent.bins())});
+    found.push_back({"bins", fmt::format("{} bins requested, {} sent", bins, sent.bins())});
   }
   if (asked.gain[0] != recorded.gain) {
-    found.push_back({"gain", fmt::format("gain {:.1f} dB asked for, {:.1f} dB sent", gain_db(asked.gain[0]),
+    found.push_back({"gain", fmt::format("gain {:.1f} dB requested, {:.1f} dB sent", gain_db(asked.gain[0]),
                                          sent.gain_db)});
   }
   const bool eight_bit = asked.has(control_bits::eight_bit);
   if (eight_bit != recorded.eight_bit()) {
-    found.push_back({"bits", fmt::format("{} asked for, {} sent", bits_text(eight_bit),
+    found.push_back({"bits", fmt::format("{} requested, {} sent", bits_text(eight_bit),
                                          bits_text(recorded.eight_bit()))});
   }
   const std::string asked_sector = sector_text(asked.control, asked.left_limit, asked.right_limit);
   const std::string sector = sector_text(recorded.control, recorded.left_limit, recorded.right_limit);
   if (asked_sector != sector) {
-    found.push_back({"sector", fmt::format("sector {} asked for, {} sent", asked_sector, sector)});
+    found.push_back({"sector", fmt::format("sector {} requested, {} sent", asked_sector, sector)});
   }
   if (asked.step != recorded.step) {
     found.push_back(
-        {"step", fmt::format("step {} asked for, {} sent (1/16 gradian)", asked.step, recorded.step)});
+        {"step", fmt::format("step {} requested, {} sent (1/16 gradian)", asked.step, recorded.step)});
   }
   if (asked.has(control_bits::transmit_off) && sent.transmit) {
-    found.push_back({"listening_only", "listening only asked for, a line with its echoes sent"});
+    found.push_back({"listening_only", "listening only requested, a line with its echoes sent"});
   }
   return found;
 }

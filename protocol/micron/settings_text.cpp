@@ -75,19 +75,19 @@ void SettingsWarnings::check(const HeadCommand& parameters, std::vector<Notice>&
   namespace bits = control_bits;
   const auto warn = [&](std::string text) { notices.push_back({Notice::Level::warning, std::move(text)}); };
   if (parameters.gain[0] > gain_full_scale && !std::exchange(said_gain_, true)) {
-    warn(fmt::format("the client's gain byte {} is beyond 210, the most there is: taken as 80 dB",
+    warn(fmt::format("the client's gain byte {} is beyond 210, the maximum: the head uses 80 dB",
                      parameters.gain[0]));
   }
   const bool told_to = parameters.has(bits::stare) || parameters.has(bits::motor_off);
   if (stares(parameters) && !told_to && !std::exchange(said_limits_, true)) {
     warn(fmt::format(
-        "the client's sector has equal limits ({}): the head stares there; 0 to 6400 is a whole turn",
+        "the client's sector has equal limits ({}): the head holds still there; a whole turn is 0 to 6400",
         parameters.left_limit));
   }
   if (parameters.has(bits::invert) != config_.mounted_inverted && !std::exchange(said_mirrored_, true)) {
     warn(
-        fmt::format("left and right are swapped: the client says that the head is mounted boot {}, "
-                    "`device.mounted_inverted` says boot {}",
+        fmt::format("left and right are swapped: the client's invert bit is for a head mounted boot {}, "
+                    "`device.mounted_inverted` for one mounted boot {}",
                     parameters.has(bits::invert) ? "down" : "up", config_.mounted_inverted ? "down" : "up"));
   }
 }

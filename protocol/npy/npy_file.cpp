@@ -58,7 +58,7 @@ std::string encode(const Table& table) {
 
 Result<Table, std::string> parse(std::string_view file) {
   if (file.size() < preamble_bytes || !file.starts_with(magic)) {
-    return std::string("is no NumPy file of format 1.0");
+    return std::string("is not a NumPy file of format 1.0");
   }
   const std::size_t header_bytes =
       static_cast<unsigned char>(file[8]) + 256U * static_cast<unsigned char>(file[9]);
@@ -67,7 +67,7 @@ Result<Table, std::string> parse(std::string_view file) {
       R"(\{'descr': '(\|u1|<u2)', 'fortran_order': False, 'shape': \((\d+), (\d+)\), \}\s*)");
   std::smatch parts;
   if (text.size() < header_bytes || !std::regex_match(text, parts, form)) {
-    return std::string("is no table of 8 or 16 bit samples");
+    return std::string("is not a table of 8-bit or 16-bit samples");
   }
   if (parts.length(2) > 9 || parts.length(3) > 9) {
     return std::string("has too many samples");
@@ -79,7 +79,7 @@ Result<Table, std::string> parse(std::string_view file) {
   }
   file.remove_prefix(preamble_bytes + header_bytes);
   if (!(parts.str(1) == eight_bit ? fill(table.u8, file, count) : fill(table.u16, file, count))) {
-    return std::string("does not hold as many samples as it says");
+    return std::string("does not have the number of samples in its header");
   }
   return table;
 }

@@ -143,7 +143,7 @@ void Device::Impl::take(TimePoint now, const ClientCame& came) {
     }
     actions_.notices.push_back(
         {Notice::Level::info, "client " + endpoint_text(client_->remote) +
-                                  " is closed: it is silent, and another wants its place"});
+                                  " is disconnected: it was idle, and another client connected"});
     actions_.disconnect.push_back(*client_);
     forget_client();
   }
@@ -401,7 +401,7 @@ std::vector<Counter> Device::Impl::counts() const {
           {"pings_cancelled", cancelled_count_},
           {"commands", commands_},
           {"bad_commands", bad_commands_, Shown::warns, "{} commands were too short or too long"},
-          {"other_clients", other_clients_, Shown::warns, "{} times a second client came"}};
+          {"other_clients", other_clients_, Shown::warns, "{} times a second client connected"}};
 }
 
 // ---- Device

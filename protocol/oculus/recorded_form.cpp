@@ -89,31 +89,31 @@ std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,
   const double row_m = std::max(want.range_resolution_m, recorded.bin_m);
   if (std::abs(asked.range_m - recorded.range_m()) > row_m) {
     found.push_back(
-        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", asked.range_m, recorded.range_m())});
+        {"range", fmt::format("range {:.2f} m requested, {:.2f} m sent", asked.range_m, recorded.range_m())});
   }
   if (want.beams != recorded.beams) {
-    found.push_back({"beams", fmt::format("{} beams asked for, {} sent", want.beams, recorded.beams)});
+    found.push_back({"beams", fmt::format("{} beams requested, {} sent", want.beams, recorded.beams)});
   }
   if (want.frequency_hz != sent.result.frequency_hz) {
-    found.push_back({"frequency", fmt::format("{:.0f} kHz asked for, {:.0f} kHz sent",
+    found.push_back({"frequency", fmt::format("{:.0f} kHz requested, {:.0f} kHz sent",
                                               want.frequency_hz * 1e-3, sent.result.frequency_hz * 1e-3)});
   }
   const double gain_percent = asked.asked.fire.gain_percent;
   if (recorded.gain_percent >= 0.0 && std::abs(gain_percent - recorded.gain_percent) > gain_step_percent) {
     found.push_back(
-        {"gain", fmt::format("gain {:.0f} % asked for, {:.0f} % sent", gain_percent, recorded.gain_percent)});
+        {"gain", fmt::format("gain {:.0f} % requested, {:.0f} % sent", gain_percent, recorded.gain_percent)});
   }
   if (std::abs(want.sound_speed_mps - recorded.sound_speed_mps) > sound_speed_step_mps) {
-    found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s asked for, {:.1f} m/s sent",
+    found.push_back({"sound_speed", fmt::format("sound speed {:.1f} m/s requested, {:.1f} m/s sent",
                                                 want.sound_speed_mps, recorded.sound_speed_mps)});
   }
   const double exponent = gamma_exponent(asked.asked.fire.gamma);
   if (std::abs(exponent - recorded.amplitude_exponent) > gamma_step) {
-    found.push_back({"gamma", fmt::format("gamma {:.0f} asked for, {:.0f} sent", 255.0 * exponent,
+    found.push_back({"gamma", fmt::format("gamma {:.0f} requested, {:.0f} sent", 255.0 * exponent,
                                           255.0 * recorded.amplitude_exponent)});
   }
   if (want.data_size != DataSize::bits_8) {
-    found.push_back({"bits", fmt::format("{} bits asked for, 8 sent in their place",
+    found.push_back({"bits", fmt::format("{} bits requested, 8 sent in their place",
                                          8 * bytes_per_sample(want.data_size))});
   }
   return found;

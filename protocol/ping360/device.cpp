@@ -44,7 +44,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.reset_silence >= zero, "reset_silence must not be negative");
   require(config.bootloader_silence >= zero, "bootloader_silence must not be negative");
   require(!config.lock_to_first || config.idle_timeout > zero,
-          "idle_timeout must be positive where lock_to_first is set");
+          "idle_timeout must be positive if lock_to_first is set");
   require(config.max_clients >= 2, "max_clients must be at least 2");
   return config;
 }
@@ -207,7 +207,7 @@ bool Device::Impl::can_fall_silent(const Client& client) const {
 void Device::Impl::forget_silent_clients(TimePoint now) {
   for (std::size_t i = clients_.size(); i-- > 0;) {
     if (can_fall_silent(clients_[i]) && now - clients_[i].heard >= config_.idle_timeout) {
-      forget(now, i, "it has said nothing for long");
+      forget(now, i, "timed out");
     }
   }
 }
@@ -235,7 +235,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
     read_frames(now, client);
   } else if (!is_serial(client.peer)) {
     client.input.clear();
-    end_scan(now, "an empty datagram came");
+    end_scan(now, "empty datagram received");
   }
   if (now < silent_until_) {
     clients_.clear();  // a reset command came
@@ -258,7 +258,7 @@ void Device::Impl::read_frames(TimePoint now, Client& client) {
 
 void Device::Impl::note_break(TimePoint now, Client& client) {
   if (client.input.take_baud_bytes() && is_serial(client.peer)) {
-    end_scan(now, "a break came");
+    end_scan(now, "break received");
   }
 }
 
@@ -387,7 +387,7 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& co
   }
   warnings_.taken(command, notices_);
   if (scanner_.running_scan()) {
-    notice("auto scan ended: a transducer command came");
+    notice("auto scan ended: transducer command received");
   }
   scanner_.command(now, asker, command);
 }
@@ -490,9 +490,9 @@ std::vector<Counter> Device::counts() const {
       {"bad_checksums", count.bad_checksums},
       {"other_destinations", count.other_destinations, Shown::warns, "{} commands were for another device"},
       {"clients_dropped", count.clients_dropped, Shown::warns,
-       "{} clients were forgotten: there were too many at a time"},
+       "{} clients were dropped: too many at a time (device.max_clients)"},
       {"locked_out", count.locked_out, Shown::warns,
-       "{} datagrams were dropped: another client has the head (lock_to_first)"},
+       "{} datagrams were dropped: another client uses the head (lock_to_first)"},
       {"unheard_bytes", count.unheard_bytes},
       {"resets", count.resets},
   };

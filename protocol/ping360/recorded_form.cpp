@@ -42,19 +42,19 @@ std::vector<Difference> differences(const PingForm& asked, const PingJob& sent, 
   const double range_m = wanted.number_of_samples * sample_m;
   if (std::abs(range_m - sent.range_m()) > std::max(sample_m, sent.bin_m())) {
     found.push_back(
-        {"range", fmt::format("range {:.2f} m asked for, {:.2f} m sent", range_m, sent.range_m())});
+        {"range", fmt::format("range {:.2f} m requested, {:.2f} m sent", range_m, sent.range_m())});
   }
-  compare("samples", "{} samples asked for, {} sent", wanted.number_of_samples, sent.bins());
-  compare("gain", "gain {} asked for, {} sent", wanted.gain_setting, made.gain_setting);
-  compare("pulse", "pulse of {} us asked for, {} us sent", wanted.transmit_duration_us,
+  compare("samples", "{} samples requested, {} sent", wanted.number_of_samples, sent.bins());
+  compare("gain", "gain {} requested, {} sent", wanted.gain_setting, made.gain_setting);
+  compare("pulse", "pulse of {} us requested, {} us sent", wanted.transmit_duration_us,
           made.transmit_duration_us);
-  compare("frequency", "{} kHz asked for, {} kHz sent", wanted.transmit_frequency_khz,
+  compare("frequency", "{} kHz requested, {} kHz sent", wanted.transmit_frequency_khz,
           made.transmit_frequency_khz);
   const std::string asked_where = where_text(asked);
   const std::string where = where_text(recorded);
   if (asked_where != where) {
     found.push_back(
-        {asked.scan ? "scan" : "angle", fmt::format("{} asked for, {} sent", asked_where, where)});
+        {asked.scan ? "scan" : "angle", fmt::format("{} requested, {} sent", asked_where, where)});
   }
   return found;
 }

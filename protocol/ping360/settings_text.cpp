@@ -36,7 +36,7 @@ std::string scan_text(const AutoTransmit& scan) {
 void SettingsWarnings::refused(const OutOfRange& field, std::vector<Notice>& notices) {
   if (said_.insert(field.field).second) {
     notices.push_back(
-        {Notice::Level::warning, fmt::format("the client's {} {} is refused: {} to {} is taken", field.field,
+        {Notice::Level::warning, fmt::format("the client's {} {} is refused: expected {} to {}", field.field,
                                              field.value, field.least, field.most)});
   }
 }

@@ -104,7 +104,7 @@ Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message) {
   }
   keep_library_quiet();
   if (!update.ParseFromArray(message.data(), static_cast<int>(message.size()))) {
-    return PoseError{Kind::malformed, "message", "is no PoseUpdate of pose.proto"};
+    return PoseError{Kind::malformed, "message", "is not a PoseUpdate (pose.proto)"};
   }
   if (update.frame() != FRAME_ENU_FLU && update.frame() != FRAME_NED_FRD) {
     return PoseError{Kind::bad_value, "frame", "is neither FRAME_ENU_FLU nor FRAME_NED_FRD"};

@@ -140,7 +140,7 @@ const char* describe(TransformFault fault) {
     case TransformFault::orientation_not_finite:
       return "orientation is not finite";
     case TransformFault::orientation_norm:
-      return "orientation has a norm outside 0.001..1000, so it is no rotation";
+      return "orientation has a norm outside 0.001..1000, so it is not a rotation";
   }
   return "unknown fault";
 }

@@ -112,8 +112,8 @@ class Requests(ReplayTest):
         self.assertEqual([ping["crc32"] for ping in pings], self.crcs())
         self.assertEqual({ping["lines"] for ping in pings}, {str(LINES)})
         self.assertEqual(daemon.wait(10), 0, daemon.tail())
-        for text in ("range 20.00 m asked for, 4.00 m sent", "gain 80 % asked for, 50 % sent",
-                     "compression x4 asked for, x1 sent", "16 bits asked for, 8 bits sent"):
+        for text in ("range 20.00 m requested, 4.00 m sent", "gain 80 % requested, 50 % sent",
+                     "compression x4 requested, x1 sent", "16 bits requested, 8 bits sent"):
             self.assertEqual(daemon.output().count("differs from the recording: " + text), 1, daemon.tail())
         self.assertIn("range=10 compression=10 gain=10 16_bit=10", daemon.output())
 

@@ -127,8 +127,8 @@ class Recording(HeadCase):
             self.assertEqual((ping.ranges, ping.beams, ping.resolution_m), (was.ranges, was.beams, was.resolution_m))
             self.assertEqual([row[1::2] for row in ping.rows], was.rows)
         output = player.output()
-        for difference in ("range 2.00 m asked for, 5.00 m sent", "256 beams asked for, 512 sent",
-                           "1200 kHz asked for, 750 kHz sent", "gain 80 % asked for, 50 % sent"):
+        for difference in ("range 2.00 m requested, 5.00 m sent", "256 beams requested, 512 sent",
+                           "1200 kHz requested, 750 kHz sent", "gain 80 % requested, 50 % sent"):
             self.assertIn(difference, output)
 
     # ---- sonard render

@@ -270,7 +270,7 @@ class Log(HeadCase):
                      r"info head=ping360: auto scan ended: motor_off$",
                      r"info head=ping360: the client's angle 400 is taken as 0$",
                      r"info head=ping360: pings range=1\.98m samples=1200 .* frequency=750kHz gain=low$",
-                     r"warning head=ping360: the client's sample_period 79 is refused: 80 to 40000 is taken$"):
+                     r"warning head=ping360: the client's sample_period 79 is refused: expected 80 to 40000$"):
             self.daemon.wait_for_line(line, PATIENCE_S)
         self.assertEqual(self.daemon.output().count("is refused"), 1, "it is said once")
 

@@ -538,7 +538,7 @@ class Replays(RecordingTest):
                                                  play=self.files(".mcap")[0])
         self.check_same(first, again)
         self.assertEqual(self.on_the_wire(heard_again[:len(heard)]), self.on_the_wire(heard))
-        self.assertEqual(daemon.output().count("head=stern: differs from the recording: gain 48.0 dB asked for, 32.0 dB sent"),
+        self.assertEqual(daemon.output().count("head=stern: differs from the recording: gain 48.0 dB requested, 32.0 dB sent"),
                          1, daemon.tail())
         self.assertIn(f"pings that differ from the request: gain={count}", daemon.output())
 

@@ -236,7 +236,7 @@ TEST_P(BadMessages, AreRefusedWithTheReason) {
 
 constexpr auto malformed = PoseError::Kind::malformed;
 constexpr auto bad_value = PoseError::Kind::bad_value;
-constexpr auto no_rotation = "vehicle: orientation has a norm outside 0.001..1000, so it is no rotation";
+constexpr auto no_rotation = "vehicle: orientation has a norm outside 0.001..1000, so it is not a rotation";
 
 INSTANTIATE_TEST_SUITE_P(
     All, BadMessages,
@@ -277,8 +277,8 @@ INSTANTIATE_TEST_SUITE_P(
                    joined(good_vehicle, Wire{}.nested(5, wire_body("a", wire_pose({nan, 0, 0}, {})))),
                    bad_value, "bodies.pose: position is not finite"},
         BadMessage{
-            "text", {'h', 'e', 'l', 'l', 'o', '\n'}, malformed, "message: is no PoseUpdate of pose.proto"},
-        BadMessage{"cut_off", {0x1A, 0x20, 0x0A}, malformed, "message: is no PoseUpdate of pose.proto"},
+            "text", {'h', 'e', 'l', 'l', 'o', '\n'}, malformed, "message: is not a PoseUpdate (pose.proto)"},
+        BadMessage{"cut_off", {0x1A, 0x20, 0x0A}, malformed, "message: is not a PoseUpdate (pose.proto)"},
         BadMessage{"too_long", Bytes(max_message_bytes + 1), malformed,
                    "message: is longer than 65507 bytes"}),
     [](const auto& tested) { return tested.param.name; });

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"out_of_range", header + "0,1e999,0,0,0,0,0,1\n", "t.csv:2: x '1e999' is out of range"},
         BadFile{"far", header + "0,1e9,0,0,0,0,0,1\n", "t.csv:2: position is beyond 1e8 m"},
         BadFile{"zero_quaternion", header + "0,0,0,0,0,0,0,0\n",
-                "t.csv:2: orientation has a norm outside 0.001..1000, so it is no rotation"},
+                "t.csv:2: orientation has a norm outside 0.001..1000, so it is not a rotation"},
         BadFile{"time_stands", header + "1,0,0,0,0,0,0,1\n# x\n1.0,0,0,0,0,0,0,1\n",
                 "t.csv:4: t '1.0' is not after the time of line 2"},
         BadFile{"time_falls", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",

@@ -169,12 +169,12 @@ TEST_F(LoggedDifferences, each_kind_is_said_once_and_counted) {
     playback.started(0, job);
     return taken();
   };
-  const Difference range{"range", "range 20.00 m asked for, 4.00 m sent"};
+  const Difference range{"range", "range 20.00 m requested, 4.00 m sent"};
   EXPECT_EQ(begin({range}),
-            "warning head=bow: differs from the recording: range 20.00 m asked for, 4.00 m sent\n");
-  EXPECT_EQ(begin({{"range", "range 30.00 m asked for, 4.00 m sent"}}), "") << "it is of the same kind";
-  EXPECT_EQ(begin({range, {"16_bit", "16 bits asked for, 8 bits sent"}}),
-            "warning head=bow: differs from the recording: 16 bits asked for, 8 bits sent\n");
+            "warning head=bow: differs from the recording: range 20.00 m requested, 4.00 m sent\n");
+  EXPECT_EQ(begin({{"range", "range 30.00 m requested, 4.00 m sent"}}), "") << "it is of the same kind";
+  EXPECT_EQ(begin({range, {"16_bit", "16 bits requested, 8 bits sent"}}),
+            "warning head=bow: differs from the recording: 16 bits requested, 8 bits sent\n");
   playback.log_totals();
   EXPECT_EQ(taken(), "info head=bow: pings that differ from the request: range=3 16_bit=1\n");
 }

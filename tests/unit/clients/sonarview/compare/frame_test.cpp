@@ -119,13 +119,15 @@ TEST_F(Frame, OtherFilesAreRefused) {
   expect_refused(testing::TempDir(), "is a folder");
   expect_refused(write("text.png", "no picture"), "text.png: is not a picture");
   expect_refused(write("empty.png", ""), "is not a picture");
-  expect_refused(write("text.npy", "no array"), "is no NumPy file");
-  expect_refused(write("floats.npy", npy("<f4", "(1, 1)", "abcd")), "is no table of 8 or 16 bit samples");
+  expect_refused(write("text.npy", "no array"), "is not a NumPy file");
+  expect_refused(write("floats.npy", npy("<f4", "(1, 1)", "abcd")),
+                 "is not a table of 8-bit or 16-bit samples");
   expect_refused(write("flat.npy", npy("|u1", "(4,)", "abcd")), "is no table");
-  expect_refused(write("short.npy", npy("|u1", "(2, 3)", "abcde")), "does not hold as many samples");
-  expect_refused(write("long.npy", npy("|u1", "(2, 2)", "abcde")), "does not hold as many samples");
+  expect_refused(write("short.npy", npy("|u1", "(2, 3)", "abcde")), "does not have the number of samples");
+  expect_refused(write("long.npy", npy("|u1", "(2, 2)", "abcde")), "does not have the number of samples");
   expect_refused(write("none.npy", npy("|u1", "(0, 3)", "")), "has no samples");
-  expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")), "does not hold as many samples");
+  expect_refused(write("huge.npy", npy("|u1", "(999999, 999999)", "")),
+                 "does not have the number of samples");
   expect_refused(write("longer.npy", npy("|u1", "(9999999999, 1)", "")), "too many samples");
   expect_refused(write("text.jsonl", "no line\n") + "#0", "text.jsonl:1:");
 }

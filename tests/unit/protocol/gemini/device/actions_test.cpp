@@ -31,7 +31,7 @@ TEST(Notices, TellOfATopsideThatComesAndGoes) {
   EXPECT_EQ(bench.notices.size(), 1U);
   bench.run_until(3500ms);
   EXPECT_EQ(texts(bench.last.notices),
-            Texts{"topside 192.168.2.5 lost: no command for the time-out, or reboot"});
+            Texts{"topside 192.168.2.5 lost: no command within the time-out, or a reboot command"});
   bench.run_until(20s);
   EXPECT_EQ(bench.notices.size(), 2U);
   bench.command(to_head<StatusRequest>());
@@ -51,12 +51,12 @@ TEST(Notices, TellOfATopsideThatRebootsTheHead) {
   bench.command(to_head<Reboot>());
   EXPECT_EQ(texts(bench.notices),
             (Texts{"topside 192.168.2.5 connected",
-                   "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));
+                   "topside 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
   bench.run_until(6s);
   bench.command(to_head<Reboot>());  // the first command of this topside, and its last
   EXPECT_EQ(texts(bench.last.notices),
             (Texts{"topside 192.168.2.5 connected",
-                   "topside 192.168.2.5 lost: no command for the time-out, or reboot"}));
+                   "topside 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
 }
 
 TEST(Notices, CommandsForOthersConnectNobody) {

@@ -144,10 +144,10 @@ TEST_F(Asked, EachKindIsTold) {
   asked.rle_threshold = 3;
   asked.job.transmit = false;
   EXPECT_EQ(all(), (std::vector<std::string>{
-                       "range 20.00 m asked for, 4.00 m sent", "compression x4 asked for, x1 sent",
-                       "gain 80 % asked for, 50 % sent", "sound speed 1480.0 m/s asked for, 1500.0 m/s sent",
-                       "16 bits asked for, 8 bits sent", "run lengths asked for, all samples sent",
-                       "listening only asked for, a ping with its echoes sent"}));
+                       "range 20.00 m requested, 4.00 m sent", "compression x4 requested, x1 sent",
+                       "gain 80 % requested, 50 % sent", "sound speed 1480.0 m/s requested, 1500.0 m/s sent",
+                       "16 bits requested, 8 bits sent", "run lengths requested, all samples sent",
+                       "listening only requested, a ping with its echoes sent"}));
 }
 
 TEST_F(Asked, AGainThatTheLogDoesNotSayIsNoDifference) {

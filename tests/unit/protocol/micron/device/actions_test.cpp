@@ -113,7 +113,7 @@ TEST(Warnings, of_a_gain_beyond_the_most_there_is_come_once) {
   command.gain[0] = 211;
   bench.command(command);
   EXPECT_EQ(texts(bench.last.notices, Notice::Level::warning),
-            Texts{"the client's gain byte 211 is beyond 210, the most there is: taken as 80 dB"});
+            Texts{"the client's gain byte 211 is beyond 210, the maximum: the head uses 80 dB"});
   command.gain[0] = 255;
   bench.command(command);
   bench.command(Reboot{});
@@ -125,9 +125,8 @@ TEST(Warnings, of_a_gain_beyond_the_most_there_is_come_once) {
 TEST(Warnings, of_equal_limits_come_once) {
   Bench bench;
   bench.command(sector(1600, 1600));
-  EXPECT_EQ(
-      warnings(bench),
-      Texts{"the client's sector has equal limits (1600): the head stares there; 0 to 6400 is a whole turn"});
+  EXPECT_EQ(warnings(bench), Texts{"the client's sector has equal limits (1600): the head holds still there; "
+                                   "a whole turn is 0 to 6400"});
   bench.command(sector(1600, 1600));
   bench.command(sector(800, 800));
   EXPECT_EQ(warnings(bench).size(), 1U);
@@ -161,10 +160,11 @@ TEST(Warnings, of_sides_that_are_swapped_come_once) {
     bench.command(command);
     EXPECT_EQ(
         warnings(bench),
-        Texts{inverted ? "left and right are swapped: the client says that the head is mounted boot up, "
-                         "`device.mounted_inverted` says boot down"
-                       : "left and right are swapped: the client says that the head is mounted boot "
-                         "down, `device.mounted_inverted` says boot up"});
+        Texts{inverted
+                  ? "left and right are swapped: the client's invert bit is for a head mounted boot up, "
+                    "`device.mounted_inverted` for one mounted boot down"
+                  : "left and right are swapped: the client's invert bit is for a head mounted boot down, "
+                    "`device.mounted_inverted` for one mounted boot up"});
   }
 }
 

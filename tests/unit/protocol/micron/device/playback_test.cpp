@@ -103,7 +103,7 @@ TEST_F(MicronPlayback, the_job_says_how_it_differs_from_what_is_asked_for) {
     kinds.push_back(difference.kind);
   }
   EXPECT_EQ(kinds, (std::vector<std::string>{"range", "bins", "gain", "sector", "step"}));
-  EXPECT_EQ(bench.jobs[0].differences.at(1).text, "20 bins asked for, 30 sent");
+  EXPECT_EQ(bench.jobs[0].differences.at(1).text, "20 bins requested, 30 sent");
 }
 
 TEST_F(MicronPlayback, a_ping_that_does_not_say_how_it_travelled_is_none) {

@@ -78,11 +78,11 @@ TEST(LineDifferences, the_same_is_no_difference_and_each_kind_is_told) {
   asked.gain[0] = 210;
   asked.step = 8;
   EXPECT_EQ(texts(differences(asked, sent, line)),
-            (std::vector<std::string>{"range 40.70 m asked for, 10.18 m sent", "800 bins asked for, 400 sent",
-                                      "gain 80.0 dB asked for, 40.0 dB sent", "4 bits asked for, 8 bits sent",
-                                      "sector -45.0 to 44.9 degrees asked for, all round sent",
-                                      "step 8 asked for, 32 sent (1/16 gradian)",
-                                      "listening only asked for, a line with its echoes sent"}));
+            (std::vector<std::string>{"range 40.70 m requested, 10.18 m sent", "800 bins requested, 400 sent",
+                                      "gain 80.0 dB requested, 40.0 dB sent", "4 bits requested, 8 bits sent",
+                                      "sector -45.0 to 44.9 degrees requested, all round sent",
+                                      "step 8 requested, 32 sent (1/16 gradian)",
+                                      "listening only requested, a line with its echoes sent"}));
 }
 
 }  // namespace

@@ -262,7 +262,7 @@ TEST(Ping360Checklist3, a_scan_out_of_range_is_refused) {
   bench.run_for(1s);
   EXPECT_TRUE(bench.jobs.empty());
   EXPECT_EQ(
-      std::ranges::count(bench.notices, "the client's number_of_samples 1250 is refused: 1 to 1200 is taken"),
+      std::ranges::count(bench.notices, "the client's number_of_samples 1250 is refused: expected 1 to 1200"),
       1);
 }
 
@@ -456,7 +456,7 @@ TEST_F(Ping360Checklist5, motor_off_is_acknowledged_every_time) {
 TEST_F(Ping360Checklist5, a_transducer_command) {
   scan();
   bench.command(ping_at(5));
-  expect_stopped("a transducer command came");
+  expect_stopped("transducer command received");
   EXPECT_EQ(bench.all<DeviceData>(before).size(), 1U);
 }
 
@@ -471,13 +471,13 @@ TEST_F(Ping360Checklist5, an_empty_datagram_and_the_next_is_heard_at_once) {
   scan();
   bench.raw({});
   EXPECT_EQ(bench.ask(GeneralRequest{4}).size(), 1U);
-  expect_stopped("an empty datagram came");
+  expect_stopped("empty datagram received");
 }
 
 TEST_F(Ping360Checklist5, u_on_the_serial_line) {
   scan(serial_client);
   bench.raw({'U', 'U', 'U', 0}, serial_client);
-  expect_stopped("a break came");
+  expect_stopped("break received");
 }
 
 TEST_F(Ping360Checklist5, u_before_an_order_stops_what_was_and_not_what_is_ordered) {

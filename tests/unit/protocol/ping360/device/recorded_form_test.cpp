@@ -54,13 +54,13 @@ TEST(Ping360Differences, the_same_is_no_difference_and_each_kind_is_told) {
                                             .number_of_samples = 1200});
   EXPECT_EQ(
       texts(differences(asked, sent, form)),
-      (std::vector<std::string>{"range 19.98 m asked for, 0.30 m sent", "1200 samples asked for, 200 sent",
-                                "gain 1 asked for, 0 sent", "pulse of 50 us asked for, 32 us sent",
-                                "800 kHz asked for, 740 kHz sent", "angle 8 asked for, angle 7 sent"}));
+      (std::vector<std::string>{"range 19.98 m requested, 0.30 m sent", "1200 samples requested, 200 sent",
+                                "gain 1 requested, 0 sent", "pulse of 50 us requested, 32 us sent",
+                                "800 kHz requested, 740 kHz sent", "angle 8 requested, angle 7 sent"}));
   const auto of_scan = differences(form_of(scan_of(0, 399), 8), sent, form);
   ASSERT_EQ(of_scan.size(), 1U);
   EXPECT_EQ(of_scan[0].kind, "scan");
-  EXPECT_EQ(of_scan[0].text, "scan 0 to 399 gradians, step 1 asked for, angle 7 sent");
+  EXPECT_EQ(of_scan[0].text, "scan 0 to 399 gradians, step 1 requested, angle 7 sent");
 }
 
 }  // namespace
