@@ -50,9 +50,9 @@ void EngineSwitch::lose_gpu(const std::string& reason) {
   since_loss_s_ = 0.0;
   cpu();
   describe();
-  report(fmt::format("the GPU is lost: {}. The engine is cpu from now on{}", reason,
+  report(fmt::format("engine: the GPU is lost: {}; the CPU renders from now on{}", reason,
                      options_.gpu.retry_s > 0.0
-                         ? fmt::format("; the GPU is tried again every {:g} s", options_.gpu.retry_s)
+                         ? fmt::format(", and the GPU is tried again every {:g} s", options_.gpu.retry_s)
                          : ""));
 }
 
@@ -68,7 +68,7 @@ void EngineSwitch::retry_gpu() {
     return;  // the loss was already reported
   }
   describe();
-  report("the GPU is back: the engine is " + description_);
+  report("engine: the GPU is back, using " + description_);
 }
 
 /// @param too_large gets the message if a request does not fit on the GPU
@@ -109,7 +109,7 @@ void EngineSwitch::images(std::span<const EchoJob> jobs) {
   cpu().images(jobs);
   if (!too_large.empty() && !told_too_large_) {
     told_too_large_ = true;
-    report(fmt::format("the GPU cannot make a ping, the CPU does: {}. Said once", too_large));
+    report(fmt::format("engine: the GPU cannot render a ping, using the CPU: {} (logged once)", too_large));
   }
 }
 
@@ -146,7 +146,7 @@ void EngineSwitch::set_refraction(double bend_per_m) {
 void EngineSwitch::describe() {
   description_ = (kind() == EngineKind::gpu ? gpu_ : cpu_)->description();
   if (wants_gpu_ && !gpu_) {
-    description_ += ", for the GPU is lost: " + lost_because_;
+    description_ += ", because the GPU is lost: " + lost_because_;
   }
 }
 

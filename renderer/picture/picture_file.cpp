@@ -31,7 +31,7 @@ int png_colour_type(const cv::Mat& picture) {
     case CV_8UC4:
       return PNG_COLOR_TYPE_RGBA;
     default:
-      throw std::invalid_argument(fmt::format("pictures of type {} are not written", picture.type()));
+      throw std::invalid_argument(fmt::format("cannot encode a picture of type {}", picture.type()));
   }
 }
 
@@ -107,7 +107,7 @@ cv::Mat from_jpeg(std::string_view bytes) {
 std::string png_file(const cv::Mat& picture, int level) {
   std::string file;
   if (!write_png(picture, png_colour_type(picture), level, file)) {
-    throw std::runtime_error(fmt::format("{} x {} pixels make no PNG", picture.cols, picture.rows));
+    throw std::runtime_error(fmt::format("cannot encode {} x {} pixels as PNG", picture.cols, picture.rows));
   }
   return file;
 }
@@ -121,8 +121,8 @@ std::string jpeg_file(const cv::Mat& picture, int quality) {
                   TJPF_BGR, &bytes, &size, TJSAMP_420, quality, TJFLAG_ACCURATEDCT);
   const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owned(bytes, tjFree);
   if (failed != 0) {
-    throw std::runtime_error(fmt::format("{} x {} pixels make no JPEG: {}", picture.cols, picture.rows,
-                                         tjGetErrorStr2(turbo.get())));
+    throw std::runtime_error(fmt::format("cannot encode {} x {} pixels as JPEG: {}", picture.cols,
+                                         picture.rows, tjGetErrorStr2(turbo.get())));
   }
   return {reinterpret_cast<const char*>(bytes), size};
 }

@@ -79,7 +79,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
     Rounds made = render_rounds(renderer, of, most, away);
     trial.gpu_ms = made.fastest_ms;
     if (!made.all_drawn) {
-      throw RendererError("but the CPU had to make a ping: " + renderer.engine_description());
+      throw RendererError("but the CPU had to render a ping: " + renderer.engine_description());
     }
     return made;
   };
@@ -90,7 +90,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
   if (pings.front().request.settings.aperture.beam_count() >= fewest_beams_of_fan) {
     rounds(few, 2);
     if (trial.gpu_ms > trial.cpu_ms) {
-      trial.gpu_problem = "for one beam in sixteen alone";
+      trial.gpu_problem = "for only one beam in sixteen";
       return;
     }
   }
@@ -99,9 +99,8 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
     const double most = most_difference(pings[i].request.settings);
     trial.difference = std::max(trial.difference, bin_rms(by_gpu.images[i], by_cpu.images[i], kept_share));
     if (!(trial.difference <= most)) {
-      trial.gpu_problem =
-          fmt::format("but its image differs by {:.2g} % RMS, where the preset allows {:.2g} %",
-                      100 * trial.difference, 100 * most);
+      trial.gpu_problem = fmt::format("but its image differs by {:.2g} % RMS, and the preset allows {:.2g} %",
+                                      100 * trial.difference, 100 * most);
     }
   }
 }
@@ -143,12 +142,12 @@ EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const Stre
 std::string describe(const EngineTrial& trial) {
   if (!trial.software_gl.empty()) {
     return fmt::format(
-        "cpu is taken ({}): OpenGL runs in software here ({}) and is not timed; engine: gpu uses it",
+        "cpu is taken ({}): OpenGL runs in software here ({}) and is not timed; to use it, set engine: gpu",
         trial.cpu, trial.software_gl);
   }
-  const std::string cpu = fmt::format("cpu takes {:.1f} ms a ping ({})", trial.cpu_ms, trial.cpu);
+  const std::string cpu = fmt::format("cpu takes {:.1f} ms per ping ({})", trial.cpu_ms, trial.cpu);
   const std::string gpu =
-      trial.gpu.empty() ? "gpu cannot be had: " + trial.gpu_problem
+      trial.gpu.empty() ? "gpu is not available: " + trial.gpu_problem
                         : fmt::format("gpu {:.1f} ms{}{} ({})", trial.gpu_ms,
                                       trial.gpu_problem.empty() ? "" : " ", trial.gpu_problem, trial.gpu);
   return fmt::format("{}, {}; {} is taken", cpu, gpu, name_of(trial.taken));

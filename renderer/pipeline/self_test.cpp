@@ -98,14 +98,15 @@ SelfTestResult run_self_test(RendererOptions options) {
     request.settings.sampling = sampling;
     const double error = bin_rms(renderer.render_echo(request), truth);
     if (!(error < worst_error)) {
-      throw RendererError(
-          fmt::format("self test: the echo of a wall, by {}, is off by {:.1f} % RMS on {}",
-                      sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset",
-                      error * 100, renderer.engine_description()));
+      throw RendererError(fmt::format(
+          "self-test failed: the echo of a wall, with {}, differs by {:.1f} % RMS from its closed form on {}",
+          sampling.preset == Sampling::Preset::grid ? "a fixed grid" : "the default preset", error * 100,
+          renderer.engine_description()));
     }
     result.error = std::max(result.error, error);
     if (options.engine == EngineKind::gpu && renderer.last_statistics().passes == 0) {
-      throw RendererError("self test: the GPU has not made the image: " + renderer.engine_description());
+      throw RendererError("self-test failed: the GPU did not render the image: " +
+                          renderer.engine_description());
     }
   }
   result.engine = renderer.engine_description();

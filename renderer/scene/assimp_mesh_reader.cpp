@@ -65,14 +65,14 @@ class WorldFiles : public Assimp::DefaultIOSystem {
       return {};
     }
     if (std::ranges::none_of(folders_, [&](const auto& folder) { return lies_below(path, folder); })) {
-      refuse(
-          fmt::format("it names {}, outside of the folders of this world and its models; name its folder in "
-                      "GZ_SIM_RESOURCE_PATH if it may be read",
-                      path.string()));
+      refuse(fmt::format(
+          "it refers to {}, outside of the folders of this world and its models; to permit it, add its "
+          "folder to GZ_SIM_RESOURCE_PATH",
+          path.string()));
       return {};
     }
     if (!std::filesystem::is_regular_file(path, error)) {
-      refuse(fmt::format("it names {}, which is not a regular file", path.string()));
+      refuse(fmt::format("it refers to {}, which is not a regular file", path.string()));
       return {};
     }
     return path;
@@ -111,7 +111,7 @@ glm::dmat4 fbx_axes(const aiScene& scene) {
   const int front = setting("FrontAxis", std::int32_t{2});
   const int right = setting("CoordAxis", std::int32_t{0});
   if ((1 << up | 1 << front | 1 << right) != 0b111) {
-    throw std::runtime_error("UpAxis, FrontAxis and CoordAxis are to be three different axes, 0 to 2");
+    throw std::runtime_error("UpAxis, FrontAxis and CoordAxis must be three different axes, 0 to 2");
   }
   const double unit_m = 0.01 * static_cast<double>(setting("UnitScaleFactor", 1.0F));
   glm::dmat4 matrix(0.0);

@@ -41,7 +41,7 @@ std::uint64_t indices_of_a_corner(const XMLElement& primitives) {
 
 void require(const XMLElement& element, std::uint64_t promised, std::uint64_t there, std::string_view what) {
   if (there < promised) {
-    throw std::runtime_error(fmt::format("line {}: <{}> promises {} {}, there are {}", element.GetLineNum(),
+    throw std::runtime_error(fmt::format("line {}: <{}> declares {} {}, there are {}", element.GetLineNum(),
                                          element.Name(), promised, what, there));
   }
 }

@@ -38,7 +38,7 @@ std::uint64_t big_endian(std::string_view bytes, std::size_t at, std::size_t siz
 
 void require_bytes(std::string_view bytes, std::uint64_t promised, std::string_view what) {
   if (bytes.size() < promised) {
-    throw std::runtime_error(fmt::format("the file is cut short: {} promises {} bytes, there are {}", what,
+    throw std::runtime_error(fmt::format("the file is cut short: {} declares {} bytes, there are {}", what,
                                          promised, bytes.size()));
   }
 }
@@ -151,7 +151,7 @@ void check_pnm(std::string_view bytes) {
   }
   if (there < samples) {
     throw std::runtime_error(
-        fmt::format("the file is cut short: its header promises {} values, there are {}", samples, there));
+        fmt::format("the file is cut short: its header declares {} values, there are {}", samples, there));
   }
 }
 
@@ -216,7 +216,7 @@ void require_kind(std::string_view begin, std::string_view extension) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (text.starts_with("<!doctype html") || text.starts_with("<html")) {
-    throw std::runtime_error("it is a web page, perhaps that of a failed download");
+    throw std::runtime_error("it is a web page, perhaps from a failed download");
   }
   if (std::ranges::find(text_formats, extension) != text_formats.end() &&
       (begin.starts_with("\xFF\xFE") || begin.starts_with("\xFE\xFF"))) {
@@ -224,7 +224,7 @@ void require_kind(std::string_view begin, std::string_view extension) {
   }
   const auto* const magic = std::ranges::find(magics, extension, &Magic::extension);
   if (magic != magics.end() && !begin.empty() && !begin.starts_with(magic->bytes.substr(0, begin.size()))) {
-    throw std::runtime_error(fmt::format("it does not begin as a {} file does", magic->name));
+    throw std::runtime_error(fmt::format("it does not begin like a {} file", magic->name));
   }
 }
 

@@ -145,8 +145,8 @@ fs::path resolve_in_fuel_cache(const std::string& uri, const FuelUri& fuel) {
     }
   }
   throw MissingFile(
-      fmt::format("'{}' is not in the local cache of Fuel; looked in {}. Nothing is fetched here: "
-                  "`gz fuel download -u {}` does",
+      fmt::format("'{}' is not in the local cache of Fuel; looked in {}. sonard downloads nothing; run "
+                  "`gz fuel download -u {}`",
                   uri, fmt::join(looked_in, ", "), uri.substr(0, uri.find("/files/"))));
 }
 

@@ -117,12 +117,12 @@ Georeference georeference_of(const Tiff& tiff) {
   place.crs = key(projected_crs) != 0 ? key(projected_crs) : key(geodetic_crs);
   place.vertical_crs = key(vertical_crs);
   if (place.crs == 0) {
-    throw std::runtime_error("it does not say its coordinate system");
+    throw std::runtime_error("it has no coordinate system");
   }
   if (!place.is_geographic() && utm_of(place.crs) == nullptr) {
     throw std::runtime_error(
         fmt::format("its coordinate system EPSG:{} is not known (expected EPSG:4326 or UTM, "
-                    "such as EPSG:32632): convert it by gdalwarp -t_srs",
+                    "such as EPSG:32632): convert it with gdalwarp -t_srs",
                     place.crs));
   }
   if (const int units = key(vertical_units); units != 0 && units != metre) {
@@ -141,7 +141,7 @@ Georeference georeference_of(const Tiff& tiff) {
         values_of<double>(tiff, model_transformation).empty()
             ? "it has no pixel scale and tie point"
             : "its rows do not run from west to east (expected a pixel scale and one tie point): "
-              "convert it by gdalwarp");
+              "convert it with gdalwarp");
   }
   // A tie point is the position of a raster coordinate. The middle of the first pixel is at 0.5 if pixels are
   // areas, else at 0.
@@ -171,14 +171,14 @@ GeographicOrigin Georeference::place(double column, double row) const {
   }
   const UtmZones* const zones = utm_of(crs);
   if (zones == nullptr) {
-    throw WorldError(fmt::format("EPSG:{} is no zone of UTM", crs));
+    throw WorldError(fmt::format("EPSG:{} is not a UTM zone", crs));
   }
   return place_of_utm(zones->first_zone + crs - zones->first_epsg, zones->northern, at.x, at.y);
 }
 
 std::string Georeference::vertical_datum() const {
   if (vertical_crs == 0) {
-    return "a datum that is not told";
+    return "an unknown datum";
   }
   const VerticalDatum* const datum = find_datum(vertical_crs);
   return fmt::format("EPSG:{}{}", vertical_crs, datum == nullptr ? "" : fmt::format(" ({})", datum->name));

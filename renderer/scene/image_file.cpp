@@ -141,7 +141,7 @@ void set_elevations(ElevationMap& map, const std::vector<float>& elevation_m) {
   float low = INFINITY, high = -INFINITY;
   for (const float h : elevation_m) {
     if (std::isinf(h)) {
-      throw std::runtime_error("there are elevations that are not finite");
+      throw std::runtime_error("some elevations are not finite");
     }
     if (std::isnan(h)) {
       ++map.holes_px;

@@ -105,9 +105,8 @@ class MemoryFile {
     enter_reader_jail(jail, std::array{result.fd()});
     store(Outcome::returned, work());
   } catch (const std::bad_alloc&) {
-    store(Outcome::threw,
-          fmt::format("reading it takes more than {} MiB of memory, the most that a reader gets",
-                      jail.memory_limit_bytes >> 20U));
+    store(Outcome::threw, fmt::format("reading it takes more than {} MiB of memory, the limit of a reader",
+                                      jail.memory_limit_bytes >> 20U));
   } catch (const std::exception& error) {
     store(Outcome::threw, error.what());
   } catch (...) {

@@ -66,9 +66,8 @@ std::string head_of(const std::filesystem::path& file, std::size_t limit) {
 void require_readable(const std::filesystem::path& file) {
   if (faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0) {
     const std::error_code why(errno, std::generic_category());
-    throw WorldError(
-        fmt::format("{}: cannot be read: {} (expected a file that the user who runs this may read)",
-                    file.string(), why.message()));
+    throw WorldError(fmt::format("{}: cannot be read: {} (expected a file that the user of sonard may read)",
+                                 file.string(), why.message()));
   }
 }
 
@@ -76,7 +75,7 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
                         std::string_view what) {
   if (file.string().find("://") != std::string::npos) {
     throw WorldError(
-        fmt::format("{}: {} must be a local file; nothing is fetched from a network", file.string(), what));
+        fmt::format("{}: {} must be a local file; sonard downloads nothing", file.string(), what));
   }
   std::error_code error;
   if (!file.is_absolute() || !std::filesystem::exists(file, error)) {
@@ -88,7 +87,7 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
   require_readable(file);
   const std::string extension = lower_extension(file);
   if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) {
-    throw WorldError(fmt::format("{}: '{}' is no {} format that can be read; supported: {}", file.string(),
+    throw WorldError(fmt::format("{}: '{}' is not a supported {} format; supported: {}", file.string(),
                                  extension, what, fmt::join(extensions, ", ")));
   }
 }

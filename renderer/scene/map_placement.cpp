@@ -42,8 +42,7 @@ std::string describe(const ElevationMap& map, const MapPlacement& placement) {
   const GeographicOrigin middle = middle_of(map);
   return fmt::format(
       "EPSG:{}, middle at {:.6f}, {:.6f}, {:.2f} x {:.2f} m, elevations {:.2f} to {:.2f} m above {}{}; "
-      "corners are within "
-      "{:.2g} m of their places",
+      "corners are placed within {:.2g} m",
       map.georeference.value().crs, middle.latitude_deg, middle.longitude_deg, placement.size_m.x,
       placement.size_m.y, map.lowest_m, map.highest_m, map.georeference->vertical_datum(),
       map.holes_px > 0 ? fmt::format(", {} pixels without an elevation (holes)", map.holes_px) : "",

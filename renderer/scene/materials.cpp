@@ -120,7 +120,7 @@ double checked_mu(double mu_db, std::vector<std::string>& warnings) {
   const double mu = linear(mu_db);
   if (mu > max_mu) {
     warnings.push_back(fmt::format(
-        "Lambert coefficient {} dB scatters more than all energy: lowered to 1/pi (-4.97 dB)", mu_db));
+        "Lambert coefficient {} dB scatters more energy than arrives: lowered to 1/pi (-4.97 dB)", mu_db));
     return max_mu;
   }
   return mu;

@@ -84,7 +84,7 @@ void require_parts(const RawMesh& raw, const MeshFileRequest& request) {
     triangles += part.indices.size() / 3;
   }
   if (triangles > max_triangles) {
-    throw WorldError(fmt::format("{} triangles are more than {}", triangles, max_triangles));
+    throw WorldError(fmt::format("{} triangles, more than the maximum of {}", triangles, max_triangles));
   }
   if (triangles == 0 && !request.submesh.empty()) {
     throw MissingFile(fmt::format("no submesh '{}' with triangles; names in the file: {}", request.submesh,
@@ -125,10 +125,10 @@ MeshFile load_checked(const MeshFileRequest& request) {
     throw MissingFile("the mesh has no triangles");
   }
   if (bare) {
-    loaded.warnings.push_back(fmt::format(
-        "{}: the normal map is left out where the mesh has no texture coordinates; export the mesh "
-        "with them, or remove <normal_map>",
-        request.file.string()));
+    loaded.warnings.push_back(
+        fmt::format("{}: the normal map is left out on parts without texture coordinates; export the mesh "
+                    "with them, or remove <normal_map>",
+                    request.file.string()));
   }
   if (triangles > many_triangles) {
     loaded.warnings.push_back(

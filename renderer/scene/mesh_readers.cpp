@@ -114,20 +114,21 @@ RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
       RawMesh mesh = read_isolated(reader, source);
       if (std::ranges::any_of(mesh.parts, has_surface)) {
         if (!failures.empty()) {
-          warnings.push_back(fmt::format("{}: read by {}, as {}; check its shape, or export the mesh again",
-                                         source.file.string(), reader.name, fmt::join(failures, "; ")));
+          warnings.push_back(
+              fmt::format("{}: read by {}, because {}; check its shape, or export the mesh again",
+                          source.file.string(), reader.name, fmt::join(failures, "; ")));
         }
         return mesh;
       }
       without_triangles = without_triangles ? std::move(without_triangles) : std::move(mesh);
     } catch (const IsolatedFailure& error) {
       failures.push_back(readers.size() == 1 ? error.what()
-                                             : fmt::format("{} says: {}", reader.name, error.what()));
+                                             : fmt::format("{} reports: {}", reader.name, error.what()));
     }
   }
   if (!without_triangles) {
     throw std::runtime_error(fmt::format(
-        "{}{}", readers.size() == 1 ? "" : "no reader takes this file: ", fmt::join(failures, "; ")));
+        "{}{}", readers.size() == 1 ? "" : "no reader can read this file: ", fmt::join(failures, "; ")));
   }
   return std::move(*without_triangles);
 }

@@ -68,7 +68,7 @@ const Type& type_of(const std::string& name) {
   const auto* const found = std::ranges::find_if(
       types, [&](const Type& type) { return type.name == name || type.other_name == name; });
   if (found == types.end()) {
-    throw std::runtime_error(fmt::format("'{}' is no type of a property", name));
+    throw std::runtime_error(fmt::format("'{}' is not a type of a property", name));
   }
   return *found;
 }
@@ -119,7 +119,7 @@ bool add_line(const std::string& line, PlyHeader& header) {
     header.elements.back().properties.push_back(property_of(words));
   } else if (!keyword.empty() && keyword != "ply" && keyword != "comment" && keyword != "obj_info" &&
              keyword != "end_header") {
-    throw std::runtime_error(fmt::format("'{}' is no keyword of a PLY header", keyword.substr(0, 60)));
+    throw std::runtime_error(fmt::format("'{}' is not a keyword of a PLY header", keyword.substr(0, 60)));
   }
   return keyword == "end_header";
 }
@@ -127,7 +127,7 @@ bool add_line(const std::string& line, PlyHeader& header) {
 PlyHeader header_of(std::string_view bytes) {
   PlyHeader header;
   if (!bytes.starts_with("ply")) {
-    throw std::runtime_error("a PLY begins with 'ply'");
+    throw std::runtime_error("a PLY file must begin with 'ply'");
   }
   for (bool ended = false; !ended;) {
     const std::string_view rest = bytes.substr(header.bytes);
@@ -206,7 +206,7 @@ class TextValues {
     const bool is_tiny = error == std::errc::result_out_of_range && std::abs(value) < 1.0;
     if ((error != std::errc() && !is_tiny) || stop != word.data() + word.size() || !std::isfinite(value)) {
       throw std::runtime_error(fmt::format(
-          "line {}: '{}' is not made of finite numbers", line_,
+          "line {}: '{}' has values that are not finite numbers", line_,
           begin_of_line_.substr(0, std::min<std::size_t>(begin_of_line_.find_first_of("\r\n"), 60))));
     }
     return value;
@@ -248,7 +248,7 @@ class PlyBody {
         for (std::size_t p = 0; p < element.properties.size(); ++p) {
           if (!read(element.properties[p], scalars_[p])) {
             throw std::runtime_error(
-                fmt::format("the file is cut short: its header promises {} of element {}, there "
+                fmt::format("the file is cut short: its header declares {} of element {}, there "
                             "are {}",
                             element.count, element.name, i));
           }
@@ -303,7 +303,7 @@ class PlyBody {
   void add_vertex(const Element& element) {
     const double *x = value(element, "x"), *y = value(element, "y"), *z = value(element, "z");
     if (x == nullptr || y == nullptr || z == nullptr) {
-      throw std::runtime_error("its element vertex has not all of the properties x, y and z");
+      throw std::runtime_error("its element vertex lacks a property x, y or z");
     }
     part_.positions.emplace_back(*x, *y, *z);
     const double *nx = value(element, "nx"), *ny = value(element, "ny"), *nz = value(element, "nz");

@@ -237,10 +237,10 @@ void enter_reader_jail(const ReaderJail& jail, std::span<const int> kept) {
 std::string missing_from_reader_jail() {
   std::vector<std::string_view> missing;
   if (landlock_version() < 1) {
-    missing.emplace_back("Landlock, which keeps readers from other files");
+    missing.emplace_back("Landlock, which denies readers access to other files");
   }
   if (!has_filters()) {
-    missing.emplace_back("seccomp, which keeps them from networks and other processes");
+    missing.emplace_back("seccomp, which denies them access to networks and other processes");
   }
   return missing.empty()
              ? ""

@@ -141,7 +141,8 @@ const SdfReader::Document& SdfReader::open(const fs::path& file) {
   require_readable(file);
   std::error_code ignored;
   if (fs::file_size(file, ignored) > most_bytes) {
-    throw WorldError(fmt::format("{}: more than {} MiB are not read", file.string(), most_bytes >> 20U));
+    throw WorldError(
+        fmt::format("{}: the file is larger than {} MiB, the maximum", file.string(), most_bytes >> 20U));
   }
   Document document{std::make_unique<tinyxml2::XMLDocument>(), nullptr,
                     std::make_shared<const fs::path>(file)};
@@ -153,13 +154,13 @@ const SdfReader::Document& SdfReader::open(const fs::path& file) {
   }
   document.root = document.xml->RootElement();
   if (document.root == nullptr) {
-    throw WorldError(fmt::format("{}: holds no element (expected <sdf version=\"1.9\">)", file.string()));
+    throw WorldError(fmt::format("{}: has no element (expected <sdf version=\"1.9\">)", file.string()));
   }
   const std::string root = one_line(document.root->Name());
   if (root != "sdf") {
-    throw WorldError(fmt::format("{}:{}: <{}> is no SDF (expected <sdf version=\"1.9\">){}", file.string(),
+    throw WorldError(fmt::format("{}:{}: <{}> is not SDF (expected <sdf version=\"1.9\">){}", file.string(),
                                  document.root->GetLineNum(), root,
-                                 root == "robot" ? "; `gz sdf -p` makes SDF of a URDF" : ""));
+                                 root == "robot" ? "; convert URDF with `gz sdf -p FILE`" : ""));
   }
   check_version(document);
   return documents_.emplace(file, std::move(document)).first->second;
@@ -174,12 +175,12 @@ void SdfReader::check_version(const Document& document) {
     warnings_.push_back(fmt::format("{}: <sdf> has no version: it is read as 1.12", place()));
   } else if (version_of(given) < std::pair{1, 3}) {
     throw WorldError(
-        fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12); convert it by Gazebo Classic's "
+        fmt::format("{}: SDF version {} is too old (expected 1.3 to 1.12); convert it with Gazebo Classic's "
                     "`gz sdf -c FILE`",
                     place(), one_line(given)));
   } else if (version_of(given) > std::pair{1, 12}) {
-    warnings_.push_back(fmt::format("{}: SDF version {} is read as 1.12, the newest that is known", place(),
-                                    one_line(given)));
+    warnings_.push_back(fmt::format("{}: SDF version {} is read as 1.12, the newest supported version",
+                                    place(), one_line(given)));
   }
 }
 
@@ -187,8 +188,9 @@ std::unique_ptr<SdfElement> SdfReader::copy(const tinyxml2::XMLElement& from,
                                             const std::shared_ptr<const fs::path>& file,
                                             const SdfElement* parent) {
   if (++elements_ > most_elements) {
-    throw WorldError(fmt::format("{}: more than {} elements with all that is included: do includes multiply?",
-                                 around_.front().string(), most_elements));
+    throw WorldError(
+        fmt::format("{}: more than {} elements, includes among them: check whether includes multiply",
+                    around_.front().string(), most_elements));
   }
   auto element = std::make_unique<SdfElement>();
   element->name = one_line(with_own_prefix(from.Name(), from, parent != nullptr));
@@ -265,7 +267,7 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   std::error_code error;
   const fs::path canonical = fs::canonical(file, error);
   if (error || !fs::is_regular_file(canonical)) {
-    throw MissingFile(fmt::format("'{}': there is no file {}", uri->text, file.string()));
+    throw MissingFile(fmt::format("'{}': file {} not found", uri->text, file.string()));
   }
   resolver_.check_place(uri->text, canonical, found);
   resolver_.add_model_folder(canonical.parent_path().parent_path());

@@ -89,8 +89,8 @@ std::vector<std::string> unknown_elements(const SdfElement& sdf) {
   find_unknown(sdf, found);
   std::vector<std::string> lines;
   for (const auto& [kind, unknown] : found) {
-    lines.push_back(fmt::format("{}: <{}> in <{}> is not known: it is left out{}", unknown.place, kind.second,
-                                kind.first,
+    lines.push_back(fmt::format("{}: unknown element <{}> in <{}>: it is left out{}", unknown.place,
+                                kind.second, kind.first,
                                 unknown.count > 1 ? fmt::format(" ({} times in all)", unknown.count) : ""));
   }
   return lines;

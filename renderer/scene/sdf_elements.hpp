@@ -10,8 +10,8 @@
 
 namespace sonard::render {
 
-/// "file:line: <colour> in <visual> is not known: it is left out" for each kind of element that SDF does not
-/// have in its parent, with its first place and its count. Elements of other namespaces ("gz:...") are
+/// "file:line: unknown element <colour> in <visual>: it is left out" for each kind of element that SDF does
+/// not have in its parent, with its first place and its count. Elements of other namespaces ("gz:...") are
 /// ignored.
 std::vector<std::string> unknown_elements(const SdfElement& sdf);
 

@@ -65,7 +65,7 @@ const Pose& SdfFrames::T_scope(const SdfElement& element) {
     return known->second;
   }
   if (!open_.insert(&element).second) {
-    throw WorldError(fmt::format("{}: the pose of {} '{}' is relative to itself, by way of others",
+    throw WorldError(fmt::format("{}: the pose of {} '{}' is relative to itself, through other frames",
                                  element.place_in_scope(), element.name, element.given_name()));
   }
   try {
@@ -80,7 +80,7 @@ const Pose& SdfFrames::T_scope(const SdfElement& element) {
 
 Pose SdfFrames::worked_out(const SdfElement& element) {
   if (element.is_missing && element.child("placement_frame") != nullptr) {
-    throw MissingFile(fmt::format("{}: the model '{}' is not there, so its placement_frame is unknown",
+    throw MissingFile(fmt::format("{}: the model '{}' is missing, so its placement_frame is unknown",
                                   element.place(), element.given_name()));
   }
   const SdfElement& scope = *element.parent;
@@ -118,7 +118,7 @@ Pose SdfFrames::of_frame(const SdfElement& scope, std::string_view name, const S
       return *T_scope_found;
     }
   } catch (const MissingModel& missing) {
-    throw MissingFile(fmt::format("{}: frame '{}' is in {}, which is not there", named_by.place_in_scope(),
+    throw MissingFile(fmt::format("{}: frame '{}' is in {}, which is missing", named_by.place_in_scope(),
                                   name, missing.what()));
   }
   throw WorldError(fmt::format("{}: there is no frame '{}' in {} '{}'", named_by.place_in_scope(), name,

@@ -59,8 +59,8 @@ void check_own_element(const SdfElement& element, WorldProblems& problems) {
     const std::string own = lower_case(element.name);
     complain(own == material_element || own == water_surface_element
                  ? fmt::format("unknown element <{}>: write <{}>", element.name, own)
-                 : fmt::format("unknown element <{}>; there are <{}> and <{}>", element.name,
-                               material_element, water_surface_element));
+                 : fmt::format("unknown element <{}>; expected <{}> or <{}>", element.name, material_element,
+                               water_surface_element));
   }
   if (parent.child(element.name) != &element) {
     complain(fmt::format("<{}> is given twice in <{}>", element.name, parent.name));
@@ -75,9 +75,10 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
     const std::string* const type = element.attribute("type");
     if (key != sonar_attribute || element.name != "sensor" || element.parent == nullptr ||
         element.parent->name != "link" || type == nullptr || *type != "custom") {
-      problems.add(fmt::format(
-          "{}: attribute '{}' of <{}>: there is only {}, of a <sensor type=\"custom\"> in a <link>",
-          element.place(), key, element.name, sonar_attribute));
+      problems.add(
+          fmt::format("{}: attribute '{}' of <{}> is not supported; expected {}, of a <sensor "
+                      "type=\"custom\"> in a <link>",
+                      element.place(), key, element.name, sonar_attribute));
     }
   }
 }

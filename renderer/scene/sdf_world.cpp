@@ -69,7 +69,7 @@ std::optional<GeographicOrigin> origin_of(const SdfElement& place, std::vector<s
   const GeographicOrigin origin{number_of(place, "latitude_deg", 0), number_of(place, "longitude_deg", 0),
                                 number_of(place, "elevation", 0)};
   if (std::abs(origin.latitude_deg) > 90.0 || std::abs(origin.longitude_deg) > 180.0) {
-    return ignored(fmt::format("{}, {} is no place on Earth", origin.latitude_deg, origin.longitude_deg));
+    return ignored(fmt::format("{}, {} is not a place on Earth", origin.latitude_deg, origin.longitude_deg));
   }
   return origin;
 }
@@ -147,8 +147,7 @@ class WorldBuilder {
 
   [[noreturn]] void throw_too_many(const std::string& path) const {
     throw TooManyTriangles(fmt::format(
-        "{}: the world has more than {} triangles, from {} on (world.max_triangles sets how many it may "
-        "have)",
+        "{}: the world has more than {} triangles, from {} on (world.max_triangles sets the maximum)",
         file_.string(), max_triangles_, path));
   }
 
@@ -494,7 +493,7 @@ class WorldBuilder {
     }
     if (!mesh_material.empty()) {
       grouped_.add(
-          "mesh materials are no acoustic materials, so 'default' is used; write <sonard:material> into "
+          "mesh materials are not acoustic materials, so 'default' is used; write <sonard:material> into "
           "their visuals or models",
           shape.element.place(), fmt::format("'{}' ({})", mesh_material, shape.path));
     }
@@ -532,9 +531,7 @@ class WorldBuilder {
       return uri.empty() ? nullptr : normal_map_file(resolver_.resolve(uri, shape.element.folder()));
     } catch (const WorldError& error) {
       grouped_.add(
-          fmt::format("the normal map is left out: {}; the shape is used without it, correct or remove "
-                      "<normal_map>",
-                      error.what()),
+          fmt::format("the normal map is left out: {}; correct or remove <normal_map>", error.what()),
           shape.element.place(), shape.path);
       return nullptr;
     }

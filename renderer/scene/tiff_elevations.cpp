@@ -185,7 +185,8 @@ TiffElevations read_tiff_elevations(const std::filesystem::path& file, int most_
   TIFFSetErrorHandler(keep_complaint);
   const Tiff tiff(TIFFOpen(file.c_str(), "r"), &TIFFClose);
   if (!tiff) {
-    throw std::runtime_error(fmt::format("it is no TIFF, or its directory is damaged: {}", last_complaint()));
+    throw std::runtime_error(
+        fmt::format("it is not a TIFF, or its directory is damaged: {}", last_complaint()));
   }
   const auto width_px = tag<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH);
   const auto height_px = tag<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);

@@ -142,9 +142,9 @@ fs::path UriResolver::search(const std::string& uri, std::string_view rest,
   if (leads_out) {
     throw WorldError(*leads_out);
   }
-  throw MissingFile(fmt::format("'{}' not found; looked in {}{}; GZ_SIM_RESOURCE_PATH names more folders",
-                                uri, list(folders),
-                                absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
+  throw MissingFile(
+      fmt::format("'{}' not found; looked in {}{}; to search other folders, set GZ_SIM_RESOURCE_PATH", uri,
+                  list(folders), absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
 }
 
 /// Returns an existing path, canonical, if neither its name nor its links lead out of the folders.
@@ -160,10 +160,10 @@ void UriResolver::check_place(const std::string& uri, const fs::path& path,
                               const fs::path& naming_folder) const {
   const fs::path place = path.lexically_normal();
   if (!lies_below(place, naming_folder) && !lies_below_any(place, roots_)) {
-    throw WorldError(
-        fmt::format("'{}' leads out of the folders of this world and its models, to {}; name its folder in "
-                    "GZ_SIM_RESOURCE_PATH if it may be read",
-                    uri, printable(place.string())));
+    throw WorldError(fmt::format(
+        "'{}' leads out of the folders of this world and its models, to {}; to permit it, add its "
+        "folder to GZ_SIM_RESOURCE_PATH",
+        uri, printable(place.string())));
   }
 }
 
@@ -182,9 +182,8 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
   }
   if (!scheme.empty() && scheme != "file") {
     throw MissingFile(
-        fmt::format("'{}': nothing is fetched from a network; download it and use model:// or a path "
-                    "(GZ_SIM_RESOURCE_PATH names "
-                    "folders of models)",
+        fmt::format("'{}': sonard downloads nothing; download it and use model:// or a path "
+                    "(GZ_SIM_RESOURCE_PATH lists folders of models)",
                     uri));
   }
   if (fs::path(rest).is_absolute()) {

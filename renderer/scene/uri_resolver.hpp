@@ -14,7 +14,7 @@ namespace sonard::render {
 
 /// Advice for a MissingFile that ends the loading.
 inline constexpr std::string_view how_to_skip =
-    "; correct it, or go on without it by `world: {missing: skip}`";
+    "; correct it, or load the world without it: `world: {missing: skip}`";
 
 /// A file named in a world is missing, or lacks the requested part.
 struct MissingFile : WorldError {

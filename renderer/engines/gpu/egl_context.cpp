@@ -26,7 +26,7 @@ EglContext::EglContext(const std::string& device) {
   software_ = devices[number].software;
   context_ = make_egl_context(display_);
   if (context_ == EGL_NO_CONTEXT) {
-    throw RendererError("OpenGL gave one context and then no other: " + devices[number].description);
+    throw RendererError("OpenGL created one context, but no second one: " + devices[number].description);
   }
   setState(new osg::State);
   getState()->setGraphicsContext(this);

@@ -33,17 +33,17 @@ GlDeviceChoice asked_for(const std::vector<GlDevice>& devices, const std::string
   const auto [stop, error] = std::from_chars(wanted.data(), end, number);
   if (error == std::errc() && stop == end) {
     if (number < devices.size() && !devices[number].description.empty()) {
-      return {number, "gpu.device is its number"};
+      return {number, "gpu.device selects its number"};
     }
   } else {
     for (std::size_t i = 0; i < devices.size(); ++i) {
       if (lower_case(devices[i].description).find(lower_case(wanted)) != std::string::npos) {
-        return {i, "gpu.device is in its name"};
+        return {i, "gpu.device selects its name"};
       }
     }
   }
   throw RendererError(
-      fmt::format("gpu.device: no OpenGL 4.5 on a device '{}' (there is {})", wanted, list_of(devices)));
+      fmt::format("gpu.device: no device '{}' with OpenGL 4.5 (found {})", wanted, list_of(devices)));
 }
 
 }  // namespace
@@ -78,22 +78,23 @@ GlDeviceChoice choose_gl_device(const std::vector<GlDevice>& devices, const std:
     }
   }
   if (usable.empty()) {
-    throw RendererError("no OpenGL 4.5 through EGL: " + list_of(devices) +
-                        " (is a GL driver, for example Mesa's libgl1-mesa-dri, installed and /dev/dri "
-                        "accessible? docs/gpu.md)");
+    throw RendererError(
+        "no OpenGL 4.5 through EGL: " + list_of(devices) +
+        " (check that a GL driver, for example Mesa's libgl1-mesa-dri, is installed, and that "
+        "/dev/dri is accessible: docs/gpu.md)");
   }
   const auto rank = [&](std::size_t i) { return std::tuple(devices[i].software, ~devices[i].memory_mib, i); };
   const std::size_t best = *std::min_element(usable.begin(), usable.end(),
                                              [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   if (usable.size() == 1) {
-    return {best, "the only one"};
+    return {best, "the only device"};
   }
   const auto hardware =
       std::count_if(usable.begin(), usable.end(), [&](std::size_t i) { return !devices[i].software; });
   if (hardware == 1) {
-    return {best, "the only hardware"};
+    return {best, "the only hardware device"};
   }
-  return {best, devices[best].memory_mib > 0 ? "most memory" : "the first that EGL lists"};
+  return {best, devices[best].memory_mib > 0 ? "most memory" : "the first device listed by EGL"};
 }
 
 }  // namespace sonard::render

@@ -30,7 +30,7 @@ std::string software_gl(const std::string& wanted);
 
 struct GlDeviceChoice {
   std::size_t number = 0;  ///< in the list
-  std::string reason;      ///< "the only one"
+  std::string reason;      ///< "the only device"
 };
 
 /// Chooses a device: hardware before software, then most memory, then the order of the list.

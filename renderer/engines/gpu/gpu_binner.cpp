@@ -184,8 +184,8 @@ struct GpuBinner::Impl {
   /// @throws RequestError
   void check_size(std::size_t bytes, const char* what) const {
     if (bytes > most_bytes) {
-      throw RequestError(fmt::format("sampling: {} of {} MiB, but a buffer of this OpenGL holds {} MiB", what,
-                                     bytes >> 20U, most_bytes >> 20U));
+      throw RequestError(fmt::format("sampling: {} needs {} MiB, but this OpenGL limits buffers to {} MiB",
+                                     what, bytes >> 20U, most_bytes >> 20U));
     }
   }
 

@@ -200,7 +200,7 @@ struct RasterSampler::Impl {
     unseen->setAttributeAndModes(
         context->build_program({new osg::Shader(osg::Shader::VERTEX, unseen_vertex_shader),
                                 new osg::Shader(osg::Shader::FRAGMENT, unseen_fragment_shader)},
-                               "the shader of what is not seen"));
+                               "the shader of unseen surfaces"));
   }
 
   /// The program of a kind of surface, built on first use.

@@ -159,18 +159,18 @@ std::vector<int> ThinThings::least_columns(const Pose& T_world_sonar, const Aper
 std::string thin_things_not_looked_for(const World& world, const SonarSettings& settings) {
   constexpr auto sentence = "engine gpu may miss posts and bars thinner than a column in some pings, {}";
   if (settings.sampling.preset == Sampling::Preset::grid) {
-    return fmt::format(sentence, "since `sampling: {preset: grid}` does not look for them");
+    return fmt::format(sentence, "because `sampling: {preset: grid}` does not search for them");
   }
   if (settings.aperture.bearing == Aperture::Bearing::conical) {
-    return fmt::format(sentence, "since `bearing: conical` does not look for them");
+    return fmt::format(sentence, "because `bearing: conical` does not search for them");
   }
   for (std::size_t body = 0; body < world.bodies.size(); ++body) {
     for (std::size_t i = 0; i < world.bodies[body].parts.size(); ++i) {
       const std::size_t triangles = world.bodies[body].parts[i].mesh->triangle_count();
       if (triangles > most_triangles && !world.is_terrain(body, i)) {
         return fmt::format(sentence,
-                           fmt::format("if they are part of '{}': its mesh has {} triangles, and those of "
-                                       "more than {} are not searched",
+                           fmt::format("if they are part of '{}': its mesh has {} triangles, and only meshes "
+                                       "of up to {} triangles are searched",
                                        world.bodies[body].name, triangles, most_triangles));
       }
     }

@@ -35,10 +35,10 @@ void VideoMemory::hold(const std::vector<Item*>& items) {
     }
   }
   if (needed_bytes > bound_bytes_) {
-    throw RequestError(
-        fmt::format("what a sonar sees of this world takes {} bytes of video memory, and gpu.memory_mib "
-                    "allows {} ({} MiB): raise it, or choose engine: cpu",
-                    needed_bytes, bound_bytes_, bound_bytes_ >> 20));
+    throw RequestError(fmt::format(
+        "the part of this world that a sonar sees takes {} bytes of video memory, and gpu.memory_mib "
+        "allows {} ({} MiB): raise it, or choose engine: cpu",
+        needed_bytes, bound_bytes_, bound_bytes_ >> 20));
   }
   // Items of this call are at the front and fit, so the loop ends before them.
   while (bytes_ + missing_bytes > bound_bytes_) {
@@ -62,7 +62,7 @@ void VideoMemory::check_upload() const {
   const GlErrors errors = take_gl_errors();
   if (errors.out_of_memory) {
     throw RendererError(
-        fmt::format("there is less video memory than gpu.memory_mib allows: {} bytes of the "
+        fmt::format("the GPU has less video memory than gpu.memory_mib allows: {} bytes of the "
                     "world do not fit; lower it, or choose engine: cpu",
                     bytes_));
   }

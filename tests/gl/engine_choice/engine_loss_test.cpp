@@ -90,11 +90,11 @@ TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
   EXPECT_GT(trial.cpu_ms, 0.0);
   EXPECT_GT(trial.gpu_ms, 0.0);
   EXPECT_EQ(renderer.engine(), trial.taken);
-  EXPECT_THAT(trial.gpu_problem, testing::AnyOf("", "for one beam in sixteen alone"));
+  EXPECT_THAT(trial.gpu_problem, testing::AnyOf("", "for only one beam in sixteen"));
   if (trial.gpu_problem.empty()) {
     EXPECT_EQ(trial.taken, trial.gpu_ms < trial.cpu_ms ? EngineKind::gpu : EngineKind::cpu);
   }
-  EXPECT_THAT(describe(trial), testing::ContainsRegex("cpu takes [0-9.]+ ms a ping .*, gpu [0-9.]+ ms"));
+  EXPECT_THAT(describe(trial), testing::ContainsRegex("cpu takes [0-9.]+ ms per ping .*, gpu [0-9.]+ ms"));
   EXPECT_THAT(describe(trial), HasSubstr(std::string(name_of(trial.taken)) + " is taken"));
 }
 
@@ -121,7 +121,7 @@ TEST(EngineTrialsWithoutGl, SayWhatIsMissing) {
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);
   EXPECT_EQ(trial.gpu, "");
-  EXPECT_THAT(describe(trial), HasSubstr("gpu cannot be had: "));
+  EXPECT_THAT(describe(trial), HasSubstr("gpu is not available: "));
 }
 
 }  // namespace

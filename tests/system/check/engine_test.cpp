@@ -57,7 +57,7 @@ TEST(SelfTest, measures_both_engines_and_tells_both_times) {
                 ContainsRegex("\nauto     cpu is taken \\(cpu, Embree .*OpenGL runs in software here"));
     return;
   }
-  EXPECT_THAT(result.out, ContainsRegex("\nauto     cpu takes [0-9.]+ ms a ping .*, gpu [0-9.]+ ms"));
+  EXPECT_THAT(result.out, ContainsRegex("\nauto     cpu takes [0-9.]+ ms per ping .*, gpu [0-9.]+ ms"));
   EXPECT_THAT(result.out, ContainsRegex("; (cpu|gpu) is taken"));
 }
 
@@ -93,7 +93,7 @@ TEST(SelfTest, names_the_devices_there_are_when_the_one_asked_for_is_not_there) 
   const ProcessResult result =
       run_process({SONARD_PROGRAM, "selftest", "--engine", "gpu", "--gpu-device", "no such card"});
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.err, HasSubstr("gpu.device: no OpenGL 4.5 on a device 'no such card' (there is 0: "));
+  EXPECT_THAT(result.err, HasSubstr("gpu.device: no device 'no such card' with OpenGL 4.5 (found 0: "));
 }
 
 TEST(SelfTest, uses_the_cpu_where_there_is_no_gl) {
@@ -156,9 +156,10 @@ TEST(Run, serves_from_the_cpu_where_there_is_no_gl) {
   const ServedConfig config("auto");
   const ProcessResult result = config.run_without_gl();
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  EXPECT_THAT(result.out,
-              ContainsRegex("engine auto: cpu takes [0-9.]+ ms a ping .*gpu cannot be had: no OpenGL 4.5 "
-                            "through EGL"));
+  EXPECT_THAT(
+      result.out,
+      ContainsRegex("engine auto: cpu takes [0-9.]+ ms per ping .*gpu is not available: no OpenGL 4.5 "
+                    "through EGL"));
   EXPECT_THAT(result.out, ContainsRegex("sonard ready heads=1 .*engine=\"cpu, Embree [34]"));
 }
 
@@ -169,16 +170,17 @@ TEST(Run, measures_the_engines_at_the_first_start_only_and_never_a_software_open
   const std::string first = config.run(environment).out;
   if (first.find(software) != std::string::npos) {
     EXPECT_THAT(
-        first, ContainsRegex("engine auto: cpu is taken \\(cpu, Embree .*is not timed; engine: gpu uses it"));
-    EXPECT_THAT(first, Not(HasSubstr("ms a ping")));
+        first,
+        ContainsRegex("engine auto: cpu is taken \\(cpu, Embree .*is not timed; to use it, set engine: gpu"));
+    EXPECT_THAT(first, Not(HasSubstr("ms per ping")));
     EXPECT_THAT(first, HasSubstr("sonard ready heads=1"));
     EXPECT_FALSE(std::filesystem::exists(cache.path() / "sonard/engine_choices"));
     return;
   }
-  EXPECT_THAT(first, ContainsRegex("engine auto: cpu takes [0-9.]+ ms a ping .*; (cpu|gpu) is taken"));
+  EXPECT_THAT(first, ContainsRegex("engine auto: cpu takes [0-9.]+ ms per ping .*; (cpu|gpu) is taken"));
   const std::string again = config.run(environment).out;
   EXPECT_THAT(again, ContainsRegex("engine auto: (cpu|gpu) is taken, as an earlier start measured: cpu takes "
-                                   "[0-9.]+ ms a ping .* \\(kept in .*/sonard/engine_choices\\)"));
+                                   "[0-9.]+ ms per ping .* \\(kept in .*/sonard/engine_choices\\)"));
   EXPECT_THAT(again, HasSubstr("sonard ready heads=1"));
 }
 

@@ -134,13 +134,13 @@ class Names(World):
                         '<VRTDataset rasterXSize="3" rasterYSize="2"><VRTRasterBand dataType="Float32" band="1">'
                         "<SimpleSource><SourceFilename>%s</SourceFilename><SourceBand>1</SourceBand></SimpleSource>"
                         "</VRTRasterBand></VRTDataset>" % source).encode())
-                    self.expect_refused(model(visual(HEIGHTMAP % "bed.tif")), "bed.tif: ", "is no TIFF")
+                    self.expect_refused(model(visual(HEIGHTMAP % "bed.tif")), "bed.tif: ", "is not a TIFF")
                 self.write("bed.tif", (
                     '<GDAL_WMS><Service name="TMS"><ServerUrl>http://127.0.0.1:%d/${z}/${x}/${y}.png</ServerUrl>'
                     "</Service><DataWindow><UpperLeftX>-9</UpperLeftX><UpperLeftY>9</UpperLeftY><LowerRightX>9"
                     "</LowerRightX><LowerRightY>-9</LowerRightY><SizeX>4</SizeX><SizeY>4</SizeY><TileLevel>0"
                     "</TileLevel></DataWindow><BandsCount>1</BandsCount></GDAL_WMS>" % port).encode())
-                self.expect_refused(model(visual(HEIGHTMAP % "bed.tif")), "bed.tif: ", "is no TIFF")
+                self.expect_refused(model(visual(HEIGHTMAP % "bed.tif")), "bed.tif: ", "is not a TIFF")
             finally:
                 running.set()
                 thread.join()
@@ -152,12 +152,12 @@ class Names(World):
         for name, named in (("/etc/passwd", "/etc/passwd"), ("../secret/hull.mtl", secret), ("link.mtl", secret),
                             (secret, secret)):
             self.write("hull.obj", ("mtllib %s\n" % name + TRIANGLE).encode())
-            self.expect_refused(model(visual(MESH % "hull.obj")), "hull.obj: it names %s, outside" % named)
+            self.expect_refused(model(visual(MESH % "hull.obj")), "hull.obj: it refers to %s, outside" % named)
 
     def test_a_buffer_of_a_gltf_elsewhere(self):
         secret = self.write("../secret/hull.bin", bytes(72))
         self.write("hull.gltf", gltf("../secret/hull.bin"))
-        self.expect_refused(model(visual(MESH % "hull.gltf")), "hull.gltf: it names %s, outside" % secret)
+        self.expect_refused(model(visual(MESH % "hull.gltf")), "hull.gltf: it refers to %s, outside" % secret)
 
     def test_a_mesh_that_is_a_link_elsewhere(self):
         os.symlink("/dev/zero", os.path.join(self.folder, "hull.stl"))
@@ -180,11 +180,11 @@ class SpecialFiles(World):
     def test_a_fifo_that_a_mesh_names(self):
         self.fifo("pipe.mtl")
         self.write("hull.obj", ("mtllib pipe.mtl\n" + TRIANGLE).encode())
-        self.expect_refused(model(visual(MESH % "hull.obj")), "hull.obj: it names", "pipe.mtl", "not a regular file")
+        self.expect_refused(model(visual(MESH % "hull.obj")), "hull.obj: it refers to", "pipe.mtl", "not a regular file")
 
     def test_a_fifo_as_the_manifest_of_a_model(self):
         self.fifo("models/wreck/model.config")
-        self.expect_refused("<include><uri>model://wreck</uri></include>", "model://wreck", "there is no file")
+        self.expect_refused("<include><uri>model://wreck</uri></include>", "model://wreck", "not found")
 
     def test_a_device(self):
         try:
@@ -197,20 +197,20 @@ class SpecialFiles(World):
 class CutFiles(World):
     """For all formats, cut at many places, see tests/unit/renderer/scene/cut_files_test.cpp."""
 
-    def test_what_a_header_promises_is_there(self):
+    def test_what_a_header_declares_is_there(self):
         with open(os.path.join(SHARED, "elevation_f32.tif"), "rb") as file:
             tif = file.read()
         collada = '<?xml version="1.0"?><COLLADA version="1.4.1"><asset/>'
         for name, geometry, content, sentence in (
-                ("hull.ply", MESH, ply(1720, 317), "its header promises 1720 of element face, there are 317"),
+                ("hull.ply", MESH, ply(1720, 317), "its header declares 1720 of element face, there are 317"),
                 ("hull.stl", MESH, bytes(80) + struct.pack("<I", 9) + bytes(400), "9 triangles need 534 bytes"),
                 ("text.stl", MESH, text_stl(5), "its last solid has no endsolid"),
-                ("hull.glb", MESH, glb(1), "its header promises 132 bytes, there are 131"),
+                ("hull.glb", MESH, glb(1), "its header declares 132 bytes, there are 131"),
                 ("hull.dae", MESH, collada.encode(), "it does not end with </COLLADA>"),
-                ("hull.3ds", MESH, struct.pack("<HI", 0x4D4D, 5000) + bytes(99), "promises 5000 bytes"),
+                ("hull.3ds", MESH, struct.pack("<HI", 0x4D4D, 5000) + bytes(99), "declares 5000 bytes"),
                 ("hull.obj", MESH, b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "out of range"),
-                ("bed.png", HEIGHTMAP, png(64, 64)[:-20], "its chunk IDAT promises"),
-                ("bed.pgm", HEIGHTMAP, b"P5 64 64 255\n" + bytes(999), "its header promises"),
+                ("bed.png", HEIGHTMAP, png(64, 64)[:-20], "its chunk IDAT declares"),
+                ("bed.pgm", HEIGHTMAP, b"P5 64 64 255\n" + bytes(999), "its header declares"),
                 ("bed.tif", HEIGHTMAP, tif[:-8], "its directory is damaged"),
         ):
             with self.subTest(name):

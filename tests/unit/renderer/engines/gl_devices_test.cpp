@@ -42,11 +42,11 @@ TEST(GlDevices, HardwareComesBeforeSoftwareThenMostMemoryThenTheirOrder) {
 }
 
 TEST(GlDevices, TheChoiceSaysWhy) {
-  EXPECT_EQ(choose_gl_device({software}, "").reason, "the only one");
-  EXPECT_EQ(choose_gl_device({software, intel}, "").reason, "the only hardware");
+  EXPECT_EQ(choose_gl_device({software}, "").reason, "the only device");
+  EXPECT_EQ(choose_gl_device({software, intel}, "").reason, "the only hardware device");
   EXPECT_EQ(choose_gl_device({intel, nvidia}, "").reason, "most memory");
-  EXPECT_EQ(choose_gl_device({intel, intel}, "").reason, "the first that EGL lists");
-  EXPECT_EQ(choose_gl_device({intel, nvidia}, "0").reason, "gpu.device is its number");
+  EXPECT_EQ(choose_gl_device({intel, intel}, "").reason, "the first device listed by EGL");
+  EXPECT_EQ(choose_gl_device({intel, nvidia}, "0").reason, "gpu.device selects its number");
 }
 
 TEST(GlDevices, AreAskedForByNumberOrByPartOfTheName) {
@@ -58,7 +58,7 @@ TEST(GlDevices, AreAskedForByNumberOrByPartOfTheName) {
 TEST(GlDevices, WhatIsNotThereIsToldWithWhatIs) {
   EXPECT_THAT(complaint({}, ""), HasSubstr("no OpenGL 4.5 through EGL: EGL lists no device"));
   EXPECT_THAT(complaint({none}, ""), HasSubstr("0: no OpenGL 4.5, /dev/dri/card2"));
-  EXPECT_THAT(complaint({none, software}, "0"), HasSubstr("gpu.device: no OpenGL 4.5 on a device '0'"));
+  EXPECT_THAT(complaint({none, software}, "0"), HasSubstr("gpu.device: no device '0' with OpenGL 4.5"));
   EXPECT_THAT(complaint({software}, "1"), HasSubstr("there is 0: Mesa / llvmpipe"));
   EXPECT_THAT(complaint({software}, "radeon"), HasSubstr("'radeon'"));
 }

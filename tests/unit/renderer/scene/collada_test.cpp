@@ -213,7 +213,7 @@ TEST_F(Collada, LeavesANormalMapOutWhereTextureCoordinatesAreMissing) {
   const MeshFile bare = load(document, "", true);
   EXPECT_EQ(measures_of(bare).triangles, 4U);
   EXPECT_TRUE(bare.parts.at(0).mesh->tangents.empty());
-  EXPECT_THAT(bare.warnings, ElementsAre(HasSubstr("mesh.dae: the normal map is left out where")));
+  EXPECT_THAT(bare.warnings, ElementsAre(HasSubstr("mesh.dae: the normal map is left out on")));
 
   // One of two geometries has them.
   document.geometries =
@@ -487,8 +487,8 @@ TEST_F(Collada, SaysWhatEachReaderSaidOfADamagedFile) {
     load_mesh_file(request);
     FAIL() << "a file that is cut short was read";
   } catch (const WorldError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("cut.dae: no reader takes this file: Assimp says: "),
-                                    HasSubstr("; OpenSceneGraph says: ")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("cut.dae: no reader can read this file: Assimp reports: "),
+                                    HasSubstr("; OpenSceneGraph reports: ")));
   }
 }
 

@@ -185,8 +185,8 @@ TEST(CutCollada, IsRefusedIfNumbersAreMissing) {
   const std::string whole =
       content(std::filesystem::path(SONARD_SOURCE_DIR) / "tests/data/worlds/millimetres.dae");
   for (const auto& [there, left, sentence] :
-       {std::tuple{"0 2 1 0 1 3 0 3 2 1 2 3", "0 2 1 0 1 3", "<triangles> promises 12 indices, there are 6"},
-        std::tuple{"0 2000 0 0 0 3000", "0 2000 0", "<float_array> promises 12 numbers, there are 9"}}) {
+       {std::tuple{"0 2 1 0 1 3 0 3 2 1 2 3", "0 2 1 0 1 3", "<triangles> declares 12 indices, there are 6"},
+        std::tuple{"0 2000 0 0 0 3000", "0 2000 0", "<float_array> declares 12 numbers, there are 9"}}) {
     std::string cut = whole;
     cut.replace(cut.find(there), std::string(there).size(), left);
     MeshFileRequest request;
@@ -310,9 +310,9 @@ TEST(FileOfAnotherKind, IsNamed) {
         << name;
   }
   EXPECT_THAT(refusal_of_picture(folder.write("map.png", std::string(400, 'x'))),
-              HasSubstr("does not begin as a PNG file does"));
+              HasSubstr("does not begin like a PNG file"));
   EXPECT_THAT(refusal_of_mesh(folder.write("hull.glb", std::string(400, 'x'))),
-              HasSubstr("does not begin as a GLB file does"));
+              HasSubstr("does not begin like a GLB file"));
 }
 
 TEST(FileOfAnotherKind, InUtf16IsNamed) {

@@ -53,10 +53,10 @@ TEST(ElevationMap, IsATiffAndNoRecipeOfGdal) {
                        source +
                        "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>"
                        "</VRTDataset>"),
-              HasSubstr("bed.tif: it is no TIFF"));
+              HasSubstr("bed.tif: it is not a TIFF"));
   EXPECT_THAT(error_of("<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png"
                        "</ServerUrl></Service></GDAL_WMS>"),
-              HasSubstr("bed.tif: it is no TIFF"));
+              HasSubstr("bed.tif: it is not a TIFF"));
 }
 
 TEST(NormalMapImage, HasRowZeroAtTheBottom) {

@@ -175,7 +175,7 @@ TEST_F(MapPlacementTest, AMapInDegreesIsAsLargeAsTheEllipsoidSays) {
   const auto [south, north] = std::ranges::minmax(part.mesh->positions, {}, &glm::vec3::y);
   EXPECT_NEAR(east.x - west.x, 1e-3 * 111319.49, 1e-2);    // a pi / 180
   EXPECT_NEAR(north.y - south.y, 1e-3 * 110574.28, 1e-2);  // a (1 - e^2) pi / 180
-  EXPECT_THAT(world.maps, ElementsAre(HasSubstr("above a datum that is not told")));
+  EXPECT_THAT(world.maps, ElementsAre(HasSubstr("above an unknown datum")));
 }
 
 TEST_F(MapPlacementTest, TheOriginOfTheWorldFileServesAndAltitudeIsSubtracted) {
@@ -240,7 +240,7 @@ TEST_F(MapPlacementTest, HolesStayInLargeMaps) {
 TEST_F(MapPlacementTest, ErrorsSayWhatIsMissing) {
   TiffSpec spec = slope();
   spec.keys = {};
-  EXPECT_THAT(error_of(spec), HasSubstr("bed.tif: it does not say its coordinate system; give the <size>"));
+  EXPECT_THAT(error_of(spec), HasSubstr("bed.tif: it has no coordinate system; give the <size>"));
   spec.keys = {1024, 1, 3072, 2154};
   EXPECT_THAT(error_of(spec), HasSubstr("EPSG:2154 is not known (expected EPSG:4326 or UTM"));
   spec.keys = {3072, 32632, 4096, 5715};

@@ -150,7 +150,8 @@ TEST(MeshFile, RefusesATextPlyWithoutNumbers) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n" +
             vertex + "\n3 0 1 2\n")));
-    EXPECT_THAT(error, HasSubstr("bad.ply: line 12: '" + vertex + "' is not made of finite numbers"));
+    EXPECT_THAT(error,
+                HasSubstr("bad.ply: line 12: '" + vertex + "' has values that are not finite numbers"));
   }
 }
 
@@ -211,7 +212,7 @@ TEST(MeshFile, MakesTangentsForANormalMap) {
   EXPECT_EQ(triangle_count(bare), 4U);
   EXPECT_TRUE(bare.parts.at(0).mesh->tangents.empty());
   EXPECT_THAT(bare.warnings,
-              testing::ElementsAre(HasSubstr("tetrahedron.obj: the normal map is left out where")));
+              testing::ElementsAre(HasSubstr("tetrahedron.obj: the normal map is left out on")));
 }
 
 TEST(MeshFile, CountsWhatItDrops) {
@@ -254,12 +255,12 @@ TEST(MeshFile, NamesOnlyFilesOfItsWorld) {
     return error_of(request);
   };
   const std::string far = (elsewhere.path() / "secret.mtl").string();
-  EXPECT_THAT(read("/etc/passwd"), HasSubstr("hull.obj: it names /etc/passwd, outside of the folders"));
-  EXPECT_THAT(read(far), HasSubstr("it names " + far));
+  EXPECT_THAT(read("/etc/passwd"), HasSubstr("hull.obj: it refers to /etc/passwd, outside of the folders"));
+  EXPECT_THAT(read(far), HasSubstr("it refers to " + far));
   EXPECT_THAT(read("../../" + elsewhere.path().filename().string() + "/secret.mtl"),
-              HasSubstr("it names " + far));
-  EXPECT_THAT(read("../meshes.mtl"), HasSubstr("it names " + far));
-  EXPECT_THAT(read("../materials/hull.mtl"), HasSubstr("it names"));
+              HasSubstr("it refers to " + far));
+  EXPECT_THAT(read("../meshes.mtl"), HasSubstr("it refers to " + far));
+  EXPECT_THAT(read("../materials/hull.mtl"), HasSubstr("it refers to"));
   request.folders = {world.path()};
   EXPECT_EQ(read("../materials/hull.mtl"), "");
   EXPECT_EQ(read("/home/somebody/else/hull.mtl"), "");  // as an exporter on another machine writes it

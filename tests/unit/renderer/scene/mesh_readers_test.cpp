@@ -63,10 +63,12 @@ TEST(MeshReaders, SayWhichOneCouldNotReadWhatAnotherRead) {
   std::vector<std::string> warnings;
   const MeshReader readers[] = {strict, broken, good};
   EXPECT_EQ(read_mesh(readers, {"/hull.ply"}, warnings).parts.size(), 1U);
-  EXPECT_THAT(warnings,
-              ElementsAre("/hull.ply: read by good, as strict says: line 7 is odd; broken says: the reader "
-                          "crashed (signal 6): the file is damaged or of another format; check its shape, "
-                          "or export the mesh again"));
+  EXPECT_THAT(
+      warnings,
+      ElementsAre(
+          "/hull.ply: read by good, because strict reports: line 7 is odd; broken reports: the reader "
+          "crashed (signal 6): the file is damaged or of another format; check its shape, "
+          "or export the mesh again"));
 }
 
 TEST(MeshReaders, SayWhatEachSaidIfNoneCanReadTheFile) {
@@ -81,7 +83,7 @@ TEST(MeshReaders, SayWhatEachSaidIfNoneCanReadTheFile) {
   };
   const MeshReader two[] = {strict, broken};
   EXPECT_EQ(error_of(two),
-            "no reader takes this file: strict says: line 7 is odd; broken says: the reader crashed "
+            "no reader can read this file: strict reports: line 7 is odd; broken reports: the reader crashed "
             "(signal 6): the file is damaged or of another format");
   const MeshReader one[] = {strict};
   EXPECT_EQ(error_of(one), "line 7 is odd");

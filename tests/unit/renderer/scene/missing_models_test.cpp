@@ -115,8 +115,8 @@ TEST_F(WithoutModels, WhatStandsByAPartOfASkippedIncludeIsSkipped) {
   EXPECT_EQ(world.triangle_count(), 24U) << "the post and link a";
   EXPECT_THAT(
       world.warnings,
-      AllOf(Contains(HasSubstr("w.sdf:4: frame 'b::top' is in the model 'b', which is not there")),
-            Contains(HasSubstr("w.sdf:6: frame 'skid_top' is in a model to be merged, which is not there"))));
+      AllOf(Contains(HasSubstr("w.sdf:4: frame 'b::top' is in the model 'b', which is missing")),
+            Contains(HasSubstr("w.sdf:6: frame 'skid_top' is in a model to be merged, which is missing"))));
   try {
     load(world_text, MissingFiles::error);
     FAIL() << "nothing is missing";
@@ -134,8 +134,8 @@ TEST_F(WithoutModels, AFolderWithoutAModelIsNotThere) {
       load(post + "<include><uri>model://buoy</uri></include><include><uri>models/buoy</uri></include>");
   EXPECT_THAT(
       world.warnings,
-      ElementsAre(testing::ContainsRegex("include 'model://buoy': there is no file .*models/buoy/model.sdf"),
-                  HasSubstr("include 'models/buoy': there is no file ")));
+      ElementsAre(testing::ContainsRegex("include 'model://buoy': file .*models/buoy/model.sdf not found"),
+                  HasSubstr("include 'models/buoy': file ")));
 }
 
 TEST_F(WithoutModels, AMeshOfNothingTakesItsShapeAlong) {
@@ -159,7 +159,7 @@ TEST_F(WithoutModels, AMeshOfNothingTakesItsShapeAlong) {
       ADD_FAILURE() << "is refused unless told otherwise";
     } catch (const WorldError& error) {
       EXPECT_THAT(error.what(),
-                  AllOf(HasSubstr(says), HasSubstr("go on without it by `world: {missing: skip}`")));
+                  AllOf(HasSubstr(says), HasSubstr("load the world without it: `world: {missing: skip}`")));
     }
   }
 }

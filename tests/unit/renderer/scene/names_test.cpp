@@ -284,15 +284,15 @@ TEST(GroupedWarnings, AreOneLineForEachKind) {
         "</laser_retro></visual></link></model>";
   }
   const World world = load_world(folder.write("w.sdf", in_a_world(models)), {});
-  EXPECT_THAT(
-      world.warnings,
-      testing::UnorderedElementsAre(
-          testing::AllOf(HasSubstr("w.sdf:4: mesh materials are no acoustic materials, so 'default' is used"),
-                         HasSubstr("(20): "), HasSubstr("'RedPaint' (m0::l::v)"),
-                         HasSubstr("'Blue' (m0::l::v)"), EndsWith(", ...")),
-          testing::AllOf(HasSubstr("w.sdf:4: laser_retro is far above the usual 0 to 2.5"),
-                         HasSubstr("(10): "), HasSubstr("4000 (m0::l::r), 4000 (m1::l::r), "),
-                         EndsWith(", ..."))));
+  EXPECT_THAT(world.warnings,
+              testing::UnorderedElementsAre(
+                  testing::AllOf(
+                      HasSubstr("w.sdf:4: mesh materials are not acoustic materials, so 'default' is used"),
+                      HasSubstr("(20): "), HasSubstr("'RedPaint' (m0::l::v)"), HasSubstr("'Blue' (m0::l::v)"),
+                      EndsWith(", ...")),
+                  testing::AllOf(HasSubstr("w.sdf:4: laser_retro is far above the usual 0 to 2.5"),
+                                 HasSubstr("(10): "), HasSubstr("4000 (m0::l::r), 4000 (m1::l::r), "),
+                                 EndsWith(", ..."))));
 }
 
 bool is_one_printable_line(const std::string& line) {

@@ -106,9 +106,9 @@ TEST_F(Ply, TakesEveryTypeOfACount) {
 
 TEST_F(Ply, SaysWhatIsPromisedAndWhatIsThere) {
   EXPECT_EQ(error_of(header("ascii", "1720") + "0 0 0 0\n1 0 0 0\n"),
-            "the file is cut short: its header promises 1720 of element vertex, there are 2");
+            "the file is cut short: its header declares 1720 of element vertex, there are 2");
   EXPECT_EQ(error_of(header("ascii", "18446744073709551615") + "0 0 0 0\n"),
-            "the file is cut short: its header promises 18446744073709551615 of element vertex, there are 1");
+            "the file is cut short: its header declares 18446744073709551615 of element vertex, there are 1");
   EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement ver"), HasSubstr("its header has no end_header"));
 }
 
@@ -116,7 +116,7 @@ TEST_F(Ply, NamesTheLineOfABadHeader) {
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\nelement vertex many\nend_header\n"),
             "line 3: an element without a name and a count");
   EXPECT_EQ(error_of("ply\nelement vertex 1\nproperty half x\nend_header\n"),
-            "line 3: 'half' is no type of a property");
+            "line 3: 'half' is not a type of a property");
   EXPECT_EQ(error_of("ply\nproperty float x\nend_header\n"), "line 2: a property before any element");
   EXPECT_THAT(error_of("plyx ascii\n<html>\n"), HasSubstr("line 1"));
 }

@@ -73,16 +73,16 @@ const std::vector<Case> cases{
     {"missing_in_include", "<include><uri>broken</uri></include>", {"broken/model.sdf:3: ", "model://gone"}},
     {"url_mesh",
      model("<geometry><mesh><uri>http://127.0.0.1/hull.obj</uri></mesh></geometry>"),
-     {"world.sdf:4: m::l::v: 'http://127.0.0.1/hull.obj': nothing is fetched from a network"}},
+     {"world.sdf:4: m::l::v: 'http://127.0.0.1/hull.obj': sonard downloads nothing"}},
     {"url_include",
      "<include><uri>https://fuel.gazebosim.org/1.0/a/models/b</uri></include>",
      {"world.sdf:3: ", "is not in the local cache of Fuel; looked in /", "gz fuel download -u https://"}},
     {"url_of_another",
      "<include><uri>https://example.org/models/b</uri></include>",
-     {"world.sdf:3: ", "nothing is fetched from a network"}},
+     {"world.sdf:3: ", "sonard downloads nothing"}},
     {"unknown_format",
      model("<geometry><mesh><uri>world.sdf</uri></mesh></geometry>"),
-     {"world.sdf:4: m::l::v: ", "'sdf' is no mesh format", "obj, stl, ply, dae"}},
+     {"world.sdf:4: m::l::v: ", "'sdf' is not a supported mesh format", "obj, stl, ply, dae"}},
     {"zero_triangles",
      model("<geometry><mesh><uri>points.obj</uri></mesh></geometry>"),
      {"world.sdf:4: m::l::v: ", "points.obj: "}},
@@ -131,12 +131,12 @@ const std::vector<Case> cases{
      {"world.sdf:4: m::l::v: ", "quad.obj: no submesh 'keel'"}},
     {"missing_with_steps",
      model("<geometry><mesh><uri>hull.obj</uri></mesh></geometry>"),
-     {"; GZ_SIM_RESOURCE_PATH names more folders; correct it, or go on without it by `world: {missing: "
-      "skip}`"}},
+     {"; to search other folders, set GZ_SIM_RESOURCE_PATH; correct it, or load the world without it: "
+      "`world: {missing: skip}`"}},
     {"file_of_fuel",
      model("<geometry><mesh><uri>https://fuel.gazebosim.org/1.0/a/models/b/3/files/c.obj</uri></mesh></"
            "geometry>"),
-     {"`gz fuel download -u https://fuel.gazebosim.org/1.0/a/models/b/3` does; correct it, or go on"}},
+     {"`gz fuel download -u https://fuel.gazebosim.org/1.0/a/models/b/3`; correct it, or load the world"}},
     {"duplicate_body", model(shape) + "\n" + model(shape), {"world.sdf:5: another model is called 'm'"}},
     {"nan_pose",
      "<model name=\"m\"><pose>nan 0 0 0 0 0</pose><link name=\"l\"/></model>",
@@ -213,7 +213,7 @@ TEST(BadWorldFile, LeadsOutOfTheCacheOfFuel) {
   for (const char* rest : {"reef/1/files/../../../../../../secret/quad.obj",
                            "reef/1/files/%2e%2e/../../../../../secret/quad.obj",
                            "reef/1/files/..%2F..%2F..%2F..%2F..%2F..%2Fsecret%2Fquad.obj"}) {
-    EXPECT_THAT(error_of_world(world(rest)), HasSubstr("nothing is fetched")) << rest;
+    EXPECT_THAT(error_of_world(world(rest)), HasSubstr("sonard downloads nothing")) << rest;
   }
   unsetenv("GZ_FUEL_CACHE_PATH");
 }
@@ -322,14 +322,13 @@ TEST(BadWorldFile, HasIncludesThatMultiply) {
     }
     file = folder.write("m" + std::to_string(level) + ".sdf", text + "</model></sdf>");
   }
-  EXPECT_THAT(error_of_world(file),
-              HasSubstr("m9.sdf: more than 1000000 elements with all that is included"));
+  EXPECT_THAT(error_of_world(file), HasSubstr("m9.sdf: more than 1000000 elements, includes among them"));
 }
 
 TEST(BadWorldFile, IsOfAnotherKind) {
   const test::TempFolder folder;
   EXPECT_THAT(error_of_world(folder.write("arm.urdf", "<robot name=\"arm\"/>")),
-              HasSubstr("<robot> is no SDF"));
+              HasSubstr("<robot> is not SDF"));
   EXPECT_THAT(error_of_world(folder.write("old.sdf", "<sdf version=\"1.2\"><model name=\"m\"/></sdf>")),
               AllOf(HasSubstr("SDF version 1.2 is too old"), HasSubstr("gz sdf -c")));
 }
@@ -343,7 +342,7 @@ TEST(BadWorldFile, HasPosesThatAreRelativeToEachOther) {
                                   "\n<frame name=\"b\"><pose relative_to=\"a\">1 0 0 0 0 0</pose></frame>"
                                   "<link name=\"l\"><pose relative_to=\"a\"/><visual name=\"v\">" +
                                       shape + "</visual></link></model></sdf>")),
-      HasSubstr("is relative to itself, by way of others"));
+      HasSubstr("is relative to itself, through other frames"));
 }
 
 TEST(BadWorldFile, MayNotBeRead) {
@@ -376,7 +375,7 @@ TEST(BadWorldFile, IsNamed) {
   EXPECT_THAT(error_of_world(folder.path()), HasSubstr("world file not found"));
   EXPECT_THAT(error_of_world(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
   EXPECT_THAT(error_of_world(folder.write("bare.sdf", "<?xml version=\"1.0\"?>\n")),
-              HasSubstr("bare.sdf: holds no element"));
+              HasSubstr("bare.sdf: has no element"));
   EXPECT_THAT(error_of_world(folder.write(
                   "two.sdf", "<sdf version=\"1.9\"><world name=\"a\"/><world name=\"b\"/></sdf>")),
               AllOf(HasSubstr("two.sdf"), HasSubstr("2 worlds")));

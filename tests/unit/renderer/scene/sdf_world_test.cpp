@@ -502,7 +502,7 @@ TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
            Case{with_map(ball, "model://gone/a.png"), "the normal map is left out: "},
            Case{with_map(ball, "http://127.0.0.1/a.png"), "the normal map is left out: "},
            Case{with_map(ball, "bad.png"), "bad.png: "},
-           Case{with_map(ball, "ripples.webp"), "ripples.webp: 'webp' is no image format"},
+           Case{with_map(ball, "ripples.webp"), "ripples.webp: 'webp' is not a supported image format"},
            Case{with_map(ball, "grey.png"), "grey.png: a normal map needs 3 channels, this image has 1"},
            Case{with_map(ball, "ripples.png", " type=\"object\""),
                 "object-space normal maps are not supported"},
@@ -511,7 +511,7 @@ TEST(SdfWorld, LeavesANormalMapOutThatItCannotUse) {
                                   "</normal_map></shader></material>"),
                "object-space normal maps are not supported"},
            Case{with_map(geometry("<mesh><uri>bare.obj</uri></mesh>"), "ripples.png"),
-                "bare.obj: the normal map is left out where the mesh has no texture coordinates"},
+                "bare.obj: the normal map is left out on parts without texture coordinates"},
        }) {
     const World world = load_world(folder.write("w.sdf", world_of(given.visual)), {});
     ASSERT_EQ(world.bodies.at(0).parts.size(), 1U) << given.warning;

@@ -208,12 +208,12 @@ TEST_F(RenderServiceTest, MemoryThatRunsOutFailsOnePingOnly) {
 
 TEST_F(RenderServiceTest, TellsWhichEngineMadeTheNewestPing) {
   control->before_ping = [this](const render::PingRequest& request, int) {
-    control->engine = request.ping_number == 2 ? "cpu, for the GPU is lost" : "gpu";
+    control->engine = request.ping_number == 2 ? "cpu, because the GPU is lost" : "gpu";
   };
   RenderService service(fake_renderer_factory(control), 1, hooks());
   EXPECT_EQ(service.renderer_description(), "fake");
   for (const auto& [number, engine] : std::vector<std::pair<std::uint64_t, std::string>>{
-           {1, "gpu"}, {2, "cpu, for the GPU is lost"}, {3, "gpu"}}) {
+           {1, "gpu"}, {2, "cpu, because the GPU is lost"}, {3, "gpu"}}) {
     bool answered = false;
     service.submit(small_job(number), [&](const RenderResult&) { answered = true; });
     ASSERT_TRUE(inbox.run_until([&] { return answered; }));

@@ -15,7 +15,7 @@ namespace {
 
 DaemonStatus status_of_two_heads() {
   DaemonStatus status;
-  status.engine = "cpu, for the GPU is lost: reset";
+  status.engine = "cpu, because the GPU is lost: reset";
   for (const char* name : {"bow", "st\"ern\\\n"}) {
     HeadStatus head;
     head.name = name;
@@ -70,7 +70,7 @@ TEST(Metrics, AreInSeconds) {
 }
 
 TEST(Metrics, NameTheEngineInUse) {
-  EXPECT_NE(text().find("engine=\"cpu, for the GPU is lost: reset\"} 1\n"), std::string::npos);
+  EXPECT_NE(text().find("engine=\"cpu, because the GPU is lost: reset\"} 1\n"), std::string::npos);
 }
 
 TEST(Metrics, SayHowOldTheLastPingIsAndWhetherTheDaemonIsReady) {
