@@ -134,10 +134,11 @@ int cast(const Arguments& arguments) {
   boost::asio::steady_timer first_second{io, std::chrono::seconds{1}};
   first_second.async_wait([&](const boost::system::error_code& cancelled) {
     if (!cancelled && counters.refused > 0) {
-      fmt::print(stderr,
-                 "posecast: {}: nobody listens there (poses.udp.bind of sonard's configuration says where it "
-                 "does); going on\n",
-                 printable(link->description()));
+      fmt::print(
+          stderr,
+          "posecast: {}: nothing listens there (poses.udp.bind of sonard's configuration sets the address); "
+          "continuing\n",
+          printable(link->description()));
     }
   });
   const auto began = std::chrono::steady_clock::now();
@@ -154,7 +155,7 @@ int cast(const Arguments& arguments) {
   }
   // The last datagram has no refusal: there was no time for it to arrive.
   if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {
-    failure = link->description() + ": nobody listens there";
+    failure = link->description() + ": nothing listens there";
   }
   if (!failure.empty()) {
     fmt::print(stderr, "posecast: {}\n", printable(failure));

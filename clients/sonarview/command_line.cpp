@@ -19,7 +19,7 @@ void refuse_options_before(const CLI::App& app, const std::string& subcommand) {
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() > 0) {
       throw CLI::ValidationError(option->get_name(),
-                                 "stands before '" + subcommand + "', whose options follow it");
+                                 "is before '" + subcommand + "'; write options after it");
     }
   }
 }

@@ -92,11 +92,10 @@ void LineViewer::line_lost(const std::string& why) {
   retry_due_ = at + retry_period;
   if (!lost_at_) {
     lost_at_ = at;
-    fmt::print(stderr, "sonarview: lost {}: {}; trying again for {:.1f} s\n", printable(line_text_),
+    fmt::print(stderr, "sonarview: lost {}: {}; retrying for {:.1f} s\n", printable(line_text_),
                printable(why), seconds(options_.wait));
   } else if (why != trouble_) {  // logged once, not at each try
-    fmt::print(stderr, "sonarview: cannot open {}: {}; trying again\n", printable(line_text_),
-               printable(why));
+    fmt::print(stderr, "sonarview: cannot open {}: {}; retrying\n", printable(line_text_), printable(why));
   }
   trouble_ = why;
   advance();
@@ -165,7 +164,7 @@ void LineViewer::check_limits(TimePoint at) {
     const std::string why =
         fmt::format("within {:.1f} s{}{}", wait_s, trouble_.empty() ? "" : ": ", trouble_);
     if (spoke_) {
-      give_up(ExitStatus::incomplete, line_text_ + " did not come back " + why);
+      give_up(ExitStatus::incomplete, line_text_ + " did not open again " + why);
     } else {
       give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why);
     }

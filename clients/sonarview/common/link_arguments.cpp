@@ -41,7 +41,7 @@ LineAddress LinkArguments::address() const {
   if (!tty_.empty()) {
     return {.way = LineAddress::Way::tty, .place = tty_, .baud = baud_};
   }
-  throw CLI::ValidationError("--tcp, --udp, --tty", "one of them must say where the head is");
+  throw CLI::ValidationError("--tcp, --udp, --tty", "one of them is required, with the address of the head");
 }
 
 }  // namespace sonard::client

@@ -114,7 +114,7 @@ void SerialLine::open_tty() {
   }
   if (const int error = set_up(tty, address_.baud); error != 0) {
     ::close(tty);
-    lose(error == EINVAL ? fmt::format("it has no {} baud", address_.baud) : reason(error));
+    lose(error == EINVAL ? fmt::format("it does not support {} baud", address_.baud) : reason(error));
     return;
   }
   adopt(tty);

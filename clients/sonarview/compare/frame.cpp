@@ -90,7 +90,7 @@ cv::Mat read_picture(const std::filesystem::path& file) {
     picture.release();  // no memory
   }
   if (picture.empty()) {
-    throw std::runtime_error(fmt::format("{}: is not a picture, PNG or JPEG", file.string()));
+    throw std::runtime_error(fmt::format("{}: is not a PNG or JPEG picture", file.string()));
   }
   cv::cvtColor(picture, picture, cv::COLOR_BGR2GRAY);
   return picture;

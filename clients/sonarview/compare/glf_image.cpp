@@ -36,7 +36,7 @@ cv::Mat read_glf_image(const std::filesystem::path& file, std::uint64_t number) 
     std::copy(image->pixels.begin(), image->pixels.end(), polar.begin<std::uint8_t>());
     return polar;
   }
-  throw refuse(fmt::format("has no image {}, but {}", number, images));
+  throw refuse(fmt::format("has no image {}; it has {} images", number, images));
 }
 
 }  // namespace sonard::client

@@ -79,7 +79,7 @@ ExitStatus compare(const CompareOptions& options) {
   const cv::Mat b = load_frame(options.b);
   if (a.size() != b.size()) {
     throw std::runtime_error(
-        fmt::format("{} is {} x {}, {} is {} x {}: only images of one size can be compared", options.a,
+        fmt::format("{} is {} x {}, {} is {} x {}: only images of equal size can be compared", options.a,
                     a.cols, a.rows, options.b, b.cols, b.rows));
   }
   const Similarity similarity = compare_images(a, b);

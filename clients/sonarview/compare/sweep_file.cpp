@@ -65,7 +65,7 @@ ScanLine parse_line(const std::string& text) {
     scan.shape.width = width < 0 ? width + picture::units_per_turn : width;
   }
   if (scan.shape.bins == 0 || scan.shape.width == 0) {
-    throw std::runtime_error("there is nothing in the line");
+    throw std::runtime_error("the line is empty");
   }
   return scan;
 }
@@ -90,7 +90,7 @@ cv::Mat read_sweep(const std::filesystem::path& file, std::uint64_t sweep) {
     try {
       scan = parse_line(text);
     } catch (const YAML::Exception&) {
-      refuse("is no line of a scanning head (expected what sonarview --raw writes)");
+      refuse("is not a line of a scanning head (expected a line written by sonarview --raw)");
     } catch (const std::runtime_error& error) {
       refuse(error.what());
     }
@@ -98,7 +98,7 @@ cv::Mat read_sweep(const std::filesystem::path& file, std::uint64_t sweep) {
       continue;
     }
     if (shape && !same(*shape, scan.shape)) {
-      refuse("has another step, sector or number of bins than the turn's first line");
+      refuse("differs from the turn's first line in step, sector or number of bins");
     }
     shape = scan.shape;
     lines.push_back(std::move(scan.line));

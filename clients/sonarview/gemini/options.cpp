@@ -116,7 +116,7 @@ GeminiOptions GeminiArguments::options() const {
       throw CLI::ValidationError("--sonar-id", "1 is reserved for production");
     }
     if (!ids.insert(id).second || (id == 0 && options.sonar_ids.size() > 1)) {
-      throw CLI::ValidationError("--sonar-id", "several heads need an ID each, none of them 0");
+      throw CLI::ValidationError("--sonar-id", "each of several heads needs an ID other than 0");
     }
   }
   options.settings.sixteen_bit = bits_ == 16;

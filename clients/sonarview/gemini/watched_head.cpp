@@ -75,16 +75,15 @@ void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
 /// What to do if the wanted head sent no status.
 std::string WatchedHead::advice() const {
   if (others_.empty()) {
-    return "is sonard running, does it send its status to this address or broadcast it on this network, and "
-           "does a "
-           "firewall let UDP in?";
+    return "check that sonard runs, that it sends its status to this address or broadcasts it on this "
+           "network, and that no firewall blocks UDP";
   }
   std::vector<std::string> received;
   for (const auto& [id, address] : others_) {
     received.push_back(fmt::format("{} at {}", id, address_text(address)));
   }
-  return fmt::format("what came is from head {} (view it with --sonar-id {})", fmt::join(received, ", head "),
-                     others_.begin()->first);
+  return fmt::format("only head {} sent a status (to view one, use --sonar-id {})",
+                     fmt::join(received, ", head "), others_.begin()->first);
 }
 
 void WatchedHead::advance(TimePoint at) {
@@ -157,12 +156,12 @@ void WatchedHead::greet_head() {
   const auto own_mask = interface_netmask(options_.topside_address);
   const bool same_network = ((head.address ^ options_.topside_address) & status.subnet_mask) == 0;
   if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
-    fmt::print(stderr,
-               "{}warning: {} with netmask {} and {} with netmask {} are not on one network; the "
-               "vendor's later "
-               "libraries would send nothing\n",
-               says_, address_text(head.address), address_text(status.subnet_mask),
-               address_text(options_.topside_address), own_mask ? address_text(*own_mask) : "unknown");
+    fmt::print(
+        stderr,
+        "{}warning: {} with netmask {} and {} with netmask {} are not on one network; later libraries of "
+        "the vendor would send nothing\n",
+        says_, address_text(head.address), address_text(status.subnet_mask),
+        address_text(options_.topside_address), own_mask ? address_text(*own_mask) : "unknown");
   }
 }
 
@@ -189,13 +188,14 @@ void WatchedHead::check_limits(TimePoint at) {
                      std::chrono::duration<double>(options_.run.wait).count(), advice()));
   } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
              at - last_ping_at_ >= options_.run.ping_wait) {
-    fail(ExitStatus::incomplete,
-         fmt::format(
-             "status comes, but no ping for {:.1f} s: can the head be reached at {}:{} from {}, and does it "
-             "have a pose?",
-             std::chrono::duration<double>(options_.run.ping_wait).count(),
-             address_text(topside_.head()->address), gemini::head_port,
-             address_text(options_.topside_address)));
+    fail(
+        ExitStatus::incomplete,
+        fmt::format(
+            "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from "
+            "{}, and that it has a pose",
+            std::chrono::duration<double>(options_.run.ping_wait).count(),
+            address_text(topside_.head()->address), gemini::head_port,
+            address_text(options_.topside_address)));
   }
 }
 

@@ -104,7 +104,7 @@ micron::ScanSettings MicronArguments::scan() const {
   scan.eight_bit = !four_bit_;
   if (const int interval = micron::ad_interval(scan); interval < 1 || interval > most_ad_interval) {
     throw CLI::ValidationError(
-        "--bins", fmt::format("{} bins over {} m are too {} for a head, which takes 1 to {} times 640 ns "
+        "--bins", fmt::format("{} bins over {} m are too {} for a head, which supports 1 to {} times 640 ns "
                               "between bins",
                               scan.bins, scan.range_m, interval < 1 ? "fine" : "coarse", most_ad_interval));
   }

@@ -162,7 +162,7 @@ std::string Viewer::head_text() const {
     return "the line is lost";
   }
   if (!alive) {
-    return "the head says nothing of its state";
+    return "the head has not sent its state";
   }
   const double bearing = micron::bearing_deg(alive->position);
   if (!alive->has(micron::head_info_bits::centred)) {
@@ -175,18 +175,18 @@ std::string Viewer::head_text() const {
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   const std::uint64_t lines = host_.statistics().lines;
   if (fresh == 0) {
-    return fmt::format("{} lines, none in the last second; {}", lines, head_text());
+    return fmt::format("{} lines, 0 in the last second; {}", lines, head_text());
   }
   const std::string done =
       sweeps_.begun() ? fmt::format("turn {}, {:.0f} %", sweeps_.current().number, 100.0 * sweeps_.share())
-                      : "on the way to the first limit";
+                      : "turning to the first limit";
   return fmt::format("bearing {:+.1f} deg, {} lines, {} in the last second; {}",
                      micron::bearing_deg(last_bearing_), lines, fresh, done);
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
   return fmt::format(
-      "{} is open, but no head {} spoke within {:.1f} s: is it powered, is it this line, speed and node?",
+      "{} is open, but head {} sent nothing within {:.1f} s: check its power, line, baud rate and node",
       options_.line.text(), options_.host.node, wait_s);
 }
 

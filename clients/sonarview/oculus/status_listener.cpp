@@ -25,7 +25,7 @@ StatusListener::StatusListener(boost::asio::io_context& io, const Endpoint& bind
     socket_.bind({boost::asio::ip::address_v4{bind.address}, bind.port}, error);
   }
   if (error) {
-    throw std::runtime_error("cannot listen to statuses on UDP " + endpoint_text(bind) + ": " +
+    throw std::runtime_error("cannot receive status packets on UDP " + endpoint_text(bind) + ": " +
                              error.message());
   }
   receive();

@@ -75,7 +75,7 @@ void Viewer::meet(const oculus::Status& status) {
   if (!options_.run.quiet) {
     fmt::print(stderr, "sonarview: head {}, part {}, at {}.{}.{}.{}{}\n", status.device_id,
                status.part_number, octets[0], octets[1], octets[2], octets[3],
-               client == decltype(status.client){} ? "" : ", which has a client already");
+               client == decltype(status.client){} ? "" : ", which already has a client");
   }
   statuses_->close();
   connect_to(fmt::format("{}.{}.{}.{}", octets[0], octets[1], octets[2], octets[3]));
@@ -94,7 +94,7 @@ void Viewer::on_opened() {
 void Viewer::take_received() {
   for (const std::string& text : host_.take_logs()) {
     if (!options_.run.quiet) {
-      fmt::print(stderr, "sonarview: the head says: {}\n", one_line(text));
+      fmt::print(stderr, "sonarview: log of the head: {}\n", one_line(text));
     }
   }
   for (oculus::ReceivedPing& ping : host_.take_pings()) {
@@ -150,13 +150,13 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 
 std::string Viewer::no_head_text(double wait_s) const {
   return fmt::format(
-      "no status on port {} within {:.1f} s: is sonard running, does it send its status to this address or "
-      "broadcast it on this network, and does a firewall let UDP in?",
+      "no status on port {} within {:.1f} s: check that sonard runs, that it sends its status to this "
+      "address or broadcasts it on this network, and that no firewall blocks UDP",
       options_.status_port, wait_s);
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {
-  return fmt::format("no ping for {:.1f} s: does the head have a pose?", wait_s);
+  return fmt::format("no ping for {:.1f} s: check that the head has a pose", wait_s);
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {

@@ -116,7 +116,7 @@ void Viewer::take_received() {
     }
   }
   if (const auto& refusal = host_.refusal(); refusal && !stopping()) {
-    give_up(ExitStatus::incomplete, "the head refuses: " + refusal->text);
+    give_up(ExitStatus::incomplete, "the head refused a command: " + refusal->text);
   }
 }
 
@@ -172,12 +172,12 @@ void Viewer::greet_head() {
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
-  return fmt::format("{} pings, {} in the last second; turn {}, {} pings of it", pings(), fresh,
+  return fmt::format("{} pings, {} in the last second; turn {} has {} pings", pings(), fresh,
                      sweeps_.current().number, sweeps_.current().lines.size());
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
-  return fmt::format("{} is open, but no head spoke within {:.1f} s", options_.line.text(), wait_s);
+  return fmt::format("{} is open, but no head answered within {:.1f} s", options_.line.text(), wait_s);
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {

@@ -260,8 +260,8 @@ class Topsides(LinkTest):
         daemon = self.start_daemon(lab, self.head_config(), self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
         viewer = lab.start(lab.topside, os.path.join(PROGRAMS, "sonarview"), "--sonar-id", "600", "--wait", "4", "--pings", "1")
         self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
-        self.assertIn(f"no status of head 600 on port 52900 within 4.0 s: what came is from head 513 at {HEAD_ADDRESS}, head 514 "
-                      f"at {SECOND_HEAD_ADDRESS} (view it with --sonar-id 513)", viewer.output())
+        self.assertIn(f"no status of head 600 on port 52900 within 4.0 s: only head 513 at {HEAD_ADDRESS}, head 514 "
+                      f"at {SECOND_HEAD_ADDRESS} sent a status (to view one, use --sonar-id 513)", viewer.output())
         self.end_daemon(daemon)
 
     def test_daemon_ends_within_a_second_while_it_pings(self):

@@ -55,10 +55,10 @@ TEST_F(CompareProgram, PrintsATableAndWritesJson) {
 TEST_F(CompareProgram, WhatCannotBeComparedEndsWithOne) {
   const std::string a = flat("a.png", 30, 20, 10);
   std::ofstream(path("notes.txt")) << "no picture";
-  for (const auto& [other, why] :
-       std::vector<std::pair<std::string, std::string>>{{flat("b.png", 20, 30, 10), "b.png is 20 x 30"},
-                                                        {path("missing.png"), "missing.png: no such file"},
-                                                        {path("notes.txt"), "notes.txt: is not a picture"}}) {
+  for (const auto& [other, why] : std::vector<std::pair<std::string, std::string>>{
+           {flat("b.png", 20, 30, 10), "b.png is 20 x 30"},
+           {path("missing.png"), "missing.png: no such file"},
+           {path("notes.txt"), "notes.txt: is not a PNG or JPEG picture"}}) {
     const ProcessResult result = compare({a, other});
     EXPECT_EQ(result.exit_code, 1) << other;
     EXPECT_EQ(result.out, "") << other;

@@ -269,7 +269,7 @@ TEST_F(SonarviewMicron, gives_up_on_a_line_that_does_not_come_back) {
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "1", "--wait", "1.5"} + forty_bins_);
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.err, HasSubstr("did not come back within 1.5 s: Connection refused"));
+  EXPECT_THAT(result.err, HasSubstr("did not open again within 1.5 s: Connection refused"));
 }
 
 TEST_F(SonarviewMicron, a_line_that_nobody_answers_on_has_no_head) {
@@ -282,7 +282,7 @@ TEST_F(SonarviewMicron, a_line_that_nobody_answers_on_has_no_head) {
                                   .echo = echo});
   const ProcessResult result = run({"--tty", other.tty(), "--node", "2", "--wait", "3"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.err, HasSubstr("is open, but no head 2 spoke within 3.0 s"));
+  EXPECT_THAT(result.err, HasSubstr("is open, but head 2 sent nothing within 3.0 s"));
   EXPECT_EQ(run({"--tty", other.tty(), "--node", "7", "--lines", "4"}).exit_code, 0);
 }
 

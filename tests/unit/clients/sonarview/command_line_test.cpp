@@ -123,7 +123,7 @@ TEST(CommandLine, AMicronIsReachedInOneOfThreeWays) {
   EXPECT_EQ(tty.text(), "tty /dev/ttyUSB0 at 57600 baud");
   EXPECT_EQ(micron({"--tty", "x"}).line.baud, 115'200U);
 
-  expect_refused({"micron"}, "one of them must say where the head is");
+  expect_refused({"micron"}, "one of them is required, with the address of the head");
   expect_refused({"micron", "--tcp", "a:1", "--tty", "b"}, "excludes");
   expect_refused({"micron", "--tcp", "a:1", "--baud", "9600"}, "--baud requires --tty");
   for (const char* place : {"host", "host:", ":1", "host:0", "host:65536", "host:1x", "host:-1"}) {
@@ -190,8 +190,8 @@ TEST(CommandLine, TheWindowBelongsToFourBitLines) {
 }
 
 TEST(CommandLine, OptionsBeforeTheSubcommandAreNotLostInSilence) {
-  expect_refused({"--range", "20", "micron", "--tty", "x"}, "--range: stands before 'micron'");
-  expect_refused({"--range", "20", "compare", "a", "b"}, "--range: stands before 'compare'");
+  expect_refused({"--range", "20", "micron", "--tty", "x"}, "--range: is before 'micron'");
+  expect_refused({"--range", "20", "compare", "a", "b"}, "--range: is before 'compare'");
   expect_refused({"micron", "--tty", "x", "--pings", "3"}, "--pings");
 }
 

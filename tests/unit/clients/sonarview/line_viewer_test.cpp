@@ -142,14 +142,14 @@ TEST(LineViewer, a_line_that_is_lost_is_opened_again_and_counted) {
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::ok);
   EXPECT_EQ(viewer.counters->pings, 6U);
   EXPECT_EQ(viewer.counters->reconnects, 1U);
-  EXPECT_THAT(viewer.said, HasSubstr("closed by the other end; trying again for 30.0 s"));
+  EXPECT_THAT(viewer.said, HasSubstr("closed by the other end; retrying for 30.0 s"));
   EXPECT_THAT(viewer.said, HasSubstr("is open again"));
 }
 
 TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
   Bytes viewer(options(), {.closes = true, .leaves = true});
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::incomplete);
-  EXPECT_THAT(viewer.said, HasSubstr("did not come back within 0.3 s"));
+  EXPECT_THAT(viewer.said, HasSubstr("did not open again within 0.3 s"));
   EXPECT_EQ(viewer.counters->pings, 3U);
 }
 
@@ -161,9 +161,9 @@ TEST(LineViewer, a_line_that_is_closed_whenever_it_opens_is_given_up_and_said_on
   viewer.met_without_a_word = true;
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
   const std::string why = "closed by the other end";
-  const auto first = viewer.said.find(why + "; trying again");
+  const auto first = viewer.said.find(why + "; retrying");
   ASSERT_NE(first, std::string::npos);
-  EXPECT_EQ(viewer.said.find(why + "; trying again", first + 1), std::string::npos) << viewer.said;
+  EXPECT_EQ(viewer.said.find(why + "; retrying", first + 1), std::string::npos) << viewer.said;
   EXPECT_THAT(viewer.said, HasSubstr("within 1.2 s: " + why));
 }
 

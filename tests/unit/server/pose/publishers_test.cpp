@@ -171,7 +171,7 @@ TEST_F(PublishersTest, PosecastSaysWhenNobodyListens) {
   }
   ChildProcess udp{{POSECAST, motion(), "--to", endpoint_text(nobody)}};
   EXPECT_EQ(run(udp), 1);
-  EXPECT_THAT(udp.output(), HasSubstr(": nobody listens there"));
+  EXPECT_THAT(udp.output(), HasSubstr(": nothing listens there"));
   ChildProcess tcp{{POSECAST, motion(), "--tcp", "--to", endpoint_text(nobody)}};
   EXPECT_EQ(run(tcp), 1);
   EXPECT_THAT(tcp.output(), HasSubstr(": connect: Connection refused"));

@@ -117,12 +117,12 @@ TEST_F(Frame, TurnOfAScan) {
 TEST_F(Frame, OtherFilesAreRefused) {
   expect_refused(path("missing.png"), "missing.png: no such file");
   expect_refused(testing::TempDir(), "is a folder");
-  expect_refused(write("text.png", "no picture"), "text.png: is not a picture");
-  expect_refused(write("empty.png", ""), "is not a picture");
+  expect_refused(write("text.png", "no picture"), "text.png: is not a PNG or JPEG picture");
+  expect_refused(write("empty.png", ""), "is not a PNG or JPEG picture");
   expect_refused(write("text.npy", "no array"), "is not a NumPy file");
   expect_refused(write("floats.npy", npy("<f4", "(1, 1)", "abcd")),
                  "is not a table of 8-bit or 16-bit samples");
-  expect_refused(write("flat.npy", npy("|u1", "(4,)", "abcd")), "is no table");
+  expect_refused(write("flat.npy", npy("|u1", "(4,)", "abcd")), "is not a table");
   expect_refused(write("short.npy", npy("|u1", "(2, 3)", "abcde")), "does not have the number of samples");
   expect_refused(write("long.npy", npy("|u1", "(2, 2)", "abcde")), "does not have the number of samples");
   expect_refused(write("none.npy", npy("|u1", "(0, 3)", "")), "has no samples");
@@ -158,7 +158,7 @@ TEST_F(Frame, ImagesOfALogAreCounted) {
   ASSERT_EQ(frame.size(), cv::Size(3, 2));
   EXPECT_EQ(frame.at<double>(1, 0), 'u');  // the near line is at the bottom
   EXPECT_EQ(frame.at<double>(0, 2), 'z');
-  expect_refused(log + "#2", "has no image 2, but 2");
+  expect_refused(log + "#2", "has no image 2; it has 2 images");
   expect_refused(log + "#", "expected");
   expect_refused(write("other.glf", "PK, or not") + "#0", "is not a log");
 }
