@@ -21,5 +21,5 @@ def warn_of_bytes(path: Any, offset: int, size: int, why: str, lost: str) -> Non
 
 def warn_of_end(path: Any, tail_bytes: int) -> None:
     """Warns of a log without an end. `tail_bytes` is the size of the unfinished record at its end."""
-    tail = f"; the last {tail_bytes} bytes are no whole record" if tail_bytes else ""
-    warnings.warn(f"{path} is not closed: cut, still being written, or its writer went away{tail}", DamagedLog, stacklevel=2)
+    tail = f"; the last {tail_bytes} bytes are an incomplete record" if tail_bytes else ""
+    warnings.warn(f"{path} is not closed: cut, still being written, or the writing program ended early{tail}", DamagedLog, stacklevel=2)

@@ -196,7 +196,7 @@ class Gemini:
             made.bind((address, port))
         except OSError as error:
             made.close()
-            raise OSError(f"UDP port {port} of {address or 'this machine'} cannot be had: {error}") from error
+            raise OSError(f"UDP port {port} of {address or 'this machine'} cannot be opened: {error}") from error
         return made
 
     def _local_address(self) -> str:
@@ -232,7 +232,7 @@ class Gemini:
             if alternate != 0 and sonar_id in (None, its_id):
                 return Status(its_id, _address(alternate), _address(netmask), firmware)
         raise NoHead(f"no status{'' if sonar_id is None else f' of head {sonar_id}'} on UDP port {REPORT_PORT} within "
-                     f"{patience_s} s: is the head on, and does it send its status here?")
+                     f"{patience_s} s: check that the head is on and sends its status here")
 
     # ---- Pings
 
@@ -250,7 +250,7 @@ class Gemini:
             datagram = self._next(wait_s)
             if datagram is None and time.monotonic() >= until_s:
                 if ping is None:
-                    raise NoPing("no ping came: does the head have a pose, and is it in the water?")
+                    raise NoPing("no ping arrived: check that the head has a pose and is in the water")
                 return self._made(ping, sound_speed_mps)
             if datagram is not None and datagram[0] == PING_HEAD and len(datagram) >= 46:
                 if ping is None or struct.unpack_from("<H", datagram, 8)[0] & 0xFF != ping.ping_id & 0xFF:

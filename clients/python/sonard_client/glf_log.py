@@ -31,7 +31,7 @@ def pings_of_glf(data: Any, path: Any, zone: Optional[tzinfo]) -> Iterator[Logge
     entry = glf_archive.find_dat(data)
     dat = entry.candidates[0] if entry.damage is None else _with_records(entry.candidates)
     if dat is None:
-        raise ValueError(f"{path} holds no .dat log")
+        raise ValueError(f"{path} has no .dat log")
     if entry.damage is not None:
         warn(path, entry.damage)
     yield from _pings(_records(dat, path, in_cut_archive=entry.damage is not None), path, zone)
@@ -76,9 +76,9 @@ def _records(dat: Pieces, path: Any, in_cut_archive: bool = False) -> Iterator[t
             if following is None:
                 closed = dat.size - at > 2 and dat.read(dat.size - 2, 2) == TERMINATOR
                 if closed or not isinstance(error, EOFError):
-                    warn_of_bytes(path, at, dat.size - at, str(error), "what follows is lost")
+                    warn_of_bytes(path, at, dat.size - at, str(error), "the rest is lost")
                 elif in_cut_archive:
-                    warn(path, f"the last {dat.size - at} bytes of its .dat are no whole record")
+                    warn(path, f"the last {dat.size - at} bytes of its .dat are an incomplete record")
                 else:
                     warn_of_end(path, dat.size - at)
                 return

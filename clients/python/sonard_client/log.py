@@ -32,7 +32,7 @@ def read_log(path: Union[str, PathLike[str]], glf_zone: Optional[tzinfo] = timez
         elif form == ".dat":
             yield from glf_log.pings_of_dat(data, path, glf_zone)
         else:
-            raise ValueError(f"{path} is no .mcap, .glf or .dat log")
+            raise ValueError(f"{path} is not a .mcap, .glf or .dat log")
 
 
 _FORMS = {".mcap": mcap_log.MAGIC, ".glf": glf_log.MAGIC_OF_GLF, ".dat": glf_log.MAGIC_OF_DAT}

@@ -135,7 +135,7 @@ class _Reader:
         if _was_chunk(data, at):
             self._lost_chunk = at, size, why
         else:
-            warn_of_bytes(self._path, at, size, why, "no ping is lost" if following else "what follows is lost")
+            warn_of_bytes(self._path, at, size, why, "no ping is lost" if following else "the rest is lost")
         return following
 
     def _count_lost(self, index: bytes) -> None:

@@ -64,7 +64,7 @@ class Micron:
         try:
             self._socket = socket.create_connection((host, port), patience_s)
         except OSError as error:
-            raise NoHead(f"{host}:{port} cannot be connected to: {error}") from error
+            raise NoHead(f"cannot connect to {host}:{port}: {error}") from error
         self._buffer = bytearray()
         self._ready: list[bytes] = []
         try:
@@ -117,7 +117,7 @@ class Micron:
             if frame is None:
                 misses += 1
                 if misses == _MISSES:
-                    raise NoPing("no line came: does the head have a pose, and is it in the water?")
+                    raise NoPing("no line arrived: check that the head has a pose and is in the water")
                 continue
             misses = 0
             if struct.unpack_from("<H", frame, 33)[0] == interval and self._bins(frame).size == bins:
@@ -146,7 +146,7 @@ class Micron:
     def _greet(self, patience_s: float) -> None:
         """The start-up that the device expects: an alive, version, user blocks (9)."""
         if self._next(_ALIVE, patience_s) is None:
-            raise NoHead(f"no alive within {patience_s} s: is it a Micron, and is it on?")
+            raise NoHead(f"no alive within {patience_s} s: check that the head is a Micron and is on")
         self._socket.sendall(_frame(_SEND_VERSION))
         self._socket.sendall(_frame(_SEND_USER_BLOCKS))
 
@@ -158,7 +158,7 @@ class Micron:
             while (alive := self._next(_ALIVE, until_s - time.monotonic())) is not None:
                 if not alive[20] & 0x40:
                     return
-        raise NoHead("the head does not take its parameters")
+        raise NoHead("the head did not accept its parameters")
 
     def _next(self, message_type: int, wait_s: float) -> Optional[bytes]:
         """The next message of this type; others are dropped. None if the time is over."""

@@ -134,7 +134,7 @@ class PosePublisher:
                 while self._socket.recv(1024):
                     pass
             except socket.timeout as error:
-                raise TimeoutError(f"sonard has not taken all poses within {timeout_s} s") from error
+                raise TimeoutError(f"sonard did not read all poses within {timeout_s} s") from error
         self.close()
 
     def close(self) -> None:

@@ -433,7 +433,7 @@ class Ros2(OwnMachine):
 
     def test_no_head(self):
         self.nodes(SonarBridge)
-        ros.wait(lambda: [text for text in self.errors() if "is the head on" in text], PATIENCE_S)
+        ros.wait(lambda: [text for text in self.errors() if "that the head is on" in text], PATIENCE_S)
 
     def node(self, *arguments):
         program = Program([sys.executable, "-B", os.path.join(HERE, "ros2_node.py"), *arguments], arguments[0])

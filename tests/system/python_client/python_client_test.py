@@ -137,7 +137,7 @@ class PythonClient(OwnMachine):
             numpy.testing.assert_allclose(ping.ranges_m, kept_in_glf.ranges_m, rtol=1e-4)  # whole hertz
             numpy.testing.assert_allclose(ping.bearings_rad, kept_in_glf.bearings_rad, atol=1e-6)
             self.assertAlmostEqual(kept_in_mcap.time_ns, kept_in_glf.time_ns, delta=2e6)
-        with self.assertRaisesRegex(ValueError, "sonard.yaml is no .mcap, .glf or .dat log"):
+        with self.assertRaisesRegex(ValueError, "sonard.yaml is not a .mcap, .glf or .dat log"):
             next(read_log(os.path.join(self.folder.name, "sonard.yaml")))
         written = {ping.samples.tobytes() for ping in pings}
         self.assertEqual(len(written), 3)
@@ -163,7 +163,7 @@ class PythonClient(OwnMachine):
                 self.assertIn(path, str(one.message))
 
     def test_a_head_that_is_silent(self):
-        with self.assertRaisesRegex(NoHead, "is the head on"):
+        with self.assertRaisesRegex(NoHead, "that the head is on"):
             Gemini(patience_s=0.5)
         self.start(position=(0, 0, 0))
         with self.assertRaisesRegex(NoHead, "of head 600"):
@@ -180,7 +180,7 @@ class PythonClient(OwnMachine):
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", START_S)
-        with Gemini(sonar_id=514) as sonar, self.assertRaisesRegex(NoPing, "does the head have a pose"):
+        with Gemini(sonar_id=514) as sonar, self.assertRaisesRegex(NoPing, "check that the head has a pose"):
             sonar.ping()
 
 
@@ -263,7 +263,7 @@ class MicronClient(OwnMachine):
         self.assertGreater(max(bearings) - min(bearings), 59)
 
     def test_a_head_that_is_not_there(self):
-        with self.assertRaisesRegex(NoHead, "127.0.0.1:4001 cannot be connected to"):
+        with self.assertRaisesRegex(NoHead, "cannot connect to 127.0.0.1:4001"):
             Micron()
 
 

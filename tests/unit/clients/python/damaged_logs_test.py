@@ -241,7 +241,7 @@ class DamagedLogs(unittest.TestCase):
             count = sum(end <= size for end in ends) - 1
             self.assertEqual(pings, [image.pixels for image in images[:count]], size)
             left = size - ends[count]
-            self.assertRegex(told[0], f"; the last {left} bytes are no whole record$" if left else "went away$")
+            self.assertRegex(told[0], f"; the last {left} bytes are an incomplete record$" if left else "ended early$")
             self.assertEqual(len(told), 1)
 
     def test_a_cut_glf_is_told(self):
@@ -256,7 +256,7 @@ class DamagedLogs(unittest.TestCase):
                 self.assertEqual(pings, [image.pixels for image in images[:count]], size)
                 self.assertTrue(told[0].endswith("the end of the archive is missing"), told)
                 if count < 3 and size > ends[count]:
-                    self.assertTrue(told[1].endswith(f"the last {size - ends[count]} bytes of its .dat are no whole record"))
+                    self.assertTrue(told[1].endswith(f"the last {size - ends[count]} bytes of its .dat are an incomplete record"))
 
     def test_a_cut_mcap_is_told(self):
         whole = mcap_log()
@@ -272,7 +272,7 @@ class DamagedLogs(unittest.TestCase):
             self.assertEqual(len(told), 1, (size, told))
             self.assertIn("is not closed: cut" if size < data_end + 13 else "the index at its end cannot be read", told[0])
         _, told = self.read(".mcap", whole[:ends[1] - 5])
-        self.assertTrue(told[0].endswith(f"; the last {ends[1] - 5 - chunks[1]} bytes are no whole record"), told)
+        self.assertTrue(told[0].endswith(f"; the last {ends[1] - 5 - chunks[1]} bytes are an incomplete record"), told)
 
     def test_an_open_chunk_is_read_to_its_last_whole_record(self):
         for stated in range(PINGS + 1):
@@ -282,7 +282,7 @@ class DamagedLogs(unittest.TestCase):
                 count = PINGS if missing == 0 else PINGS - 1
                 self.assertEqual(pings, [samples_of(number) for number in range(count)], (stated, missing))
                 tail = (len(message(0)) - missing) % len(message(0))
-                self.assertRegex(told[0], f"; the last {tail} bytes are no whole record$" if tail else "went away$")
+                self.assertRegex(told[0], f"; the last {tail} bytes are an incomplete record$" if tail else "ended early$")
 
     def test_a_wrong_record_in_an_open_chunk_is_told(self):
         whole = open_mcap_log(PINGS)
@@ -349,7 +349,7 @@ class DamagedLogs(unittest.TestCase):
         path = os.path.join(self.folder, "other.glf")
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("a.txt", "text")
-        with self.assertRaisesRegex(ValueError, "other.glf holds no .dat log"):
+        with self.assertRaisesRegex(ValueError, "other.glf has no .dat log"):
             next(read_log(path))
 
     def test_the_time_is_that_of_transmission(self):
