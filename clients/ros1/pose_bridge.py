@@ -135,13 +135,13 @@ class PoseBridge:
         child = without_slash(message.child_frame_id)
         if frame != self._world_frame:
             self._drop("wrong_frame", f"odometry with frame_id '{frame}' is dropped: expected '{self._world_frame}'. "
-                       f"If '{frame}' is what sonard's world is, say --world-frame {frame}, and --axes ned_frd where "
+                       f"If '{frame}' is the frame of sonard's world, use --world-frame {frame}, and --axes ned_frd if "
                        "its z points down")
         elif self._vehicle_frame and child != self._vehicle_frame:
             self._drop("wrong_frame", f"odometry with child_frame_id '{child}' is dropped: expected "
                        f"'{self._vehicle_frame}' (--vehicle-frame)")
         elif message.header.stamp.is_zero():
-            self._drop("no_stamp", "odometry with a header.stamp of 0 is dropped: its publisher has to fill in the time")
+            self._drop("no_stamp", "odometry with a header.stamp of 0 is dropped: its publisher must fill in the time")
         else:
             pose, twist = message.pose.pose, message.twist.twist
             fault = normalize(pose.position, pose.orientation) or fault_of_twist(twist)
@@ -162,7 +162,7 @@ class PoseBridge:
                 self.counters["clock_resets"] += 1
                 self._newest_ns = 0
                 self._say(f"the stamps of frame '{child}' went back to {transform.header.stamp.to_sec():.3f} s: "
-                          "transforms from before are forgotten. Again and again: two publishers of one frame")
+                          "earlier transforms are dropped. If this repeats, two publishers send the same frame")
         if not self._by_odometry and not is_static:
             self._send_from_tree({transform.child_frame_id for transform in transforms})
 
@@ -173,8 +173,8 @@ class PoseBridge:
             return  # the rest may come in another message; why_no_vehicle() reports a chain that stays broken
         stamp_ns = vehicle.header.stamp.to_nsec()
         if stamp_ns == 0:
-            self._drop("no_stamp", f"nothing between '{self._world_frame}' and '{self._vehicle_frame}' ever changes: "
-                       "give this pose as poses.initial")
+            self._drop("no_stamp", f"the transform from '{self._world_frame}' to '{self._vehicle_frame}' never changes: "
+                       "set it as poses.initial")
             return
         # Other frames do not change the vehicle's pose. A paused simulation sends the same time again.
         again = stamp_ns == self._newest_ns and self._vehicle_frame in changed_frames
@@ -211,4 +211,4 @@ class PoseBridge:
             self._tree.newest(self._world_frame, self._vehicle_frame)
         except tf2_py.TransformException as error:
             problem = str(error)
-        return f"{problem}; frames there are: {', '.join(self._tree.frames())}"
+        return f"{problem}; known frames: {', '.join(self._tree.frames())}"

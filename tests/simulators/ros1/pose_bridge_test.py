@@ -129,7 +129,7 @@ class PoseBridgeTest(unittest.TestCase):
         bridge.on_transforms([at(0, "/map", "/site", (100, 0, 0), TO_PORT)], True)
         bridge.on_transforms([at(10.0, "site", "odom", (0, 0, 0)), at(10.2, "site", "odom", (2, 0, 0))], False)
         self.assertEqual(self.sent, [], "where the vehicle is in odom is not known")
-        self.assertIn("frames there are: map, odom, site", bridge.why_no_vehicle())
+        self.assertIn("known frames: map, odom, site", bridge.why_no_vehicle())
         bridge.on_transforms([at(10.1, "odom", "base_link", (0, 0, -5))], False)
         update, = self.sent
         self.assertEqual(update.time_ns, 10_100_000_000)

@@ -209,10 +209,10 @@ class Ros1(walls.WallTest):
         self.start_master()
         self.publish("/rov/pose_gt", "nav_msgs/Odometry", odometry((0, 0, 0), LEVEL))
         bridge = self.cast("--odometry", "/odom")
-        bridge.wait_for_line("nobody publishes /odom; topics of nav_msgs/Odometry: ", link_test.PATIENCE_S)
+        bridge.wait_for_line("no node publishes /odom; topics of nav_msgs/Odometry: ", link_test.PATIENCE_S)
         self.publish("/tf", "tf2_msgs/TFMessage", {"transforms": [transform("odom", "base_link", (0, 0, 0), LEVEL)]})
         by_tf = self.cast("--vehicle-frame", "base_link")
-        by_tf.wait_for_line("no poses from /tf: .*world.*frames there are: base_link, odom", link_test.PATIENCE_S)
+        by_tf.wait_for_line("no poses from /tf: .*world.*known frames: base_link, odom", link_test.PATIENCE_S)
 
     def test_command_line(self):
         self.lab = self.make_lab()
