@@ -35,31 +35,31 @@ class Parameter:
 
 
 POSE_BRIDGE = (
-    Parameter("source", "odometry", "where poses come from", choices=("odometry", "pose", "tf")),
-    Parameter("topic", "/odom", "of nav_msgs/Odometry, or of geometry_msgs/PoseStamped with source pose"),
-    Parameter("world_frame", "world", "the frame that is sonard's world"),
-    Parameter("base_frame", "base_link", "the vehicle's frame; source tf alone"),
-    Parameter("rate_hz", 50.0, "how often tf is asked; source tf alone", 1.0, 1000.0),
-    Parameter("axes", "enu_flu", "ned_frd where z points down", choices=("enu_flu", "ned_frd")),
-    Parameter("host", "127.0.0.1", "where sonard listens for poses"),
-    Parameter("port", 14600, "the UDP port there", 1, 65535),
+    Parameter("source", "odometry", "source of the poses", choices=("odometry", "pose", "tf")),
+    Parameter("topic", "/odom", "topic of nav_msgs/Odometry, or of geometry_msgs/PoseStamped with source pose"),
+    Parameter("world_frame", "world", "the frame of sonard's world"),
+    Parameter("base_frame", "base_link", "the vehicle's frame; source tf only"),
+    Parameter("rate_hz", 50.0, "rate at which tf is read, in Hz; source tf only", 1.0, 1000.0),
+    Parameter("axes", "enu_flu", "ned_frd if z points down", choices=("enu_flu", "ned_frd")),
+    Parameter("host", "127.0.0.1", "address of sonard's pose input"),
+    Parameter("port", 14600, "UDP port of sonard's pose input", 1, 65535),
 )
 
 SONAR_BRIDGE = (
     Parameter("device", "gemini", "the kind of head", choices=("gemini", "micron")),
     Parameter("frame_id", "sonar", "the head's frame: x ahead, y to port, z up"),
-    Parameter("range_m", 20.0, "range of the pings", 1.0, 150.0),
-    Parameter("gain_percent", 50.0, "gain of the head", 0.0, 100.0),
-    Parameter("sound_speed_mps", 1500.0, "speed of sound from which ranges follow", 1400.0, 1600.0),
-    Parameter("interval_s", 0.1, "from ping to ping; Gemini", 0.01, 60.0),
+    Parameter("range_m", 20.0, "range of the pings in metres", 1.0, 150.0),
+    Parameter("gain_percent", 50.0, "gain of the head in percent", 0.0, 100.0),
+    Parameter("sound_speed_mps", 1500.0, "sound speed in m/s, to convert times to ranges", 1400.0, 1600.0),
+    Parameter("interval_s", 0.1, "seconds from ping to ping; Gemini", 0.01, 60.0),
     Parameter("compression", 1, "2^n range lines are averaged into one; Gemini", 0, 4),
-    Parameter("bits", 8, "of a sample; Gemini", choices=(8, 16)),
-    Parameter("sonar_id", 0, "of the head; 0: the first whose status arrives; Gemini", 0, 65535),
-    Parameter("local", "", "address of this machine to talk from; empty: the one that routes to the head; Gemini"),
-    Parameter("micron_host", "127.0.0.1", "the Micron's device server"),
-    Parameter("micron_port", 4001, "the TCP port there", 1, 65535),
-    Parameter("step_deg", 1.8, "from line to line; Micron", 0.06, 14.3),
-    Parameter("bins", 400, "of a line; Micron", 20, 1500),
+    Parameter("bits", 8, "bits per sample; Gemini", choices=(8, 16)),
+    Parameter("sonar_id", 0, "ID of the head; 0: the first whose status arrives; Gemini", 0, 65535),
+    Parameter("local", "", "address of this machine to send from; empty: the one that routes to the head; Gemini"),
+    Parameter("micron_host", "127.0.0.1", "address of the Micron's device server"),
+    Parameter("micron_port", 4001, "TCP port of the Micron's device server", 1, 65535),
+    Parameter("step_deg", 1.8, "degrees from line to line; Micron", 0.06, 14.3),
+    Parameter("bins", 400, "bins per line; Micron", 20, 1500),
 )
 
 

@@ -87,7 +87,7 @@ class PoseBridge(Node):
             self._complain(f"frame_id is '{header.frame_id}', expected '{self._options.world_frame}' (parameter world_frame)")
             return
         if time_ns == 0:
-            self._complain("the stamp is 0: its publisher has to fill in the time")
+            self._complain("the stamp is 0: its publisher must fill in the time")
             return
         quaternion_xyzw = (orientation.x, orientation.y, orientation.z, orientation.w)
         try:
