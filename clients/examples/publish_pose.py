@@ -11,10 +11,10 @@ sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "
 from sonard_client import PosePublisher  # noqa: E402
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--to", default="127.0.0.1", help="address sonard listens on")
+parser.add_argument("--to", default="127.0.0.1", help="address of sonard's pose input")
 parser.add_argument("--port", type=int, default=14600)
 parser.add_argument("--tcp", action="store_true", help="connect by TCP (poses.tcp.bind) instead of sending UDP datagrams")
-parser.add_argument("--seconds", type=float, default=math.inf, help="end after this time")
+parser.add_argument("--seconds", type=float, default=math.inf, help="end after this many seconds")
 args = parser.parse_args()
 
 RADIUS_M, SPEED_MPS, DEPTH_M, RATE_HZ = 10.0, 0.5, 20.0, 50.0

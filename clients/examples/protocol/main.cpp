@@ -22,7 +22,7 @@ int main() {
   }
   const auto* head = std::get_if<sonard::gemini::PingHead>(&*report);
   if (head == nullptr) {
-    std::cerr << "no ping head\n";
+    std::cerr << "the packet is not a ping head\n";
     return 1;
   }
   std::cout << "sonar " << head->header.sonar_id << " ping " << head->ping_id << ": " << head->line_count()

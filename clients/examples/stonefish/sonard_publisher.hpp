@@ -46,7 +46,7 @@ class SonardPublisher {
     receiver_.sin_family = AF_INET;
     receiver_.sin_port = htons(port);
     if (socket_ < 0 || inet_pton(AF_INET, address.c_str(), &receiver_.sin_addr) != 1) {
-      throw std::runtime_error("no way to sonard at '" + address + "'");
+      throw std::runtime_error("cannot reach sonard at '" + address + "'");
     }
   }
   ~SonardPublisher() { close(socket_); }
