@@ -61,13 +61,13 @@ gemini.fields = tables.make_fields(prefix, messages, {
   ["info_block_write_address.alternate_ip"] = "ipv4", ["info_block_write_address.subnet_mask"] = "ipv4",
 }, extra)
 
-local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its type says", expert.group.MALFORMED,
+local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its type requires", expert.group.MALFORMED,
                                   expert.severity.ERROR)
-local bad_value = ProtoExpert.new(prefix .. ".bad_value", "Value that leaves the message without a meaning",
+local bad_value = ProtoExpert.new(prefix .. ".bad_value", "Invalid value",
                                   expert.group.MALFORMED, expert.severity.ERROR)
 local bad_line = ProtoExpert.new(prefix .. ".bad_line", "Line does not fit the head of its ping",
                                  expert.group.PROTOCOL, expert.severity.WARN)
-local unknown = ProtoExpert.new(prefix .. ".unknown_type", "Type that the protocol description does not have",
+local unknown = ProtoExpert.new(prefix .. ".unknown_type", "Type not in the protocol description",
                                 expert.group.UNDECODED, expert.severity.NOTE)
 gemini.experts = { malformed, bad_value, bad_line, unknown }
 
@@ -162,7 +162,7 @@ function details.ping_line(tvb, pinfo, tree)
   local ping_id = tvb(9, 1):uint()
   local text = string.format("ping %d, line %d", ping_id, number)
   if tvb:len() - 16 < length then
-    tree:add_proto_expert_info(malformed, string.format("%d bytes of data are said, %d are there", length,
+    tree:add_proto_expert_info(malformed, string.format("%d bytes of data declared, %d present", length,
                                                         tvb:len() - 16))
     return text
   end
@@ -197,14 +197,14 @@ function details.retry_request(tvb)
   if kind == 1 then
     return string.format("lines from %d, %d of them", tvb(10, 2):le_uint(), tvb(12, 2):le_uint())
   end
-  return kinds[kind] or "of an unknown kind"
+  return kinds[kind] or "unknown kind"
 end
 
 function details.info_block_write(tvb, pinfo, tree)
   local bank = tvb(8, 4):le_uint()
   local block = info_blocks[bank]
   if not block then
-    tree:add_proto_expert_info(bad_value, string.format("There is no bank %d", bank))
+    tree:add_proto_expert_info(bad_value, string.format("Unknown bank %d", bank))
   elseif not tables.add(tree, tvb, block, 0) then
     tree:add_proto_expert_info(malformed)
   end
@@ -223,7 +223,7 @@ end
 function details.mdio_commands(tvb, pinfo, tree)
   local length = tvb(8, 2):le_uint()
   if length < 2 or length % 2 ~= 0 then
-    tree:add_proto_expert_info(bad_value, string.format("A length of %d", length))
+    tree:add_proto_expert_info(bad_value, string.format("Invalid length %d", length))
   elseif tvb:len() < 8 + length then
     tree:add_proto_expert_info(malformed)
   else

@@ -34,7 +34,7 @@ local extra = {
   bearing = ProtoField.double(prefix .. ".head_data.bearing_deg", "Bearing off ahead, to starboard (degrees)"),
   bins = ProtoField.uint16(prefix .. ".head_data.bins", "Bins"),
   data = ProtoField.bytes(prefix .. ".data", "Data"),
-  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes of no frame"),
+  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes outside frames"),
 }
 micron.fields = tables.make_fields(prefix, messages, {
   ["frame.sequence"] = "hex", ["head_command.control"] = "hex", ["head_data.control"] = "hex",
@@ -43,15 +43,15 @@ micron.fields = tables.make_fields(prefix, messages, {
   ["version_data.checksum"] = "hex",
 }, extra)
 
-local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its type says", expert.group.MALFORMED,
+local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its type requires", expert.group.MALFORMED,
                                   expert.severity.ERROR)
-local bad_value = ProtoExpert.new(prefix .. ".bad_value", "Value that leaves the message without a meaning",
+local bad_value = ProtoExpert.new(prefix .. ".bad_value", "Invalid value",
                                   expert.group.MALFORMED, expert.severity.ERROR)
 local no_frame = ProtoExpert.new(prefix .. ".no_frame", "Bytes that belong to no frame", expert.group.MALFORMED,
                                  expert.severity.WARN)
 local wrong_count = ProtoExpert.new(prefix .. ".wrong_count", "Count does not fit the length",
                                     expert.group.PROTOCOL, expert.severity.NOTE)
-local unknown = ProtoExpert.new(prefix .. ".unknown_type", "Type that the protocol description does not have",
+local unknown = ProtoExpert.new(prefix .. ".unknown_type", "Type not in the protocol description",
                                 expert.group.UNDECODED, expert.severity.NOTE)
 micron.experts = { malformed, bad_value, no_frame, wrong_count, unknown }
 
@@ -111,7 +111,7 @@ function details.head_command(tvb, pinfo, tree)
   elseif form == 0x1E then
     whole = tables.add(tree, tvb, messages.gain_block, 14)
   elseif form ~= 0x0F then
-    tree:add_proto_expert_info(bad_value, string.format("There is no form 0x%02x", form))
+    tree:add_proto_expert_info(bad_value, string.format("Unknown form 0x%02x", form))
   end
   if not whole then
     tree:add_proto_expert_info(malformed)
@@ -129,7 +129,7 @@ function details.head_data(tvb, pinfo, tree)
   tree:add(extra.bearing, tvb(40, 2), bearing):set_generated()
   local text = string.format("bearing %d, %d bytes", tvb(40, 2):le_uint(), count)
   if total ~= count + 31 or tvb:len() ~= 44 + count then
-    tree:add_proto_expert_info(malformed, string.format("%d and %d bytes of data are said, %d are there", total - 31,
+    tree:add_proto_expert_info(malformed, string.format("%d and %d bytes of data declared, %d present", total - 31,
                                                         count, tvb:len() - 44))
     return text
   end

@@ -26,7 +26,7 @@ local extra = {
   text = ProtoField.string(prefix .. ".text", "Text"),
   address = ProtoField.ipv4(prefix .. ".address", "Address of the head"),
   client = ProtoField.ipv4(prefix .. ".client", "Address of its client"),
-  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes of no message"),
+  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes outside messages"),
   body = ProtoField.bytes(prefix .. ".body", "Body"),
 }
 
@@ -45,15 +45,15 @@ for message, names in pairs({
 end
 oculus.fields = tables.make_fields(prefix, messages, formats, extra)
 
-local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its kind says", expert.group.MALFORMED,
+local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its kind requires", expert.group.MALFORMED,
                                   expert.severity.ERROR)
 local no_message = ProtoExpert.new(prefix .. ".no_message", "Bytes that belong to no message", expert.group.MALFORMED,
                                    expert.severity.WARN)
-local wrong_size = ProtoExpert.new(prefix .. ".wrong_size", "Sizes that do not fit each other: clients drop the ping",
+local wrong_size = ProtoExpert.new(prefix .. ".wrong_size", "Sizes that do not fit each other; clients drop the ping",
                                    expert.group.PROTOCOL, expert.severity.WARN)
 local unstated = ProtoExpert.new(prefix .. ".unstated_size", "The size is not stated: it follows from the kind (3.1)",
                                  expert.group.PROTOCOL, expert.severity.CHAT)
-local unknown = ProtoExpert.new(prefix .. ".unknown_message", "Message that the protocol description does not have",
+local unknown = ProtoExpert.new(prefix .. ".unknown_message", "Message not in the protocol description",
                                 expert.group.UNDECODED, expert.severity.NOTE)
 oculus.experts = { malformed, no_message, wrong_size, unstated, unknown }
 
@@ -277,7 +277,7 @@ local function listen()
   end
 end
 oculus.prefs.tcp = Pref.range("TCP ports", ports.tcp, "Ports of heads", 65535)
-oculus.prefs.udp = Pref.range("UDP ports", ports.udp, "Ports that statuses go to", 65535)
+oculus.prefs.udp = Pref.range("UDP ports", ports.udp, "Ports that receive status packets", 65535)
 oculus.prefs_changed = listen
 for transport, default in pairs(ports) do
   in_use[transport] = default

@@ -38,17 +38,17 @@ local extra = {
   message = ProtoField.string(prefix .. ".message", "Message"),
   from_head = ProtoField.bool(prefix .. ".from_head", "From the head"),
   checksum = ProtoField.uint16(prefix .. ".checksum", "Checksum", base.HEX),
-  about = ProtoField.string(prefix .. ".about", "Message that this is about"),
+  about = ProtoField.string(prefix .. ".about", "Subject message"),
   text = ProtoField.string(prefix .. ".text", "Text"),
   bearing = ProtoField.double(prefix .. ".bearing_deg", "Bearing off ahead, to starboard (degrees)"),
   data = ProtoField.bytes(prefix .. ".data", "Data"),
-  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes of no frame"),
+  garbage = ProtoField.bytes(prefix .. ".garbage", "Bytes outside frames"),
   piece = ProtoField.bytes(prefix .. ".piece", "Piece of a frame"),
   begun_in = ProtoField.framenum(prefix .. ".begun_in", "The first frame began in"),
 }
 ping360.fields = tables.make_fields(prefix, messages, {}, extra)
 
-local bad_checksum = ProtoExpert.new(prefix .. ".bad_checksum", "Wrong checksum: nobody takes this for a frame",
+local bad_checksum = ProtoExpert.new(prefix .. ".bad_checksum", "Wrong checksum: receivers drop this frame",
                                      expert.group.CHECKSUM, expert.severity.ERROR)
 local malformed = ProtoExpert.new(prefix .. ".malformed", "Shorter than its message", expert.group.MALFORMED,
                                   expert.severity.ERROR)
@@ -56,16 +56,16 @@ local too_long = ProtoExpert.new(prefix .. ".too_long", "Longer than its message
                                  expert.severity.NOTE)
 local no_frame = ProtoExpert.new(prefix .. ".no_frame", "Bytes that belong to no frame", expert.group.MALFORMED,
                                  expert.severity.WARN)
-local between_frames = ProtoExpert.new(prefix .. ".between_frames", "What is known to come between frames",
+local between_frames = ProtoExpert.new(prefix .. ".between_frames", "Known bytes between frames",
                                        expert.group.SEQUENCE, expert.severity.NOTE)
 local unfinished_frame = ProtoExpert.new(prefix .. ".unfinished", "A frame before this packet was never finished",
                                          expert.group.SEQUENCE, expert.severity.WARN)
-local unknown = ProtoExpert.new(prefix .. ".unknown_id", "Message that the protocol description does not have",
+local unknown = ProtoExpert.new(prefix .. ".unknown_id", "Message not in the protocol description",
                                 expert.group.UNDECODED, expert.severity.NOTE)
 ping360.experts = { bad_checksum, malformed, too_long, no_frame, between_frames, unfinished_frame, unknown }
 
 ping360.prefs.ahead = Pref.uint("Angle straight ahead (gradians)", 0,
-                                "Where the head is mounted to look ahead: 0 for ROS, 200 for ping-viewer")
+                                "Angle at which the head looks ahead: 0 for ROS, 200 for ping-viewer")
 
 -- ---- Where frames begin and end (1.1)
 
@@ -200,7 +200,7 @@ local function add_samples(tvb, tree, layout)
   local count, there = tvb(layout.size - 2, 2):le_uint(), tvb:len() - layout.size
   if there ~= count then
     tree:add_proto_expert_info(there < count and malformed or too_long,
-                               string.format("%d bytes of data are said, %d are there", count, there))
+                               string.format("%d bytes of data declared, %d present", count, there))
   end
   if math.min(there, count) > 0 then
     tree:add(extra.data, tvb(layout.size, math.min(there, count)))
@@ -308,7 +308,7 @@ local function known_garbage(raw)
   if raw == "\0\255" then
     return "00 FF, as ping-cpp sends it when it opens UDP"
   end
-  return raw:match("^U+%z?$") and "Bytes by which a serial head finds the speed of its line"
+  return raw:match("^U+%z?$") and "Bytes from which a serial head finds the speed of its line"
 end
 
 local function add_garbage(range, root)
@@ -388,11 +388,11 @@ end
 local function add_beginning(tvb, pinfo, root)
   local before, lost = continued[pinfo.number], given_up[pinfo.number]
   if before then
-    add_note(tvb(), root, "goes on with a frame"):add(extra.begun_in, before.number):set_generated()
+    add_note(tvb(), root, "continues a frame"):add(extra.begun_in, before.number):set_generated()
   end
   if lost then
-    add_note(tvb(), root, "begins anew"):add_proto_expert_info(
-      unfinished_frame, string.format("%d bytes from packet %d on were never made a frame", #lost.bytes, lost.number))
+    add_note(tvb(), root, "starts a new frame"):add_proto_expert_info(
+      unfinished_frame, string.format("%d bytes from packet %d on were never completed to a frame", #lost.bytes, lost.number))
   end
 end
 
@@ -454,7 +454,7 @@ local found = {
   mac = ProtoField.string(discovery_prefix .. ".mac_address", "MAC address"),
   ip = ProtoField.ipv4(discovery_prefix .. ".ip_address", "IP address"),
 }
-local bad_answer = ProtoExpert.new(discovery_prefix .. ".bad_answer", "Answer that known clients do not understand",
+local bad_answer = ProtoExpert.new(discovery_prefix .. ".bad_answer", "Answer that known clients reject",
                                    expert.group.MALFORMED, expert.severity.WARN)
 for _, field in pairs(found) do
   table.insert(discovery.fields, field)
@@ -507,7 +507,7 @@ local function add_answer(tvb, tree, text)
     begin = after
   end
   if count ~= #lines_of_answer or begin ~= #text + 1 then
-    tree:add_proto_expert_info(bad_answer, "ping-viewer takes four lines, each ended by CR LF")
+    tree:add_proto_expert_info(bad_answer, "ping-viewer expects four lines, each ended by CR LF")
   end
 end
 
@@ -571,7 +571,7 @@ local function listen(proto, ports, description)
   return in_use
 end
 local ports_of_heads = listen(ping360, { udp = "9092,12345", tcp = "" }, "Ports of heads, and of bridges of vehicles")
-listen(discovery, { udp = "30303" }, "Ports at which heads are found")
+listen(discovery, { udp = "30303" }, "Ports of the discovery of heads")
 
 for _, transport in ipairs({ "tcp", "udp" }) do
   ping360:register_heuristic(transport, function(tvb, pinfo, root)
@@ -615,7 +615,7 @@ function after_all.dissector(_, pinfo, root)
     pinfo.cols.protocol = "PING360"
     pinfo.cols.info = "empty datagram"
     add_note(length.range, root, "empty datagram"):add_proto_expert_info(
-      between_frames, "Empty datagram: ends a scan; a bridge makes a break of it")
+      between_frames, "Empty datagram: ends a scan; a bridge turns it into a break")
   end
 end
 register_postdissector(after_all)

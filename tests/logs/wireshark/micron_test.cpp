@@ -231,8 +231,8 @@ TEST(MicronDissector, counts_that_disagree_are_malformed) {
   std::vector<pcapng::Bytes> packets = wire.from_server(line);
   append(packets, wire.from_client(command));
   const auto rows = dissect(packets, {expert_field});
-  EXPECT_THAT(rows[0].at(expert_field), HasSubstr("8 and 9 bytes of data are said, 8 are there"));
-  EXPECT_THAT(rows[1].at(expert_field), HasSubstr("no form 0x77"));
+  EXPECT_THAT(rows[0].at(expert_field), HasSubstr("8 and 9 bytes of data declared, 8 present"));
+  EXPECT_THAT(rows[1].at(expert_field), HasSubstr("Unknown form 0x77"));
 }
 
 TEST(MicronDissector, a_stream_is_found_on_any_port) {

@@ -375,7 +375,8 @@ TEST(Ping360Dissector, frames_that_are_never_finished) {
                                         prefix + "unfinished", expert_field};
   const auto late = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
                             fields, {}, std::chrono::milliseconds{101});
-  EXPECT_THAT(late[1].at(expert_field), HasSubstr("12 bytes from packet 1 on were never made a frame"));
+  EXPECT_THAT(late[1].at(expert_field),
+              HasSubstr("12 bytes from packet 1 on were never completed to a frame"));
   EXPECT_EQ(late[1].at(prefix + "message"), "");
   EXPECT_NE(late[1].at(prefix + "no_frame"), "");
   const auto in_time = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
@@ -450,7 +451,7 @@ TEST(Ping360Dissector, payloads_that_do_not_fit_their_message) {
       {expert_field, prefix + "malformed", prefix + "too_long", prefix + "unknown_id", prefix + "data"});
   EXPECT_NE(rows[0].at(prefix + "malformed"), "");
   EXPECT_NE(rows[1].at(prefix + "too_long"), "");
-  EXPECT_THAT(rows[2].at(expert_field), HasSubstr("4 bytes of data are said, 3 are there"));
+  EXPECT_THAT(rows[2].at(expert_field), HasSubstr("4 bytes of data declared, 3 present"));
   EXPECT_EQ(rows[2].at(prefix + "data"), "090807");
   EXPECT_NE(rows[3].at(prefix + "malformed"), "");
   EXPECT_NE(rows[4].at(prefix + "unknown_id"), "");
