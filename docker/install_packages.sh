@@ -21,7 +21,7 @@ done
 
 as_root=()
 if ((EUID != 0)); then
-  command -v sudo >/dev/null || { printf 'Not root and no sudo. Please install:\n'; printf '  %s\n' "${missing[@]}"; exit 1; } >&2
+  command -v sudo >/dev/null || { printf 'To install packages, you need root or sudo. Missing packages:\n'; printf '  %s\n' "${missing[@]}"; exit 1; } >&2
   as_root=(sudo)
 fi
 
@@ -44,7 +44,7 @@ choose
 if ((${#chosen[@]} + ${#left_out[@]})); then  # else only what this release does not have anyway
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
   choose
-  ((${#left_out[@]} == 0)) || { echo "This release has no package of these names: ${left_out[*]} ($list)" >&2; exit 1; }
+  ((${#left_out[@]} == 0)) || { echo "This release has no packages with these names: ${left_out[*]} (listed in $list)" >&2; exit 1; }
   echo "Installing ${#chosen[@]} packages with apt: ${chosen[*]}"
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
 fi

@@ -8,11 +8,13 @@ usage() {
 Usage: render.sh TASKS [SBATCH OPTION...] -- CONFIG --trajectory FILE --out DIR [OPTION OF sonard render...]
        render.sh progress DIR
 
-The first form submits an array of TASKS tasks, a core each, and a job after them that renders what is missing
-and makes the log. Options before "--" are those of sbatch (--partition=P, --gpus-per-task=1, --time=2:00:00).
-Files and DIR lie on a file system that all nodes share. Output of the tasks: DIR.tasks/N.log. The same
-command goes on where one was cancelled.
-SONARD: how a node starts the program, by default "sonard"; for example "apptainer run /shared/sonard.sif".
+The first form submits an array of TASKS tasks with one core each, and a final job that renders missing frames
+and writes the log. The second form prints the number of frames and the states of the tasks.
+Options before "--" are for sbatch (--partition=P, --gpus-per-task=1, --time=2:00:00). Files and DIR must be on a
+file system that all nodes share. The output of task N is in DIR.tasks/N.log. To continue after a cancellation,
+run the same command again.
+The variable SONARD sets the command that a node runs (default: sonard), for example
+"apptainer run /shared/sonard.sif".
 END
 }
 
@@ -35,7 +37,7 @@ submit() {
     shift
   done
   shift || { usage >&2; exit 64; }
-  [[ " $* " != *" --overwrite "* ]] || { echo "render.sh: delete the folder instead of --overwrite, which a task that goes on would obey again" >&2; exit 64; }
+  [[ " $* " != *" --overwrite "* ]] || { echo "render.sh: --overwrite is not supported, because a requeued task would delete its own frames; delete the folder instead" >&2; exit 64; }
   out=$(option out "$@")
   [[ $tasks =~ ^[1-9][0-9]*$ && -n $out ]] || { usage >&2; exit 64; }
   out=$(realpath -m "$out")
@@ -45,7 +47,7 @@ submit() {
   array=$(sbatch "${options[@]}" --array="1-$tasks" --output="$out.tasks/%a.log" "$task" "$tasks" "$@")
   # Not "afterok": this job renders the frames that tasks have not finished.
   log=$(sbatch "${options[@]}" --dependency="afterany:$array" --output="$out.tasks/log.log" "$task" 1 "$@")
-  echo "array $array of $tasks tasks, then $log; progress: $0 progress $out; to end: scancel $array $log"
+  echo "array $array of $tasks tasks, then $log; progress: $0 progress $out; to cancel: scancel $array $log"
 }
 
 progress() {
@@ -59,6 +61,6 @@ progress() {
 
 case ${1-} in
   -h | --help) usage ;;
-  progress) progress "${2:?progress needs the folder}" ;;
+  progress) progress "${2:?progress requires DIR}" ;;
   *) (($# > 1)) || { usage >&2; exit 64; }; submit "$@" ;;
 esac
