@@ -17,7 +17,7 @@ page() {
     --manual="sonard" "$*" | sed -E "/^\.\\\\\" DO NOT MODIFY/d; s/^[a-z ]+ (\\\\- )/$name \1/" >"$out/man/man1/$name.1"
 }
 
-page sonard "imaging sonar on the network, rendered from a 3D world" "$programs/sonard"
+page sonard "emulator of imaging sonars on the network, rendered from a 3D world" "$programs/sonard"
 page sonarview "client of imaging sonars" "$programs/sonarview"
 page posecast "plays a trajectory as a pose stream for sonard" "$programs/posecast"
 "$programs/sonard" --help | sed -n '/^Subcommands:/,/^$/ s/^  \([a-z]*\)  */\1 /p' | while read -r command summary; do
@@ -30,7 +30,7 @@ gzip -9nc "$changelog" >"$out/changelog.gz"
 gzip -9n >"$out/changelog.Debian.gz" <<END
 sonard ($version-1) unstable; urgency=medium
 
-  * What has changed is in changelog.gz.
+  * See changelog.gz for the changes.
 
  -- $contact  $(date -u -R -d "@${SOURCE_DATE_EPOCH:-0}")
 END

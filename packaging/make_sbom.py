@@ -38,7 +38,7 @@ def owner(path):
         done = subprocess.run(["dpkg-query", "--search", candidate], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         if done.returncode == 0:
             return done.stdout.split(": ")[0].split(",")[0]
-    raise SystemExit(f"make_sbom.py: {path} is of no Debian package")
+    raise SystemExit(f"make_sbom.py: {path} does not belong to a Debian package")
 
 
 def spdx_package(name):
