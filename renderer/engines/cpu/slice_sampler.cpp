@@ -176,14 +176,15 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                                                    const SliceAccuracy& accuracy) {
   place_parts(T_world_sonar);
   const Fan fan(aperture, sampled_range_m);
-  setting_ = std::make_unique<const Setting>(Setting{
-      fan, ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)), surface, accuracy, surfaces_,
-      any_mapped_,
-      std::any_of(surfaces_.begin(), surfaces_.end(),
-                  [](const PartSurface& part) { return part.vertex_normals; }),
-      surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
-      static_cast<float>(range.step_m),
-      SideView(fan.tan_limit(), static_cast<float>(range.max_range_m()), static_cast<float>(range.step_m))});
+  setting_ = std::make_unique<const Setting>(
+      Setting{fan, ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)), surface, accuracy,
+              surfaces_, any_mapped_,
+              std::any_of(surfaces_.begin(), surfaces_.end(),
+                          [](const PartSurface& part) { return part.vertex_normals; }),
+              surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
+              static_cast<float>(range.step_m),
+              SideView(aperture, fan.tan_limit(), static_cast<float>(range.max_range_m()),
+                       static_cast<float>(range.step_m))});
   triangles_.find(placed_, fan, bend_, workers_, skip_);
   if (setting_->any_vertex_normals) {
     vertex_normals_.find(triangles_, surfaces_, workers_);

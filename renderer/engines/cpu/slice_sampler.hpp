@@ -22,7 +22,8 @@
 
 namespace sonard::render {
 
-/// Disagreement of neighbouring slices on their border, as shares of the elevations.
+/// Disagreement of neighbouring slices on their border, as shares of the elevations, weighted by the
+/// elevation pattern.
 struct SliceBorder {
   float range_mismatch = 0.0F;  ///< expected ranges differ by more than a line
   float curvature = 0.0F;       ///< surfaces curve too much for straight lines across the slices

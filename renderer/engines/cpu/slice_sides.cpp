@@ -26,14 +26,15 @@ void summarise(const SideView& view, SliceSides& sides) {
   const float* __restrict port = sides.port.data();
   const float* __restrict starboard = sides.starboard.data();
   const float* __restrict secant = view.secant.data();
+  const std::int32_t* __restrict weight = view.weight.data();
   const float max_range_m = view.max_range_m;
   std::int32_t in_range_port = 0, in_range_starboard = 0;
   std::int32_t nearest = std::bit_cast<std::int32_t>(max_range_m), furthest = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float range_p = secant[i] / port[i], range_s = secant[i] / starboard[i];
     const bool in_p = secant[i] < max_range_m * port[i], in_s = secant[i] < max_range_m * starboard[i];
-    in_range_port += in_p ? 1 : 0;
-    in_range_starboard += in_s ? 1 : 0;
+    in_range_port += in_p ? weight[i] : 0;
+    in_range_starboard += in_s ? weight[i] : 0;
     const auto low_p = std::bit_cast<std::int32_t>(in_p ? range_p : max_range_m);
     const auto low_s = std::bit_cast<std::int32_t>(in_s ? range_s : max_range_m);
     const auto high_p = std::bit_cast<std::int32_t>(in_p ? range_p : 0.0F);
@@ -43,19 +44,29 @@ void summarise(const SideView& view, SliceSides& sides) {
     nearest = low < nearest ? low : nearest;
     furthest = high > furthest ? high : furthest;
   }
-  sides.ensonified = static_cast<float>(in_range_port + in_range_starboard) / (2 * side_probes);
-  sides.one_sided = static_cast<float>(std::abs(in_range_port - in_range_starboard)) / side_probes;
+  sides.ensonified =
+      static_cast<float>(in_range_port + in_range_starboard) / (2 * side_probes * SideView::unit);
+  sides.one_sided =
+      static_cast<float>(std::abs(in_range_port - in_range_starboard)) / (side_probes * SideView::unit);
   const float span_m = std::bit_cast<float>(furthest) - std::bit_cast<float>(nearest);
   sides.lines = span_m > 0 ? span_m / view.line_m : 0.0F;
 }
 
 }  // namespace
 
-SideView::SideView(float tan_limit_, float max_range_m_, float line_m_)
-    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant() {
+SideView::SideView(const Aperture& aperture, float tan_limit_, float max_range_m_, float line_m_)
+    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight() {
+  std::array<double, side_probes> pattern{};
+  double sum = 0.0;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float t = first_probe(tan_limit) + static_cast<float>(i) * probe_step(tan_limit);
     secant[i] = std::sqrt(1 + t * t);
+    pattern[i] = aperture.elevation_weight(std::atan(static_cast<double>(t)));
+    sum += pattern[i];
+  }
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    weight[i] =
+        static_cast<std::int32_t>(std::lround(static_cast<double>(unit) * side_probes * pattern[i] / sum));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/engines/cpu/visible_arrays.hpp"
+#include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 
@@ -17,17 +18,22 @@ using SideProfile = std::array<float, side_probes + probe_padding>;
 /// Expectation of a slice at both sides of its wedge; neighbours compare theirs.
 struct SliceSides {
   SideProfile port, starboard;
-  float ensonified = 0.0F;  ///< share of elevations at which a surface is expected within the range
-  float one_sided = 0.0F;   ///< share of elevations at which only one side expects a surface
+  // Shares of elevations, weighted by the elevation pattern (SideView::weight).
+  float ensonified = 0.0F;  ///< at which a surface is expected within the range
+  float one_sided = 0.0F;   ///< at which only one side expects a surface
   float lines = 0.0F;       ///< range lines over which the expected ranges spread
 };
 
 /// The elevations and the range for the comparison of sides, for one ping.
 struct SideView {
-  SideView(float tan_limit, float max_range_m, float line_m);
+  SideView(const Aperture& aperture, float tan_limit, float max_range_m, float line_m);
 
   float tan_limit, max_range_m, line_m;
   SideProfile secant;  ///< of the probes' elevations: range = secant / w
+  /// Elevation pattern at the probes, divided by its mean: errors in a side lobe count little. In whole
+  /// numbers, because sums of floats do not vectorise; `unit` is 1.
+  std::array<std::int32_t, side_probes> weight;
+  static constexpr float unit = 1024.0F;
 };
 
 /// Computes SliceSides. One per thread; reuses its memory.
