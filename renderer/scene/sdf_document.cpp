@@ -262,13 +262,13 @@ fs::path SdfReader::included_file(const SdfElement& include) {
       warnings_.push_back(
           fmt::format("{}: manifest.xml is out of date; rename it to model.config", found.string()));
     }
-    resolver_.check_place(uri->text, file, found);
   }
   std::error_code error;
   const fs::path canonical = fs::canonical(file, error);
   if (error || !fs::is_regular_file(canonical)) {
     throw MissingFile(fmt::format("'{}': file {} not found", uri->text, file.string()));
   }
+  resolver_.check_place(uri->text, file, found);
   resolver_.check_place(uri->text, canonical, found);
   resolver_.add_model_folder(canonical.parent_path().parent_path());
   if (const auto fuel = parse_fuel_uri(uri->text)) {

@@ -45,6 +45,13 @@ std::optional<fs::path> existing_below(const fs::path& path, const fs::path& fol
   return found && around && lies_below(*found, *around) ? found : std::nullopt;
 }
 
+/// A path from a URI without slashes before it: "model:///post" means "model://post". An absolute path would
+/// replace the folder that it is appended to.
+std::string_view without_leading_slashes(std::string_view path) {
+  path.remove_prefix(std::min(path.find_first_not_of('/'), path.size()));
+  return path;
+}
+
 bool lies_below_any(const fs::path& path, const std::vector<fs::path>& folders) {
   return std::ranges::any_of(folders, [&](const fs::path& folder) { return lies_below(path, folder); });
 }
@@ -53,8 +60,9 @@ bool lies_below_any(const fs::path& path, const std::vector<fs::path>& folders) 
 
 std::vector<fs::path> model_folders_from_environment() {
   std::vector<fs::path> folders;
-  for (const std::string_view variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH",
-                                          "GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH", "SDF_PATH"}) {
+  for (const std::string_view variable :
+       {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH",
+        "SDF_PATH", "GZ_FILE_PATH", "IGN_FILE_PATH"}) {
     const char* value = std::getenv(variable.data());  // NOLINT(concurrency-mt-unsafe): at start-up
     std::istringstream entries(value == nullptr ? "" : value);
     for (std::string entry; std::getline(entries, entry, ':');) {
@@ -93,7 +101,7 @@ UriResolver::UriResolver(const fs::path& world_file, const std::vector<fs::path>
   add(existing_below(folder.parent_path() / "models", folder.parent_path()));
   for (const fs::path& named : model_folders) {
     add(existing(named));
-    if (!existing(named)) {
+    if (!existing(named) && std::ranges::find(absent_, named) == absent_.end()) {
       absent_.push_back(named);
     }
   }
@@ -115,10 +123,11 @@ void UriResolver::name_model(const std::string& name, const fs::path& folder) {
 }
 
 fs::path UriResolver::resolve_model(const std::string& uri, std::string_view rest) const {
+  rest = without_leading_slashes(rest);
   const std::size_t end = std::min(rest.find('/'), rest.size());
   // A model may refer to its neighbours: "model://NAME/../OTHER/mesh.stl".
   if (const auto named = named_.find(lower_case(rest.substr(0, end))); named != named_.end()) {
-    const fs::path path = named->second / rest.substr(std::min(end + 1, rest.size()));
+    const fs::path path = named->second / without_leading_slashes(rest.substr(end));
     if (existing(path)) {
       return allowed(uri, path, named->second);
     }
@@ -130,11 +139,11 @@ fs::path UriResolver::search(const std::string& uri, std::string_view rest,
                              const std::vector<fs::path>& folders) const {
   std::optional<WorldError> leads_out;
   for (const fs::path& folder : folders) {
+    if (!existing(folder / rest)) {
+      continue;
+    }
     try {
-      check_place(uri, folder / rest, folder);
-      if (existing(folder / rest)) {
-        return allowed(uri, folder / rest, folder);
-      }
+      return allowed(uri, folder / rest, folder);
     } catch (const WorldError& error) {
       leads_out = leads_out ? leads_out : error;
     }
@@ -187,8 +196,7 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
                     uri));
   }
   if (fs::path(rest).is_absolute()) {
-    check_place(uri, rest, naming_folder);
-    if (!existing(rest)) {
+    if (!existing(rest)) {  // a path of another machine, perhaps
       throw MissingFile(fmt::format("'{}' not found", uri));
     }
     return allowed(uri, rest, naming_folder);

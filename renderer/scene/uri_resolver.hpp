@@ -41,8 +41,9 @@ class UriResolver {
   /// and then in the search list; an absolute path; or a model of Fuel
   /// (`https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION`), searched in Gazebo's local cache.
   /// @return an existing file or folder, canonical.
-  /// @throws MissingFile with the folders searched; WorldError if the URI is invalid or leads out of
-  /// `naming_folder` and all folders of models. Links are followed: their targets count.
+  /// @throws MissingFile with the folders searched, if no such file exists; WorldError if the URI is invalid,
+  /// or names an existing file outside of `naming_folder` and all folders of models. Links are followed:
+  /// their targets count.
   std::filesystem::path resolve(const std::string& uri, const std::filesystem::path& naming_folder) const;
 
   /// Folders below which files of the world and its models may lie; canonical.

@@ -164,8 +164,8 @@ enum class MissingFiles {
 constexpr std::size_t default_max_triangles = 50'000'000;
 
 /// Folders in the environment variables GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH, GAZEBO_MODEL_PATH,
-/// GAZEBO_RESOURCE_PATH (with `media` and `Media` in each, if they exist) and SDF_PATH (colon separated), in
-/// this order, then ~/.gazebo/models if it exists.
+/// GAZEBO_RESOURCE_PATH (with `media` and `Media` in each, if they exist), SDF_PATH, GZ_FILE_PATH and
+/// IGN_FILE_PATH (colon separated), in this order, then ~/.gazebo/models if it exists.
 std::vector<std::filesystem::path> model_folders_from_environment();
 
 /// Loads an SDF 1.x world file (or a file with a single model) and all it includes; see docs/worlds.md. Bare

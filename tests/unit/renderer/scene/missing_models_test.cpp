@@ -164,6 +164,37 @@ TEST_F(WithoutModels, AMeshOfNothingTakesItsShapeAlong) {
   }
 }
 
+/// Exporters on other machines write such paths.
+TEST_F(WithoutModels, APathOfAnotherMachineIsMissing) {
+  const auto visual = [](const std::string& shape) {
+    return "<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry>" + shape +
+           "</geometry></visual></link></model>";
+  };
+  folder_.write("models/buoy/model.config", "<model><sdf>/home/alice/buoy.sdf</sdf></model>");
+  for (const std::string uri :
+       {"/home/alice/ws/x/hull.dae", "file:///home/alice/ws/x/hull.dae", "file:///C:/Users/me/p.obj",
+        "C:\\Users\\me\\p.obj", "../other/hull.dae", "model://../hull.dae", "model:///post/hull.dae"}) {
+    for (const std::string& content :
+         {visual("<mesh><uri>" + uri + "</uri></mesh>"),
+          visual("<heightmap><uri>" + uri + "</uri><size>1 1 1</size></heightmap>"),
+          "<include><uri>" + uri + "</uri></include>"}) {
+      const World world = load(post + content);
+      EXPECT_EQ(world.triangle_count(), 12U) << content;
+      EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("'" + uri + "' not found"))) << content;
+      EXPECT_THROW(load(post + content, MissingFiles::error), WorldError) << content;
+    }
+  }
+  EXPECT_THAT(load(post + "<include><uri>buoy</uri></include>").warnings,
+              ElementsAre(HasSubstr("'buoy': file /home/alice/buoy.sdf not found")));
+}
+
+/// A file that exists is a mistake that the user can correct.
+TEST_F(WithoutModels, AFileOutsideOfTheFoldersIsRefused) {
+  for (const std::string uri : {"/etc/passwd", "file:///etc/passwd"}) {
+    EXPECT_THROW(load(post + "<include><uri>" + uri + "</uri></include>"), WorldError) << uri;
+  }
+}
+
 TEST_F(WithoutModels, AMissingHeightmapTakesItsShapeAlong) {
   const World world = load(
       "<model name=\"bed\"><link name=\"l\">" + a_box +

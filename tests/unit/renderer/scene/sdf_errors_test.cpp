@@ -163,19 +163,20 @@ std::vector<std::string> all_errors(const std::filesystem::path& file) {
   return {};
 }
 
-/// A world from somebody else may name any file. sonard does not even look for files outside its folders.
+/// A world from somebody else may name any file.
 TEST(BadWorldFile, LeadsOutOfItsFolders) {
   const test::TempFolder folder;
   folder.write("secret/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   folder.write("secret/model.sdf", "<sdf version=\"1.9\"><model name=\"s\"/></sdf>");
   folder.write("project/models/b/model.config", "<model><sdf version=\"1.9\">model.sdf</sdf></model>");
+  folder.write("project/worlds/a/README", "");
   const auto mesh = [](const std::string& uri) {
     return model("<geometry><mesh><uri>" + uri + "</uri></mesh></geometry>");
   };
   const std::string quad = (folder.path() / "secret/quad.obj").string();
   for (const std::string& content :
        {mesh(quad), mesh("file://" + quad), mesh("../../secret/quad.obj"), mesh("a/../../../secret/quad.obj"),
-        mesh("model://b/../../../secret/quad.obj"), mesh("../../secret/none.obj"), mesh("/etc/passwd"),
+        mesh("model://b/../../../secret/quad.obj"), mesh("/etc/passwd"), mesh("file:////etc/passwd"),
         std::string("<include><uri>../../secret</uri></include>"),
         std::string("<include><uri>model://../../secret</uri></include>")}) {
     const auto file = folder.write(

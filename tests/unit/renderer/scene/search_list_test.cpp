@@ -28,7 +28,7 @@ class SearchList : public testing::Test {
   SearchList() {
     for (const char* variable :
          {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH",
-          "SDF_PATH", "GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"}) {
+          "SDF_PATH", "GZ_FILE_PATH", "IGN_FILE_PATH", "GZ_FUEL_CACHE_PATH", "IGN_FUEL_CACHE_PATH"}) {
       unsetenv(variable);
     }
     const char* home = std::getenv("HOME");
@@ -88,13 +88,14 @@ class SearchList : public testing::Test {
 
 TEST_F(SearchList, HoldsTheFoldersOfEachVariable) {
   for (const char* variable : {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "GAZEBO_MODEL_PATH",
-                               "GAZEBO_RESOURCE_PATH", "SDF_PATH"}) {
+                               "GAZEBO_RESOURCE_PATH", "SDF_PATH", "GZ_FILE_PATH", "IGN_FILE_PATH"}) {
     environment(variable, "lib");
     for (const char* uri : {"post", "file://post", "model://post", "package://post", "post/model.sdf",
-                            "file://post/model.sdf"}) {
+                            "file://post/model.sdf", "model:///post", "model:////post/model.sdf"}) {
       EXPECT_EQ(load(include(uri)).triangle_count(), 12U) << variable << " " << uri;
     }
-    for (const char* uri : {"post/meshes/a.obj", "file://post/meshes/a.obj", "model://post/meshes/a.obj"}) {
+    for (const char* uri : {"post/meshes/a.obj", "file://post/meshes/a.obj", "model://post/meshes/a.obj",
+                            "model:///post//meshes/a.obj"}) {
       EXPECT_EQ(load(mesh(uri)).triangle_count(), 1U) << variable << " " << uri;
     }
     unsetenv(variable);
@@ -143,6 +144,16 @@ TEST_F(SearchList, IsPrintedIfNothingIsFound) {
                       HasSubstr((folder_.path() / "lib").string()),
                       HasSubstr("; these folders do not exist: " + (folder_.path() / "nowhere").string())));
   }
+}
+
+TEST_F(SearchList, NamesEachAbsentFolderOnce) {
+  for (const char* variable : {"GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "SDF_PATH"}) {
+    environment(variable, "nowhere");
+  }
+  const std::string message = error_of(include("buoy"));
+  const std::string absent = (folder_.path() / "nowhere").string();
+  EXPECT_THAT(message, HasSubstr("; these folders do not exist: " + absent + ";"));
+  EXPECT_EQ(message.find(absent), message.rfind(absent));
 }
 
 TEST_F(SearchList, DoesNotReachOutOfItsFolders) {
