@@ -16,6 +16,7 @@
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/local_file.hpp"
+#include "renderer/scene/sdf_elements.hpp"
 #include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/world.hpp"
 
@@ -102,8 +103,8 @@ class SdfReader {
     const Document& document = open(world_file);
     around_.push_back(world_file);
     auto root = copy(*document.root, document.file, nullptr);
-    const std::vector<std::string> skipped = skipped_.lines();
-    warnings_.insert(warnings_.end(), skipped.begin(), skipped.end());
+    const std::vector<std::string> grouped = grouped_.lines();
+    warnings_.insert(warnings_.end(), grouped.begin(), grouped.end());
     return root;
   }
 
@@ -120,6 +121,8 @@ class SdfReader {
                                    const std::shared_ptr<const fs::path>& file, const SdfElement* parent);
   void include(const SdfElement& include, SdfElement& into);
   fs::path included_file(const SdfElement& include);
+  void warn_of_others(const Document& document, const tinyxml2::XMLElement& used);
+  void warn_of_ignored_children(const SdfElement& include);
   void do_without(const SdfElement& include, SdfElement& into, const std::string& why);
   static void override_with(const SdfElement& include, SdfElement& model);
   static void merge(SdfElement& model, SdfElement& into, const SdfElement& include);
@@ -128,7 +131,7 @@ class SdfReader {
   const MissingFiles missing_;
   std::vector<std::string>& warnings_;
   WorldProblems& problems_;
-  GroupedWarnings skipped_;  ///< skipped includes
+  GroupedWarnings grouped_;  ///< of includes
   std::map<fs::path, Document> documents_;
   std::vector<fs::path> around_;  ///< files that are being copied, from the world's to the innermost
   std::size_t elements_ = 0;
@@ -286,18 +289,53 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   return canonical;
 }
 
-/// The first element that can be included; nullptr if there is none.
+/// The element that is included: as in libsdformat, a model comes before an actor and a light. nullptr if
+/// there is none.
 const tinyxml2::XMLElement* content_of(const tinyxml2::XMLElement& sdf) {
-  for (const auto* child = sdf.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-    const std::string_view name = child->Name();
-    if (name == "model" || name == "world" || name == "actor" || name == "light") {
+  for (const char* const name : {"model", "world", "actor", "light"}) {
+    if (const auto* const child = sdf.FirstChildElement(name)) {
       return child;
     }
   }
   return nullptr;
 }
 
+/// Warns of elements beside `used` that have, or might have, a surface.
+void SdfReader::warn_of_others(const Document& document, const tinyxml2::XMLElement& used) {
+  for (const auto* child = document.root->FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    const std::string_view kind = child->Name();
+    if (child == &used || (kind != "model" && kind != "world" && kind != "actor")) {
+      continue;
+    }
+    const char* const name = child->Attribute("name");
+    warnings_.push_back(fmt::format(
+        "{}:{}: {} '{}' is left out, because an include takes one {} from a file; move it to its own file",
+        document.file->string(), child->GetLineNum(), kind, one_line(name == nullptr ? "" : name),
+        used.Name()));
+  }
+}
+
+/// Warns of children that have no effect. Elements of other programs ("gz:...") are their own business.
+void SdfReader::warn_of_ignored_children(const SdfElement& include) {
+  const SdfElement* const name = include.child(include.child("name") == nullptr ? "uri" : "name");
+  for (const auto& child : include.children) {
+    std::string kind;
+    if (child->name == "experimental:params") {
+      kind =
+          "<experimental:params> of an include is not supported: its changes are not applied; make them in "
+          "the file of the model";
+    } else if (!is_known_child("include", child->name)) {
+      kind = fmt::format("unknown element <{}> in <include>: it is left out", child->name);
+    } else {
+      continue;
+    }
+    grouped_.add(kind, child->place(), name == nullptr ? "" : name->text);
+  }
+}
+
 void SdfReader::include(const SdfElement& include, SdfElement& into) {
+  warn_of_ignored_children(include);
   try {
     const SdfElement* const new_name = include.child("name");
     if (new_name != nullptr && new_name->text.empty()) {
@@ -310,6 +348,7 @@ void SdfReader::include(const SdfElement& include, SdfElement& into) {
     if (from == nullptr) {
       throw WorldError(fmt::format("{} has no model", file.string()));
     }
+    warn_of_others(document, *from);
     around_.push_back(file);
     auto included = copy(*from, document.file, &into);
     around_.pop_back();
@@ -349,7 +388,7 @@ void SdfReader::do_without(const SdfElement& include, SdfElement& into, const st
     return;
   }
   if (missing_ == MissingFiles::skip) {
-    skipped_.add(fmt::format("include {}", why), include.place(), given_name);
+    grouped_.add(fmt::format("include {}", why), include.place(), given_name);
   } else {
     problems_.add(fmt::format("{}: include {}{}", include.place(), why, how_to_skip));
   }

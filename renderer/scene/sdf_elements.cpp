@@ -29,6 +29,7 @@ const std::map<std::string_view, Names>& known_children() {
                  "state",      "population",
                  "include",    "frame",
                  "joint",      "particle_emitter"}},
+      {"include", {"uri", "name", "pose", "static", "placement_frame", "plugin"}},
       {"model",
        {"static", "self_collide", "allow_auto_disable", "include", "model", "enable_wind", "frame", "pose",
         "link", "joint", "plugin", "gripper"}},
@@ -66,15 +67,11 @@ struct Unknown {
 using UnknownByKind = std::map<std::pair<std::string, std::string>, Unknown>;  ///< key: parent, name
 
 void find_unknown(const SdfElement& element, UnknownByKind& found) {
-  const auto known = known_children().find(element.name);
-  if (known == known_children().end()) {
+  if (!known_children().contains(element.name)) {
     return;
   }
   for (const auto& child : element.children) {
-    if (child->name.find(':') != std::string::npos) {
-      continue;
-    }
-    if (known->second.contains(child->name)) {
+    if (is_known_child(element.name, child->name)) {
       find_unknown(*child, found);
     } else if (Unknown& kind = found[{element.name, child->name}]; kind.count++ == 0) {
       kind.place = child->place();
@@ -83,6 +80,12 @@ void find_unknown(const SdfElement& element, UnknownByKind& found) {
 }
 
 }  // namespace
+
+bool is_known_child(std::string_view parent, std::string_view child) {
+  const auto known = known_children().find(parent);
+  return known == known_children().end() || child.find(':') != std::string_view::npos ||
+         known->second.contains(child);
+}
 
 std::vector<std::string> unknown_elements(const SdfElement& sdf) {
   UnknownByKind found;

@@ -91,8 +91,10 @@ class WorldBuilder {
     add_warnings(unknown_elements(*sdf));
     add_warnings(look_alikes(*sdf));
     try {
-      require_few_triangles(world_or_model(*sdf));
-      add_bodies(world_or_model(*sdf));
+      const SdfElement& top = world_or_model(*sdf);
+      warn_of_other_models(*sdf, top);
+      require_few_triangles(top);
+      add_bodies(top);
     } catch (const TooManyTriangles& error) {
       problems_.add(error.what());
     }
@@ -118,11 +120,24 @@ class WorldBuilder {
     const SdfElement* const only = worlds > 0 ? sdf.child("world") : sdf.child("model");
     if (worlds > 1 || only == nullptr) {
       std::vector<std::string> lines = problems_.lines();
-      lines.push_back(
-          fmt::format("{}: {} worlds and no model: expected one world or one model", file_.string(), worlds));
+      lines.push_back(fmt::format("{}: {}: expected one world or one model", file_.string(),
+                                  worlds > 1 ? fmt::format("{} worlds", worlds) : "no world and no model"));
       throw WorldError(std::move(lines));
     }
     return *only;
+  }
+
+  /// Warns of models beside `top`, the world or model that is loaded.
+  void warn_of_other_models(const SdfElement& sdf, const SdfElement& top) {
+    for (const auto& child : sdf.children) {
+      if (child->name == "model" && child.get() != &top) {
+        world_.warnings.push_back(
+            fmt::format("{}: model '{}' is left out, because {}", child->place(), child->given_name(),
+                        top.name == "world" ? "it is outside of <world>; move it into <world>"
+                                            : "a file without <world> has one model; put all models "
+                                              "into a <world>"));
+      }
+    }
   }
 
   /// Stops before triangles are made: so many would take minutes and all memory.

@@ -269,6 +269,31 @@ TEST(Prefix, IsSeenInAnInclude) {
   EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("w.sdf:3: <sonar:material> is left out")));
 }
 
+TEST(Include, NamesChildrenWithoutAnEffect) {
+  const test::TempFolder folder;
+  folder.write("models/post/model.sdf", "<sdf version=\"1.9\"><model name=\"post\"><link name=\"l\">" +
+                                            small_box + "</link></model></sdf>");
+  const auto include = [](const std::string& name, const std::string& content) {
+    return "<include><name>" + name + "</name><uri>post</uri>\n" + content + "</include>\n";
+  };
+  const std::string params =
+      "<experimental:params><visual element_id=\"l::v\" action=\"remove\"/></experimental:params>";
+  const World world = load_world(
+      folder.write("w.sdf", in_a_world(include("a", params) + include("b", params) +
+                                       include("c", "<Pose>1 0 0 0 0 0</Pose>") +
+                                       include("d", "<static>1</static><plugin name=\"p\"/><drake:weld/>"))),
+      {});
+  EXPECT_EQ(world.bodies.size(), 4U);
+  EXPECT_THAT(
+      world.warnings,
+      testing::UnorderedElementsAre(
+          testing::AllOf(HasSubstr("w.sdf:4: <experimental:params> of an include is not supported: its "
+                                   "changes are not applied"),
+                         EndsWith("(2): a, b")),
+          testing::AllOf(HasSubstr("w.sdf:8: unknown element <Pose> in <include>: it is left out"),
+                         EndsWith("(1): c"))));
+}
+
 TEST(GroupedWarnings, AreOneLineForEachKind) {
   const test::TempFolder folder;
   folder.write("paint.mtl", "newmtl RedPaint\nKd 1 0 0\nnewmtl Blue\nKd 0 0 1\n");

@@ -110,6 +110,58 @@ TEST(SdfWorld, MayBeASingleModel) {
   EXPECT_FALSE(world.water_surface_z_m);
 }
 
+std::string named_box(const std::string& name) {
+  return "<model name=\"" + name +
+         "\"><link name=\"l\"><visual name=\"v\"><geometry><box/></geometry></visual></link></model>\n";
+}
+
+std::vector<std::string> bodies_of(const World& world) {
+  std::vector<std::string> names;
+  for (const Body& body : world.bodies) {
+    names.push_back(body.name);
+  }
+  return names;
+}
+
+TEST(SdfWorld, NamesModelsBesideTheWorldOrModelThatItLoads) {
+  const test::TempFolder folder;
+  folder.write("models/b/model.sdf", "<sdf version=\"1.9\">" + named_box("b") + "</sdf>");
+  const auto load = [&](const std::string& content) {
+    return load_world(folder.write("w.sdf", "<sdf version=\"1.9\">\n" + content + "</sdf>"), {});
+  };
+  const std::string beside = "model 'b' is left out, because it is outside of <world>; move it into <world>";
+  const std::string second = "model 'b' is left out, because a file without <world> has one model; ";
+  const World with_world = load("<world name=\"w\">\n" + named_box("a") + "</world>\n" + named_box("b"));
+  EXPECT_THAT(bodies_of(with_world), ElementsAre("a"));
+  EXPECT_THAT(with_world.warnings, ElementsAre(HasSubstr("w.sdf:5: " + beside)));
+  const World reversed = load(named_box("b") + "<world name=\"w\">\n" + named_box("a") + "</world>\n");
+  EXPECT_THAT(bodies_of(reversed), ElementsAre("a"));
+  EXPECT_THAT(reversed.warnings, ElementsAre(HasSubstr("w.sdf:2: " + beside)));
+  const World of_models = load(named_box("a") + named_box("b"));
+  EXPECT_THAT(bodies_of(of_models), ElementsAre("a"));
+  EXPECT_THAT(of_models.warnings, ElementsAre(HasSubstr("w.sdf:3: " + second)));
+  const World of_includes = load(named_box("a") + "<include><uri>b</uri></include>");
+  EXPECT_THAT(of_includes.warnings, ElementsAre(HasSubstr("models/b/model.sdf:1: " + second)));
+}
+
+// libsdformat, too, takes a model before anything else.
+TEST(SdfWorld, NamesModelsBesideTheIncludedOne) {
+  const test::TempFolder folder;
+  folder.write("two.sdf",
+               "<sdf version=\"1.9\">\n<light name=\"lamp\" type=\"point\"/>\n<actor name=\"diver\"/>\n" +
+                   named_box("c") + named_box("d") + "</sdf>");
+  const World world =
+      load_world(folder.write("w.sdf",
+                              "<sdf version=\"1.9\"><world name=\"w\"><include><uri>two.sdf</uri></include>"
+                              "<include><name>e</name><uri>two.sdf</uri></include></world></sdf>"),
+                 {});
+  EXPECT_THAT(bodies_of(world), ElementsAre("c", "e"));
+  const std::string why =
+      " is left out, because an include takes one model from a file; move it to its own file";
+  EXPECT_THAT(world.warnings, ElementsAre(HasSubstr("two.sdf:3: actor 'diver'" + why),
+                                          HasSubstr("two.sdf:5: model 'd'" + why)));
+}
+
 TEST(SdfWorld, FindsModelsInTheGivenFolders) {
   const test::TempFolder folder;
   const auto file = folder.write(
