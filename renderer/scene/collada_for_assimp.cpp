@@ -39,10 +39,11 @@ class Mender : public tinyxml2::XMLVisitor {
   bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute*) override {
     const std::string_view name = element.Name();
     in_mesh_ += name == "mesh" ? 1 : 0;
-    if ((name == "accessor" && in_mesh_ > 0) || name == "node" || name == "init_from") {
+    const bool is_unused = name == "library_images" || name == "effect";
+    if ((name == "accessor" && in_mesh_ > 0) || name == "node" || is_unused) {
       found_.push_back(const_cast<XMLElement*>(&element));
     }
-    return true;
+    return !is_unused;  // its children are deleted
   }
   bool VisitExit(const XMLElement& element) override {
     in_mesh_ -= name_of(&element) == "mesh" ? 1 : 0;
@@ -58,7 +59,8 @@ class Mender : public tinyxml2::XMLVisitor {
       } else if (name == "node") {
         order_transforms(*element);
       } else {
-        name_picture(*element);
+        changed_ = changed_ || element->FirstChild() != nullptr;
+        element->DeleteChildren();
       }
     }
     return changed_;
@@ -137,14 +139,6 @@ class Mender : public tinyxml2::XMLVisitor {
                           ? fmt::format("{} {} {} {}", x / length, y / length, z / length, angle_deg).c_str()
                           : "1 0 0 0");
     changed_ = true;
-  }
-
-  void name_picture(XMLElement& init_from) {
-    if (name_of(init_from.Parent()->ToElement()) == "image" && init_from.GetText() == nullptr &&
-        init_from.FirstChildElement() == nullptr) {
-      init_from.SetText("absent");
-      changed_ = true;
-    }
   }
 
   std::vector<XMLElement*> found_;

@@ -11,7 +11,8 @@ namespace sonard::render {
 /// treats all values as the first one if the names are missing or in lower case.
 /// - The transforms of a node are in Gazebo's order: one <matrix> alone, else translate, rotate, scale.
 /// - The axis of a <rotate> has length 1; an axis of zeros does not turn.
-/// - A picture without a file name gets one, because Assimp 5.2 crashes without it.
+/// - Pictures and effects are empty, because Assimp refuses some that are valid, and crashes on a picture
+/// without a file name. The effects themselves remain: Assimp forgets a material whose effect is missing.
 std::string collada_for_assimp(std::string document);
 
 }  // namespace sonard::render

@@ -348,14 +348,41 @@ TEST_F(Collada, TakesValuesInTheirOrderWhateverTheirNames) {
   }
 }
 
-/// Blender writes this for a picture that is embedded in its own file.
-TEST_F(Collada, IsReadWithATextureThatHasNoFile) {
-  for (const std::string name : {"<init_from/>", "<init_from></init_from>", "<init_from> </init_from>"}) {
-    SCOPED_TRACE(name);
+/// Blender writes an empty name for a picture that is embedded in its own file. The others are the forms of
+/// COLLADA 1.4 and 1.5.
+TEST_F(Collada, IsReadWhateverItsPictures) {
+  for (const std::string picture :
+       {"<init_from/>", "<init_from></init_from>", "<init_from> </init_from>",
+        "<init_from>gone.png</init_from>", "<init_from><ref>gone.png</ref></init_from>", "<data>00</data>",
+        "<create_2d/>"}) {
+    SCOPED_TRACE(picture);
     Document document = boat();
-    document.libraries = "<library_images><image id=\"i\">" + name + "</image></library_images>";
+    document.libraries = "<library_images><image id=\"i\">" + picture + "</image></library_images>";
     expect_box(load(document, "hull"), {0, 0, 0}, {11, 2, 3});
     EXPECT_THAT(load(document).warnings, IsEmpty());
+  }
+}
+
+TEST_F(Collada, KeepsTheNamesOfMaterialsWhateverTheirEffects) {
+  for (const std::string sampler :
+       {"<sampler2D><instance_image url=\"#im\"/></sampler2D>",
+        "<sampler2D><source>gone</source></sampler2D>", "<sampler2D><instance_image url=\"im\"/></sampler2D>",
+        "<sampler2D/>", "<float>x</float>"}) {
+    SCOPED_TRACE(sampler);
+    Document document;
+    document.geometries = geometry(
+        "g", "", "<triangles count=\"1\" material=\"s\">" + vertex_input("g") + "<p>0 2 1</p></triangles>");
+    document.nodes = "<node name=\"hull\">" + with_material + "</node>";
+    std::string text = text_of(document);
+    const std::string technique = "<technique sid";
+    text.insert(text.find(technique), "<newparam sid=\"p\">" + sampler + "</newparam>");
+    text.insert(text.find("<diffuse>"), "<emission><texture texture=\"p\" texcoord=\"c\"/></emission>");
+    MeshFileRequest request;
+    request.file = folder_.write("mesh.dae", text);
+    const MeshFile file = load_mesh_file(request);
+    EXPECT_THAT(file.warnings, IsEmpty());
+    ASSERT_EQ(file.parts.size(), 1U);
+    EXPECT_EQ(file.parts[0].material_name, "sand");
   }
 }
 
@@ -478,6 +505,28 @@ TEST_F(Collada, RefusesAFileWithoutTriangles) {
   document.geometries = geometry("g", "", "<lines count=\"1\">" + vertex_input("g") + "<p>0 1</p></lines>");
   document.nodes = "<node name=\"wire\">" + instance + "</node>";
   EXPECT_THAT(error_of(document), HasSubstr("mesh.dae: "));
+}
+
+TEST_F(Collada, NamesAnIndexWithoutAVertex) {
+  const std::string v = vertex_input("g");
+  for (const auto& [primitives, name, index] : std::vector<std::tuple<std::string, std::string, int>>{
+           {"<triangles count=\"1\">" + v + "<p>0 2 4</p></triangles>", "triangles", 4},
+           {"<triangles count=\"1\">" + v + "<p>0 2 -1</p></triangles>", "triangles", -1},
+           {mapped("<input semantic=\"TEXCOORD\" source=\"#g-uv\" offset=\"1\"/>", "0 0 99 1 2 3"),
+            "triangles", 99},
+           {"<polylist count=\"1\">" + v + "<vcount>4</vcount><p>0 1 2 7</p></polylist>", "polylist", 7},
+           {"<polygons count=\"2\">" + v + "<p>0 2 1</p><p>0 1 4</p></polygons>", "polygons", 4},
+           {"<polygons count=\"1\">" + v + "<ph><p>0 5 1</p><h>0 1 2</h></ph></polygons>", "polygons", 5},
+           {"<polygons count=\"1\">" + v + "<ph><p>0 2 1</p><h>0 1 6</h></ph></polygons>", "polygons", 6},
+           {"<tristrips count=\"1\">" + v + "<p>2 0 1 8</p></tristrips>", "tristrips", 8},
+           {"<trifans count=\"1\">" + v + "<p>0 2 1 9</p></trifans>", "trifans", 9}}) {
+    Document document;
+    document.geometries = geometry("g", "", primitives);
+    EXPECT_THAT(error_of(document), AllOf(HasSubstr("mesh.dae: "),
+                                          HasSubstr(fmt::format("line 7: <{}> has the index {}, there are 4 "
+                                                                "vertices (from 0)",
+                                                                name, index))));
+  }
 }
 
 TEST_F(Collada, SaysWhatEachReaderSaidOfADamagedFile) {
