@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -22,7 +22,9 @@
 #include <fmt/format.h>
 
 #include "renderer/scene/collada_for_assimp.hpp"
+#include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/local_file.hpp"
+#include "renderer/scene/obj_for_assimp.hpp"
 
 namespace sonard::render {
 namespace {
@@ -31,8 +33,10 @@ namespace {
 /// file that a mesh names.
 class WorldFiles : public Assimp::DefaultIOSystem {
  public:
-  WorldFiles(const MeshSource& source, std::string& refusal) : folders_(source.folders), refusal_(refusal) {
-    folders_.push_back(std::filesystem::weakly_canonical(source.file.parent_path()));
+  /// @param obj the text of an OBJ in place of its file; null for other formats
+  WorldFiles(const MeshSource& source, const std::string* obj, std::string& refusal)
+      : folder_(source.file.parent_path() / ""), folders_(source.folders), obj_(obj), refusal_(refusal) {
+    folders_.push_back(std::filesystem::weakly_canonical(folder_));
   }
 
   bool Exists(const char* name) const override { return !permitted(name).empty(); }
@@ -41,41 +45,52 @@ class WorldFiles : public Assimp::DefaultIOSystem {
     if (path.empty()) {
       return nullptr;
     }
-    // Assimp reads the mark of UTF-8 as a part of the first line of an OBJ.
-    constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
-    if (lower_extension(path) == "obj" && head_of(path, utf8_mark.size()) == utf8_mark) {
-      const std::string content = content_of(path).substr(utf8_mark.size());
-      auto* const bytes = new std::uint8_t[content.size()];  // the stream deletes it
-      std::ranges::copy(content, bytes);
-      return new Assimp::MemoryIOStream(bytes, content.size(), /*own=*/true);
+    if (obj_ != nullptr) {  // it names no other files
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(obj_->data()), obj_->size());
     }
     return DefaultIOSystem::Open(path.c_str(), mode);
   }
 
  private:
+  /// The file of this name; nullopt if it does not exist.
+  std::optional<std::filesystem::path> existing(const std::string& name) const {
+    std::vector<std::string> names{name};
+    // Assimp puts the folder before an absolute path, and before the URI in a glTF with its escapes.
+    if (const std::size_t absolute = name.find("//"); absolute != std::string::npos) {
+      names.push_back(name.substr(absolute + 1));
+    }
+    if (name.starts_with(folder_)) {
+      names.push_back(folder_ + unescaped(name.substr(folder_.size())));
+    }
+    for (const std::string& possible : names) {
+      std::error_code error;
+      std::filesystem::path path = std::filesystem::canonical(possible, error);
+      if (!error) {
+        return path;
+      }
+    }
+    return std::nullopt;
+  }
+
   /// The file of this name; empty if it does not exist, or is not permitted.
   std::filesystem::path permitted(const std::string& name) const {
+    const auto path = existing(name);
     std::error_code error;
-    std::filesystem::path path = std::filesystem::canonical(name, error);
-    if (const std::size_t absolute = name.find("//"); error && absolute != std::string::npos) {
-      path =
-          std::filesystem::canonical(name.substr(absolute + 1), error);  // Assimp puts the folder before it
-    }
-    if (error || std::filesystem::is_directory(path, error)) {
+    if (!path || std::filesystem::is_directory(*path, error)) {
       return {};
     }
-    if (std::ranges::none_of(folders_, [&](const auto& folder) { return lies_below(path, folder); })) {
+    if (std::ranges::none_of(folders_, [&](const auto& folder) { return lies_below(*path, folder); })) {
       refuse(fmt::format(
           "it refers to {}, outside of the folders of this world and its models; to permit it, add its "
           "folder to GZ_SIM_RESOURCE_PATH",
-          path.string()));
+          path->string()));
       return {};
     }
-    if (!std::filesystem::is_regular_file(path, error)) {
-      refuse(fmt::format("it refers to {}, which is not a regular file", path.string()));
+    if (!std::filesystem::is_regular_file(*path, error)) {
+      refuse(fmt::format("it refers to {}, which is not a regular file", path->string()));
       return {};
     }
-    return path;
+    return *path;
   }
 
   void refuse(std::string why) const {
@@ -84,7 +99,9 @@ class WorldFiles : public Assimp::DefaultIOSystem {
     }
   }
 
+  const std::string folder_;  ///< of the mesh, with a slash at its end
   std::vector<std::filesystem::path> folders_;
+  const std::string* const obj_;
   std::string& refusal_;
 };
 
@@ -226,9 +243,15 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
 }  // namespace
 
 RawMesh read_with_assimp(const MeshSource& source) {
+  const bool is_obj = lower_extension(source.file) == "obj";
+  const ObjForAssimp obj = is_obj ? obj_for_assimp(content_of(source.file)) : ObjForAssimp();
+  if (is_obj && !obj.has_faces) {
+    return {};
+  }
   std::string refusal;
   Assimp::Importer importer;
-  importer.SetIOHandler(new WorldFiles(source, refusal));  // the importer owns it
+  importer.SetIOHandler(
+      new WorldFiles(source, is_obj ? &obj.text : nullptr, refusal));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // no stand-ins for a scene without meshes
@@ -248,6 +271,7 @@ RawMesh read_with_assimp(const MeshSource& source) {
     Collector collector(*scene, source.submesh, rule);
     collector.add(root, root_transform(*scene, lower_extension(source.file)), "", false);
     RawMesh mesh = collector.take();
+    mesh.warnings = obj.warnings;
     if (!mesh.parts.empty() || rule == SubmeshRule::names_above) {
       return mesh;
     }

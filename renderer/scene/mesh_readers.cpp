@@ -118,6 +118,9 @@ RawMesh read_mesh(std::span<const MeshReader> readers, const MeshSource& source,
               fmt::format("{}: read by {}, because {}; check its shape, or export the mesh again",
                           source.file.string(), reader.name, fmt::join(failures, "; ")));
         }
+        for (const std::string& warning : mesh.warnings) {
+          warnings.push_back(fmt::format("{}: {}", source.file.string(), warning));
+        }
         return mesh;
       }
       without_triangles = without_triangles ? std::move(without_triangles) : std::move(mesh);

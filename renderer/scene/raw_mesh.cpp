@@ -22,6 +22,22 @@ RawPart& part_like(RawMesh& mesh, const RawPart& triangles) {
   return mesh.parts.back();
 }
 
+void put(const std::vector<std::string>& texts, BlobWriter& writer) {
+  writer.put(static_cast<std::uint64_t>(texts.size()));
+  for (const std::string& text : texts) {
+    writer.put(text);
+  }
+}
+
+std::vector<std::string> get_texts(BlobReader& reader) {
+  std::vector<std::string> texts;
+  const std::uint64_t count = reader.get_number();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    texts.push_back(printable(reader.get_string()));
+  }
+  return texts;
+}
+
 }  // namespace
 
 void RawMesh::add(const RawPart& triangles, const glm::dmat4& T_mesh_part) {
@@ -57,10 +73,8 @@ std::string to_bytes(const RawMesh& mesh) {
     writer.put(part.texcoords);
     writer.put(part.indices);
   }
-  writer.put(static_cast<std::uint64_t>(mesh.names.size()));
-  for (const std::string& name : mesh.names) {
-    writer.put(name);
-  }
+  put(mesh.names, writer);
+  put(mesh.warnings, writer);
   return writer.take();
 }
 
@@ -76,10 +90,8 @@ RawMesh raw_mesh_of(const std::string& bytes) {
     part.texcoords = reader.get_vector<glm::vec2>();
     part.indices = reader.get_vector<std::uint32_t>();
   }
-  const std::uint64_t names = reader.get_number();
-  for (std::uint64_t i = 0; i < names; ++i) {
-    mesh.names.push_back(printable(reader.get_string()));
-  }
+  mesh.names = get_texts(reader);
+  mesh.warnings = get_texts(reader);
   return mesh;
 }
 

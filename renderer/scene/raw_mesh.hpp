@@ -32,7 +32,8 @@ struct RawPart {
 
 struct RawMesh {
   std::vector<RawPart> parts;
-  std::vector<std::string> names;  ///< of nodes, meshes or solids, for error messages; may repeat
+  std::vector<std::string> names;     ///< of nodes, meshes or solids, for error messages; may repeat
+  std::vector<std::string> warnings;  ///< without the name of the file
 
   /// Adds triangles, moved by `T_mesh_part`, to the part of the same material and attributes. Under a
   /// mirroring transform, the outside of the triangles stays outside.
@@ -40,7 +41,7 @@ struct RawMesh {
 };
 
 std::string to_bytes(const RawMesh& mesh);
-/// Makes the names printable().
+/// Makes names and warnings printable().
 /// @throws std::runtime_error if the bytes are damaged.
 RawMesh raw_mesh_of(const std::string& bytes);
 

@@ -2,6 +2,9 @@
 // Mesh files that Assimp reads, written here byte by byte by the formats' own rules (glTF 2.0
 // specification 2.0.1, sections 3 and 4; ASCII FBX 7.3): the tetrahedron (0 0 0) (1 0 0) (0 2 0) (0 0 3) of
 // volume 1.
+#include <sys/stat.h>
+
+#include <chrono>
 #include <cstdint>
 #include <cstring>
 
@@ -178,10 +181,52 @@ TEST_F(GltfAndFbx, TakesUnitAndAxesOfAnFbx) {
   expect_tetrahedron(load(folder_.write("millimetres.fbx", fbx(0.1)), "hull"));
 }
 
-TEST_F(GltfAndFbx, ReadsNoFileOutsideOfTheFolder) {
-  folder_.write("hull.bin", buffer());
-  const std::filesystem::path file = folder_.write("inside/hull.gltf", json(R"("uri": "../hull.bin", )"));
-  EXPECT_THAT(error_of(file), HasSubstr("inside/hull.gltf: "));
+// glTF 2.0, 2.8: names of files are URIs, so blanks are escaped.
+TEST_F(GltfAndFbx, ReadsABufferWithAnEscapedName) {
+  folder_.write("my hull/hull #1 50%.bin", buffer());
+  for (const char* uri : {"my%20hull/hull%20%231%2050%25.bin", "my hull/hull #1 50%.bin"}) {
+    SCOPED_TRACE(uri);
+    expect_tetrahedron(load(folder_.write("a%20b/../hull.gltf", json(fmt::format(R"("uri": "{}", )", uri)))));
+  }
+  folder_.write("a%20b/raw%20name.bin", buffer());
+  expect_tetrahedron(load(folder_.write("a%20b/hull.gltf", json(R"("uri": "raw%20name.bin", )"))));
+  folder_.write("a%20b/raw name.bin", buffer());
+  expect_tetrahedron(load(folder_.write("a%20b/hull.gltf", json(R"("uri": "raw%20name.bin", )"))));
+}
+
+TEST_F(GltfAndFbx, NamesOnlyFilesOfItsWorld) {
+  const test::TempFolder elsewhere;
+  const std::string far = elsewhere.write("secret.bin", buffer()).string();
+  folder_.write("buffers/hull.bin", buffer());
+  std::filesystem::create_symlink(far, folder_.path() / "link.bin");
+  MeshFileRequest request;
+  const auto read = [&](const std::string& uri) {
+    request.file = folder_.write("meshes/hull.gltf", json(fmt::format(R"("uri": "{}", )", uri)));
+    try {
+      load_mesh_file(request);
+    } catch (const WorldError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(read("/etc/passwd"), HasSubstr("hull.gltf: it refers to /etc/passwd, outside of the folders"));
+  const std::string up = elsewhere.path().filename().string() + "/secret.bin";
+  for (const std::string& uri :
+       {far, "../../" + up, "..%2F..%2F" + up, "%2e%2e/../" + up, std::string("../link.bin")}) {
+    EXPECT_THAT(read(uri), HasSubstr("it refers to " + far)) << uri;
+  }
+  EXPECT_THAT(read("../buffers/hull.bin"), HasSubstr("it refers to"));
+  request.folders = {folder_.path()};
+  EXPECT_EQ(read("../buffers/hull.bin"), "");
+  EXPECT_THAT(read("/home/somebody/else/hull.bin"), HasSubstr("could not open referenced file"));
+}
+
+TEST_F(GltfAndFbx, NamesOnlyRegularFiles) {
+  ASSERT_EQ(::mkfifo((folder_.path() / "hull.bin").c_str(), 0600), 0);
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THAT(error_of(folder_.write("hull.gltf", json(R"("uri": "hull.bin", )"))),
+              HasSubstr("hull.bin, which is not a regular file"));
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 TEST_F(GltfAndFbx, SaysWhatIsWrongWithADamagedFile) {

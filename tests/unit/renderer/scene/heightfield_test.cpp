@@ -81,7 +81,7 @@ TEST(Image, ErrorsNameTheFile) {
   EXPECT_THAT(normal_map_error(folder.write("a.exr", "x")), HasSubstr("supported: png"));
   EXPECT_THAT(normal_map_error(folder.write("bad.png", "not a picture")), HasSubstr("bad.png: "));
   EXPECT_THAT(normal_map_error(data / "grey8.png"), HasSubstr("needs 3 channels, this image has 1"));
-  EXPECT_THAT(normal_map_error("http://127.0.0.1/x.png"), HasSubstr("network"));
+  EXPECT_THAT(normal_map_error("http://127.0.0.1/x.png"), HasSubstr("sonard downloads nothing"));
 }
 
 TEST(Image, DamagedFilesAreErrors) {
