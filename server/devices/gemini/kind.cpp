@@ -11,6 +11,8 @@
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/glf_status.hpp"
+#include "protocol/gemini/ping_plan.hpp"
+#include "protocol/gemini/ping_settings.hpp"
 #include "protocol/gemini/recorded_form.hpp"
 #include "server/devices/gemini/config.hpp"
 #include "server/devices/gemini/connected.hpp"
@@ -112,10 +114,11 @@ class GeminiKind final : public DeviceKind {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    gemini::PingConfig config;
-    config.end_range = 2411;  // 20 m at 1500 m/s
-    config.range_compression = 1;
-    return gemini::plan_ping(config, gemini_config(head).device)->job;
+    gemini::PingSettings asked;
+    asked.range_m = 20.0;
+    asked.compression_log2 = 1;
+    // Every output of make_ping_config() is valid for plan_ping().
+    return gemini::plan_ping(gemini::make_ping_config(asked), gemini_config(head).device).value().job;
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {

@@ -10,6 +10,7 @@
 #include "protocol/micron/device.hpp"
 #include "protocol/micron/line_job.hpp"
 #include "protocol/micron/recorded_form.hpp"
+#include "protocol/micron/scan_settings.hpp"
 #include "protocol/micron/units.hpp"
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/section.hpp"
@@ -82,7 +83,8 @@ class MicronKind final : public DeviceKind {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    return micron::make_line_job(micron::HeadCommand{}, micron_config(head).device, micron::bearing_ahead);
+    return micron::make_line_job(micron::make_head_command({}), micron_config(head).device,
+                                 micron::bearing_ahead);
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {

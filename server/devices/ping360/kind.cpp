@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "protocol/ping360/make_job.hpp"
 #include "protocol/ping360/recorded_form.hpp"
+#include "protocol/ping360/usual_scan.hpp"
 #include "server/devices/ping360/config.hpp"
 #include "server/devices/ping360/connected.hpp"
 #include "server/devices/ping360/section.hpp"
@@ -76,11 +78,11 @@ class Ping360Kind final : public DeviceKind {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    ping360::Transducer usual;
-    usual.number_of_samples = 1200;
-    usual.sample_period = 444;  // 10 m at 1500 m/s
-    usual.angle = static_cast<std::uint16_t>(ping360_config(head).device.bearing_offset);
-    return ping360::make_job(ping360::form_of(usual), ping360_config(head).device);
+    const ping360::DeviceConfig& device = ping360_config(head).device;
+    ping360::AutoTransmit scan =
+        ping360::usual_scan(10.0, std::nullopt, 1500.0, device.bearing_offset).value();
+    scan.gain_setting = 1;
+    return ping360::make_job(ping360::form_of(scan, device.bearing_offset), device);
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {

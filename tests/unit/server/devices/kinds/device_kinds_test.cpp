@@ -41,6 +41,34 @@ TEST(DeviceKinds, MakeAHeadThatCanBeRenderedAndRecorded) {
   }
 }
 
+// `sonard check` renders the usual ping, and the daemon the pings of clients. A survey without options has the
+// settings of `sonarview` without options.
+TEST(DeviceKinds, UsualPingIsAsLoudAndLongAsThatOfAClient) {
+  for (const DeviceKind* kind : device_kinds()) {
+    const HeadConfig head = kind->make_default();
+    const PingJob usual = kind->usual_job(head);
+    const std::unique_ptr<Survey> survey = kind->survey(head, {});
+    survey->frames(1);
+    const PingJob asked = survey->job(0);
+    EXPECT_EQ(usual.pulse_s, asked.pulse_s) << kind->type();
+    EXPECT_EQ(usual.gain_db, asked.gain_db) << kind->type();
+    EXPECT_EQ(usual.frequency_hz, asked.frequency_hz) << kind->type();
+    EXPECT_EQ(usual.native_bins, asked.native_bins) << kind->type();
+    EXPECT_EQ(usual.native_bin_m, asked.native_bin_m) << kind->type();
+  }
+}
+
+// From docs/protocols: a client of a 720i requests 11 cycles of 723 kHz at 20 m, of a Ping360 at 10 m
+// 8000 us * 10 / 1500 = 53 us.
+TEST(DeviceKinds, UsualPulsesAreThoseOfTheDocuments) {
+  const auto pulse_s = [](const char* type) {
+    const DeviceKind& kind = *kind_of_type(type);
+    return kind.usual_job(kind.make_default()).pulse_s;
+  };
+  EXPECT_NEAR(pulse_s("gemini_720i"), 11 / 723e3, 1e-8);
+  EXPECT_NEAR(pulse_s("ping360"), 53e-6, 1e-9);
+}
+
 TEST(DeviceKinds, LayOutASurveyOfWholeFrames) {
   for (const DeviceKind* kind : device_kinds()) {
     const HeadConfig head = kind->make_default();
