@@ -244,8 +244,10 @@ void Check::check_start(const render::World& world) {
   }
   const auto& [key, T_world_vehicle] = *beginning;
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
+    const bool by_mount = glm::length(config_.heads[i].T_vehicle_sonar.position_m) > longest_arm_m;
+    const std::string cause = by_mount ? fmt::format("heads[{}].mount.position_m", i) : key;
     for (const Finding& finding : pings.ping(i, T_world_vehicle)) {
-      warning(key, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
+      warning(cause, fmt::format("head '{}': {}", config_.heads[i].name, finding.text));
     }
     report_cost(config_.heads[i], pings.cost_ms(i, T_world_vehicle), world.triangle_count());
   }

@@ -139,6 +139,9 @@ struct DeviceSettings {
 };
 
 /// One head.
+/// A larger distance between the origins of a vehicle and its sonar is suspicious: vehicles are smaller.
+inline constexpr double longest_arm_m = 10.0;
+
 struct HeadConfig {
   const HeadKind* kind = nullptr;                ///< kind of device; not null after loading
   std::shared_ptr<const DeviceSettings> device;  ///< of that kind

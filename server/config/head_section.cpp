@@ -265,9 +265,6 @@ bool look_like_radians(const glm::dvec3& angles) {
   return any;
 }
 
-/// Larger offsets cause a warning: vehicles are smaller.
-constexpr double longest_arm_m = 10.0;
-
 void read_mount(YamlSection& section, HeadConfig& head) {
   section.introduce("The pose of the sonar on the vehicle, T_vehicle_sonar.");
   read_pose(section, head.T_vehicle_sonar,

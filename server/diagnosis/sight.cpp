@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "server/config/config.hpp"
 #include "server/diagnosis/triangles.hpp"
 
 namespace sonard::server {
@@ -208,13 +209,33 @@ class LookAround {
     });
   }
 
+  const glm::dvec3& vehicle_m() const { return sight_.T_world_vehicle.position_m; }
+  const glm::dvec3& sonar_m() const { return sight_.T_world_sonar.position_m; }
+  double arm_m() const { return glm::length(sonar_m() - vehicle_m()); }
+  bool has_long_arm() const { return arm_m() > longest_arm_m; }
+
+  /// The position of the sonar if the vehicle were at `other_m`. Poses are of the vehicle: another unit or
+  /// sign of theirs leaves the mount as it is.
+  glm::dvec3 sonar_with_vehicle_at(const glm::dvec3& other_m) const {
+    return other_m + (sonar_m() - vehicle_m());
+  }
+  /// The position of the sonar if z of the vehicle had the opposite sign.
+  glm::dvec3 sonar_with_z_turned() const {
+    return sonar_with_vehicle_at({vehicle_m().x, vehicle_m().y, -vehicle_m().z});
+  }
+
+  std::string mount_hint() const {
+    return fmt::format("the mount places the sonar {:.4g} m from the vehicle: is mount.position_m in metres?",
+                       arm_m());
+  }
+
   /// The likely unit of positions if they are not in metres: "centimetres or millimetres" if either would put
   /// the sonar into the world; empty if neither would.
   std::string wrong_unit() const {
-    const glm::dvec3& p = sight_.T_world_sonar.position_m;
     std::string unit;
     const auto consider = [&](double per_m, const char* name) {
-      if (glm::length(p) > per_m && !is_in_the_world(p) && is_in_the_world(p / per_m)) {
+      if (glm::length(vehicle_m()) > per_m && !is_in_the_world(sonar_m()) &&
+          is_in_the_world(sonar_with_vehicle_at(vehicle_m() / per_m))) {
         unit += (unit.empty() ? "" : " or ") + std::string(name);
       }
     };
@@ -224,17 +245,41 @@ class LookAround {
   }
 
   void note_surface() {
-    const glm::dvec3& p = sight_.T_world_sonar.position_m;
-    if (!world_.water_surface_z_m || p.z <= *world_.water_surface_z_m) {
+    if (!world_.water_surface_z_m || sonar_m().z <= *world_.water_surface_z_m) {
       return;
     }
-    const double above_m = p.z - *world_.water_surface_z_m;
+    const double above_m = sonar_m().z - *world_.water_surface_z_m;
     const std::string unit = wrong_unit();
-    const bool turned = is_in_the_world({p.x, p.y, -p.z}) && -p.z <= *world_.water_surface_z_m;
+    const glm::dvec3 turned_m = sonar_with_z_turned();
+    const bool turned = is_in_the_world(turned_m) && turned_m.z <= *world_.water_surface_z_m;
+    const bool by_mount = has_long_arm() && vehicle_m().z <= *world_.water_surface_z_m;
     add("above_surface", fmt::format("The sonar is {:.1f} m above the water surface, in the air{}.", above_m,
-                                     !unit.empty() ? fmt::format(" (are positions in {}?)", unit)
-                                     : turned      ? " (is z down?)"
-                                                   : ""));
+                                     by_mount        ? fmt::format(" ({})", mount_hint())
+                                     : !unit.empty() ? fmt::format(" (are positions in {}?)", unit)
+                                     : turned        ? " (is z down?)"
+                                                     : ""));
+  }
+
+  /// A hint if the sonar is above all bodies and, with the opposite sign of z, would be lower but not under
+  /// them; else "". For worlds without a water surface, with bodies in range.
+  std::string z_hint() const {
+    double lowest_m = std::numeric_limits<double>::infinity();
+    double highest_m = -lowest_m;
+    for (const Neighbour& neighbour : neighbours_) {
+      if (neighbour.body->name == sight_.vehicle_model) {
+        continue;
+      }
+      const auto [min_m, max_m] = neighbour.box;
+      const double middle_m = (neighbour.T_world_body * (0.5 * (min_m + max_m))).z;
+      const glm::dvec3 up = glm::inverse(neighbour.T_world_body.orientation) * glm::dvec3(0.0, 0.0, 1.0);
+      const double half_height_m = glm::dot(glm::abs(up), 0.5 * (max_m - min_m));
+      lowest_m = std::min(lowest_m, middle_m - half_height_m);
+      highest_m = std::max(highest_m, middle_m + half_height_m);
+    }
+    const glm::dvec3 turned_m = sonar_with_z_turned();
+    const bool fits = sonar_m().z > highest_m && turned_m.z < sonar_m().z && turned_m.z > lowest_m &&
+                      is_in_the_world(turned_m);
+    return fits ? " With the opposite sign of z, the sonar would be inside the world (is z down?)." : "";
   }
 
   /// Detects a quaternion with w first that was read as x, y, z, w: a level vehicle then leans by 180 degrees
@@ -307,9 +352,12 @@ class LookAround {
                             [&](const Neighbour& other) { return straight(other, -1.0).count > 0; })) {
       return;
     }
-    add("under_ground", fmt::format("The sonar is {:.4g} m below the body '{}', and nothing is below the "
-                                    "sonar: is it under the bed (is z of the pose correct)?",
-                                    overhead.nearest, ground->body->name));
+    const bool by_mount = has_long_arm() && vehicle_m().z > sonar_m().z + overhead.nearest;
+    add("under_ground",
+        fmt::format("The sonar is {:.4g} m below the body '{}', and nothing is below the sonar: is it under "
+                    "the bed ({})?",
+                    overhead.nearest, ground->body->name,
+                    by_mount ? mount_hint() : "is z of the pose correct"));
   }
 
   void note_what_is_near(bool sees_surface) {
@@ -344,21 +392,24 @@ class LookAround {
       const double below_db = -10.0 * std::log10(std::max(sight_.echo_over_floor, 1e-10));
       add("too_faint",
           fmt::format("No echo stands out: the strongest one is {:.0f} dB{} below the noise and the smallest "
-                      "step of the samples. {} Turn the sonar towards it, or move closer.",
+                      "step of the samples. {}{} Turn the sonar towards it, or move closer.",
                       below_db, below_db < 100.0 ? "" : " or more",
-                      where_is("The", *nearest, least_m, point_world)));
+                      where_is("The", *nearest, least_m, point_world), z_hint()));
     } else if (sight_.sees_surface) {
-      add("nothing_in_fan", "Nothing is in the fan; " + where_is("the", *nearest, least_m, point_world));
+      add("nothing_in_fan",
+          "Nothing is in the fan; " + where_is("the", *nearest, least_m, point_world) + z_hint());
     }
   }
 
   void note_far(const Neighbour& nearest, double away_m) {
-    const glm::dvec3& p = sight_.T_world_sonar.position_m;
+    const glm::dvec3& p = vehicle_m();
     const std::string text =
         fmt::format("Nothing is within {:.4g} m; the nearest body, '{}', is {:.4g} m away", sight_.range_m,
                     nearest.body->name, away_m);
     const glm::dvec3 there = nearest.T_world_body * (0.5 * (nearest.box.min_m + nearest.box.max_m));
-    if (looks_like_utm(p) != looks_like_utm(there)) {
+    if (has_long_arm() && is_in_the_world(p)) {
+      add("nothing_near", fmt::format("{}. The vehicle is inside the world, but {}", text, mount_hint()));
+    } else if (looks_like_utm(p) != looks_like_utm(there)) {
       add("utm",
           fmt::format("{}. {} looks like UTM (easting, northing), but the {} not: subtract the position of "
                       "the world's origin from the poses, or use the same coordinates for both.",
@@ -367,7 +418,7 @@ class LookAround {
     } else if (const std::string unit = wrong_unit(); !unit.empty()) {
       add("wrong_unit", fmt::format("{}. In {}, the position would be inside the world: are positions in {}?",
                                     text, unit, unit));
-    } else if (is_in_the_world({p.x, p.y, -p.z})) {
+    } else if (is_in_the_world(sonar_with_z_turned())) {
       add("z_down", text + ". With the opposite sign of z, it would be inside the world (is z down?).");
     } else {
       add("nothing_near", text + ".");

@@ -256,5 +256,63 @@ TEST(LookAround, SuspectsALocalPoseInAWorldOfUtmCoordinates) {
   EXPECT_EQ(look(world, {}, at({569300, 7034000, -15}))[0].code, "nothing_near") << "both are";
 }
 
+// A vehicle with z down at a depth of 5 m, above a bed at z = -20 within its range, in a world without a
+// water surface.
+TEST(LookAround, SuspectsThatZIsDownIfTheBedIsInRange) {
+  const char* const hint = " With the opposite sign of z, the sonar would be inside the world (is z down?).";
+  render::World world = one("bed", sheet());
+  Sight sight = at({7, 3, 5});
+  sight.range_m = 30.0;
+  auto found = look(world, {}, sight);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "nothing_in_fan");
+  EXPECT_TRUE(found[0].text.ends_with(hint)) << found[0].text;
+  sight.sees_surface = true;
+  sight.echo_over_floor = 0.01;
+  found = look(world, {}, sight);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NE(found[0].text.find(hint), std::string::npos) << found[0].text;
+  // A vehicle at z = -5 is in its place; one 5 m above a bed at z = 0 would be under it.
+  sight = at({7, 3, -5});
+  sight.range_m = 30.0;
+  EXPECT_EQ(look(world, {}, sight)[0].text.find(hint), std::string::npos);
+  world.bodies[0].T_world_body.position_m.z = 0.0;
+  sight = at({7, 3, 5});
+  EXPECT_EQ(look(world, {}, sight)[0].text.find(hint), std::string::npos);
+}
+
+/// A sonar on a vehicle whose mount is in the wrong unit.
+Sight mounted(const glm::dvec3& vehicle_m, const glm::dvec3& mount_m) {
+  Sight sight = at(vehicle_m);
+  sight.T_world_sonar.position_m = vehicle_m + mount_m;
+  return sight;
+}
+
+TEST(LookAround, BlamesTheMountThatPlacesTheSonarOutsideTheWorld) {
+  // The vehicle is 4 m above the bed; the mount is in millimetres.
+  EXPECT_EQ(look(one("bed", sheet()), {}, mounted({0, 0, -16}, {350, 0, 120})),
+            only("nothing_near",
+                 "Nothing is within 5 m; the nearest body, 'bed', is 324.6 m away. The vehicle is inside the "
+                 "world, but the mount places the sonar 370 m from the vehicle: is mount.position_m in "
+                 "metres?"));
+  // In centimetres, below the bed.
+  EXPECT_EQ(look(one("bed", sheet()), {}, mounted({0, 0, -16}, {35, 0, -12})),
+            only("under_ground",
+                 "The sonar is 8 m below the body 'bed', and nothing is below the sonar: is it under the bed "
+                 "(the mount places the sonar 37 m from the vehicle: is mount.position_m in metres?)?"));
+  EXPECT_EQ(look(pier(), {}, mounted({7, 0, -20}, {0, 0, 30})),
+            only("above_surface",
+                 "The sonar is 10.0 m above the water surface, in the air (the mount places the sonar 30 m "
+                 "from the vehicle: is mount.position_m in metres?)."));
+}
+
+// Poses are of the vehicle: if they were read as centimetres, the sonar would still be 3 m ahead of it.
+TEST(LookAround, ConvertsThePoseAndNotTheMount) {
+  const auto found = look(pier(), {}, mounted({400, 0, -2000}, {3, 0, 0}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "wrong_unit");
+  EXPECT_NE(found[0].text.find("are positions in centimetres?"), std::string::npos) << found[0].text;
+}
+
 }  // namespace
 }  // namespace sonard::server
