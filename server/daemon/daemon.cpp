@@ -316,6 +316,7 @@ DaemonStatus Daemon::status() const {
   if (const std::optional<PoseEstimate> vehicle = poses_.at(present)) {
     status.T_world_vehicle = vehicle->T_world_vehicle;
   }
+  status.stale_pose = poses_.stale_at(present);
   status.bodies = poses_.bodies_at(present);
   if (recorder_) {
     status.recording = {recorded_into_.string(), recorder_->on(), recorder_->counters()};

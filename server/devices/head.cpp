@@ -478,7 +478,7 @@ bool Head::Impl::render(const PingJob& job) {
   const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
   if (!T_world_mount) {
     rendering.count_missing_pose();
-    diagnosis.no_pose();
+    diagnosis.no_pose(pose_time);
     return false;
   }
   if (recording.on()) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "server/devices/device_kind.hpp"
@@ -72,11 +73,12 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
                      .hides_vehicle = config_.hides_vehicle}));
 }
 
-void HeadDiagnosis::no_pose() {
+void HeadDiagnosis::no_pose(TimePoint time) {
   sees_surface_.reset();
   stands_out_.reset();
-  found({{"no_pose",
-          "No pose of the vehicle has arrived, or the last one is too old, so the head does not ping."}});
+  const std::optional<StalePose> stale = services_.poses.stale_at(time);
+  found({{"no_pose", stale ? fmt::format("The head does not ping: {}.", stale_text(*stale))
+                           : "No pose of the vehicle has arrived, so the head does not ping."}});
 }
 
 void HeadDiagnosis::found(std::vector<Finding> findings) {

@@ -47,7 +47,8 @@ class HeadDiagnosis {
   void look(TimePoint now, TimePoint time, const NewestPing& ping, const std::vector<PosedBody>& bodies,
             bool sees_surface, double echo_over_floor);
   /// Called if a ping was not made because no pose is known.
-  void no_pose();
+  /// @param time of the ping, on the clock of PoseHistory
+  void no_pose(TimePoint time);
 
   const std::vector<Finding>& findings() const { return findings_; }
 

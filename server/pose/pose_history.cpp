@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/pose/pose_history.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -29,6 +30,12 @@ std::size_t points_kept(PingClock clock, std::size_t by_wall_clock) {
 }
 
 }  // namespace
+
+std::string stale_text(const StalePose& pose) {
+  return fmt::format(
+      "the pose is stale: the newest one is {:.1f} s old, and poses.extrapolation_limit_ms allows {:g} ms",
+      1e-9 * static_cast<double>(pose.age.count()), 1e-6 * static_cast<double>(pose.limit.count()));
+}
 
 PoseHistory::PoseHistory(const PoseConfig& config)
     : initial_(config.T_world_vehicle_initial),
@@ -92,11 +99,11 @@ std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
   if (vehicle_.empty()) {
     return initial_ ? std::optional{PoseEstimate{*initial_, PoseQuality::initial, {}}} : std::nullopt;
   }
-  const std::int64_t time_ns = stamp_at(time);
-  const std::chrono::nanoseconds age{time_ns - vehicle_.newest().time_ns};
-  if (age > limit_ && stale_policy_ == StalePolicy::silence) {
+  if (stale_at(time)) {
     return std::nullopt;
   }
+  const std::int64_t time_ns = stamp_at(time);
+  const std::chrono::nanoseconds age{time_ns - vehicle_.newest().time_ns};
   PoseEstimate estimate{to_render(vehicle_.at(time_ns, limit_.count())), PoseQuality::interpolated,
                         std::max(age, std::chrono::nanoseconds{0})};
   if (age > limit_) {
@@ -107,6 +114,14 @@ std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
     estimate.quality = PoseQuality::held;
   }
   return estimate;
+}
+
+std::optional<StalePose> PoseHistory::stale_at(TimePoint time) const {
+  if (vehicle_.empty() || stale_policy_ != StalePolicy::silence) {
+    return std::nullopt;
+  }
+  const std::chrono::nanoseconds age{stamp_at(time) - vehicle_.newest().time_ns};
+  return age > limit_ ? std::optional(StalePose{age, limit_}) : std::nullopt;
 }
 
 TimePoint PoseHistory::present(TimePoint now) const {

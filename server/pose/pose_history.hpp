@@ -36,6 +36,14 @@ struct PoseEstimate {
   std::chrono::nanoseconds age{0};
 };
 
+/// A newest pose that pings must not use, because of StalePolicy::silence.
+struct StalePose {
+  std::chrono::nanoseconds age{0};    ///< on the publisher's clock
+  std::chrono::nanoseconds limit{0};  ///< PoseConfig::extrapolation_limit
+};
+/// "the pose is stale: the newest one is 2.0 s old, and poses.extrapolation_limit_ms allows 500 ms"
+std::string stale_text(const StalePose& pose);
+
 /// Counters; they only grow.
 struct PoseHistoryCounters {
   std::uint64_t samples = 0;
@@ -74,6 +82,9 @@ class PoseHistory {
   /// The vehicle at a time, usually about now. nullopt: no pose has arrived and there is no initial one, or
   /// the newest is too old and the policy is `silence`.
   std::optional<PoseEstimate> at(TimePoint time) const;
+
+  /// The newest pose if at() refuses it because it is too old.
+  std::optional<StalePose> stale_at(TimePoint time) const;
 
   /// The argument of at() for the present: `now`, or, by the clock of the source, its newest stamp.
   TimePoint present(TimePoint now) const;

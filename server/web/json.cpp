@@ -210,9 +210,11 @@ std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status)
 std::vector<std::string> why_not_ready(const DaemonStatus& status) {
   std::vector<std::string> reasons;
   if (!status.T_world_vehicle) {
-    reasons.push_back(status.inputs.empty() ? std::string("the vehicle has no pose")
-                                            : fmt::format("the vehicle has no pose: send poses to {}",
-                                                          status.inputs.front().input));
+    const std::string trouble =
+        status.stale_pose ? stale_text(*status.stale_pose) : "the vehicle has no pose";
+    reasons.push_back(status.inputs.empty()
+                          ? trouble
+                          : fmt::format("{}: send poses to {}", trouble, status.inputs.front().input));
   }
   for (const PoseInputStatus& input : status.inputs) {
     for (const Finding& finding : input.findings) {

@@ -11,6 +11,7 @@
 #include "server/clock/clock.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/diagnosis/finding.hpp"
+#include "server/pose/pose_history.hpp"
 #include "server/pose/pose_source.hpp"
 #include "server/pose/pose_statistics.hpp"
 #include "server/pose/posed_body.hpp"
@@ -46,6 +47,7 @@ struct DaemonStatus {
   std::vector<HeadStatus> heads;
   std::vector<PoseInputStatus> inputs;
   std::optional<render::Pose> T_world_vehicle;
+  std::optional<StalePose> stale_pose;  ///< why there is no T_world_vehicle, if poses have arrived
   std::vector<PosedBody> bodies;
   std::optional<RecordingStatus> recording;
 };

@@ -152,7 +152,12 @@ TEST(PoseHistory, PolicySilenceHasNoPoseAfterTheLimitUntilTheNext) {
   PoseHistory history{config(StalePolicy::silence)};
   insert(history, at_x(0, 1));
   EXPECT_TRUE(history.at(ours(200)));
+  EXPECT_FALSE(history.stale_at(ours(200)));
   EXPECT_FALSE(history.at(ours(200.001)));
+  const auto stale = history.stale_at(ours(2040));
+  ASSERT_TRUE(stale);
+  EXPECT_EQ(stale_text(*stale),
+            "the pose is stale: the newest one is 2.0 s old, and poses.extrapolation_limit_ms allows 200 ms");
   insert(history, at_x(5000, 2));
   EXPECT_EQ(x_at(history, 5001), 2.0);
 }

@@ -58,6 +58,15 @@ TEST(Readiness, NamesWhatIsMissing) {
   EXPECT_EQ(why_not_ready(status)[0], "the vehicle has no pose");
 }
 
+TEST(Readiness, SaysThatThePoseIsStale) {
+  DaemonStatus status = ready_status();
+  status.T_world_vehicle.reset();
+  status.stale_pose = StalePose{std::chrono::milliseconds{2100}, std::chrono::milliseconds{500}};
+  EXPECT_THAT(why_not_ready(status),
+              ElementsAre("the pose is stale: the newest one is 2.1 s old, and poses.extrapolation_limit_ms "
+                          "allows 500 ms: send poses to pose stream udp 127.0.0.1:14600"));
+}
+
 TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
   DaemonStatus status = ready_status();
   status.inputs[0].findings = {{"several_publishers", "2 publishers send poses at the same time."}};
