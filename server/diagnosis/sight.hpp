@@ -36,8 +36,9 @@ struct BodyBox {
 std::vector<BodyBox> boxes_of(const render::World& world);
 
 /// Echo intensity, relative to noise and the least step of samples, below which an echo does not stand out in
-/// a picture.
-inline constexpr double least_visible_echo = 0.25;
+/// a picture. An echo as strong as the noise raises a sample by 3 dB, which is less than the spread of
+/// speckle and noise (5.6 dB).
+inline constexpr double least_visible_echo = 1.0;
 
 /// Findings about the sonar's place, the likeliest cause first; empty if nothing looks wrong. Distances are
 /// to triangles: a world of a million takes some ten milliseconds, but only if the sonar sees nothing.

@@ -114,11 +114,8 @@ class GeminiKind final : public DeviceKind {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    gemini::PingSettings asked;
-    asked.range_m = 20.0;
-    asked.compression_log2 = 1;
     // Every output of make_ping_config() is valid for plan_ping().
-    return gemini::plan_ping(gemini::make_ping_config(asked), gemini_config(head).device).value().job;
+    return gemini::plan_ping(gemini::make_ping_config({}), gemini_config(head).device).value().job;
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {

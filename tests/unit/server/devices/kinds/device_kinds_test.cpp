@@ -54,6 +54,7 @@ TEST(DeviceKinds, UsualPingIsAsLoudAndLongAsThatOfAClient) {
     EXPECT_EQ(usual.gain_db, asked.gain_db) << kind->type();
     EXPECT_EQ(usual.frequency_hz, asked.frequency_hz) << kind->type();
     EXPECT_EQ(usual.native_bins, asked.native_bins) << kind->type();
+    EXPECT_EQ(usual.compression_log2, asked.compression_log2) << kind->type();
     EXPECT_EQ(usual.native_bin_m, asked.native_bin_m) << kind->type();
   }
 }
