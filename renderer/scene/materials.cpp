@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text/edit_distance.hpp"
+
 namespace sonard::render {
 namespace {
 
@@ -83,24 +85,6 @@ std::string canonical(std::string_view name) {
   const auto* alias =
       std::find_if(aliases.begin(), aliases.end(), [&](const auto& a) { return a.first == key; });
   return alias == aliases.end() ? key : std::string(alias->second);
-}
-
-/// Levenshtein distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) {
-    row[j] = j;
-  }
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
 }
 
 double checked_reflectance(double rho, std::string_view what, std::vector<std::string>& warnings) {

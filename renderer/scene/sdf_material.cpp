@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/text/edit_distance.hpp"
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/materials.hpp"
 
@@ -22,6 +23,15 @@ constexpr const char* sonar_attribute = "sonard:type";
 constexpr std::array<std::string_view, 5> material_numbers{
     "reflectance", "lambert_mu_db", "pressure_reflection", "rms_slope", "rms_height_mm"};
 constexpr std::array<std::string_view, 4> material_parents{"visual", "collision", "link", "model"};
+constexpr std::array own_elements{material_element, water_surface_element};
+constexpr std::array own_attributes{sonar_attribute};
+constexpr const char* expected_attribute = "sonard:type, of a <sensor type=\"custom\"> in a <link>";
+
+/// Where an own element belongs: "<world>".
+std::string parents_of(std::string_view own_element) {
+  return own_element == material_element ? fmt::format("one of: {}", fmt::join(material_parents, ", "))
+                                         : "<world>";
+}
 
 std::optional<double> attribute(const SdfElement& element, const char* key) {
   const std::string* const given = element.attribute(key);
@@ -39,6 +49,18 @@ void check_attributes(const SdfElement& element, std::span<const std::string_vie
   }
 }
 
+/// The own name that a name without its prefix is equal or similar to, in any case; empty if there is none.
+std::string similar_own_name(std::string_view local, std::span<const char* const> own_names) {
+  const std::string name = "sonard:" + lower_case(local);
+  const std::size_t most = std::max<std::size_t>(1, local.size() / 3);
+  for (const char* const own : own_names) {
+    if (edit_distance(name, own) <= most) {
+      return own;
+    }
+  }
+  return "";
+}
+
 void check_own_element(const SdfElement& element, WorldProblems& problems) {
   const SdfElement& parent = *element.parent;
   const auto complain = [&](const std::string& message) {
@@ -46,21 +68,22 @@ void check_own_element(const SdfElement& element, WorldProblems& problems) {
   };
   if (element.name == material_element) {
     if (std::ranges::find(material_parents, parent.name) == material_parents.end()) {
-      complain(fmt::format("<{}> inside <{}>: it belongs in one of: {}", element.name, parent.name,
-                           fmt::join(material_parents, ", ")));
+      complain(fmt::format("<{}> inside <{}>: it belongs in {}", element.name, parent.name,
+                           parents_of(element.name)));
     }
     check_attributes(element, material_numbers, problems);
   } else if (element.name == water_surface_element) {
     if (parent.name != "world") {
-      complain(fmt::format("<{}> inside <{}>: it belongs in <world>", element.name, parent.name));
+      complain(fmt::format("<{}> inside <{}>: it belongs in {}", element.name, parent.name,
+                           parents_of(element.name)));
     }
     check_attributes(element, {}, problems);  // its text is the height
   } else {
-    const std::string own = lower_case(element.name);
-    complain(own == material_element || own == water_surface_element
-                 ? fmt::format("unknown element <{}>: write <{}>", element.name, own)
-                 : fmt::format("unknown element <{}>; expected <{}> or <{}>", element.name, material_element,
-                               water_surface_element));
+    const std::string own = similar_own_name(
+        std::string_view(element.name).substr(std::string_view("sonard:").size()), own_elements);
+    complain(own.empty() ? fmt::format("unknown element <{}>; expected <{}>", element.name,
+                                       fmt::join(own_elements, "> or <"))
+                         : fmt::format("unknown element <{}>: write <{}>", element.name, own));
   }
   if (parent.child(element.name) != &element) {
     complain(fmt::format("<{}> is given twice in <{}>", element.name, parent.name));
@@ -75,24 +98,48 @@ void check_own_attributes(const SdfElement& element, WorldProblems& problems) {
     const std::string* const type = element.attribute("type");
     if (key != sonar_attribute || element.name != "sensor" || element.parent == nullptr ||
         element.parent->name != "link" || type == nullptr || *type != "custom") {
-      problems.add(
-          fmt::format("{}: attribute '{}' of <{}> is not supported; expected {}, of a <sensor "
-                      "type=\"custom\"> in a <link>",
-                      element.place(), key, element.name, sonar_attribute));
+      problems.add(fmt::format("{}: attribute '{}' of <{}> is not supported; expected {}", element.place(),
+                               key, element.name, expected_attribute));
     }
   }
 }
 
-/// The name of ours that a name is probably meant to be: "sonard:material" for "sonar:Material" and
-/// "x:material", "sonard:x" for "sonar:x". Empty if the name belongs to another program.
-/// @param element that has the name as an attribute; empty if the name is an element's
-std::string meant_name(std::string_view prefix, std::string_view local, std::string_view element) {
-  const std::string own = "sonard:" + lower_case(local);
-  if (element.empty() ? own == material_element || own == water_surface_element
-                      : own == sonar_attribute && element == "sensor") {
-    return own;
+/// A name with a prefix that is not ours.
+struct ForeignName {
+  std::string_view prefix, local;
+  bool looks_like_sonard() const { return lower_case(prefix).starts_with("sonar"); }
+};
+
+/// nullopt: the name has no prefix, or ours, or one of XML.
+std::optional<ForeignName> foreign_name(std::string_view name) {
+  const std::size_t colon = name.find(':');
+  if (colon == std::string_view::npos) {
+    return std::nullopt;
   }
-  return lower_case(prefix).starts_with("sonar") ? fmt::format("sonard:{}", local) : "";
+  const ForeignName parts{name.substr(0, colon), name.substr(colon + 1)};
+  const bool is_known = parts.prefix == "sonard" || parts.prefix == "xml" || parts.prefix == "xmlns";
+  return is_known ? std::nullopt : std::optional(parts);
+}
+
+/// What is wrong with an element or attribute that looks like ours, and what to write; empty if it belongs to
+/// another program.
+std::string advice_for(const ForeignName& name, bool is_attribute) {
+  const std::string similar = is_attribute ? similar_own_name(name.local, own_attributes)
+                                           : similar_own_name(name.local, own_elements);
+  const std::string meant = is_attribute ? similar : fmt::format("<{}>", similar);
+  const std::string own = "sonard:" + lower_case(name.local);
+  if (own != similar && !name.looks_like_sonard()) {
+    return "";
+  }
+  if (similar.empty()) {
+    return fmt::format("prefix and name are not sonard's; expected {}",
+                       is_attribute ? std::string(expected_attribute)
+                                    : fmt::format("<{}>", fmt::join(own_elements, "> or <")));
+  }
+  return similar == fmt::format("sonard:{}", name.local)
+             ? fmt::format("its prefix is not sonard's; write {}, or declare xmlns:{}=\"{}\" in <sdf>", meant,
+                           name.prefix, own_namespace)
+             : fmt::format("prefix and name are not sonard's; write {}", meant);
 }
 
 struct LookAlike {
@@ -100,50 +147,63 @@ struct LookAlike {
   std::size_t count = 0;
 };
 
-/// @param element the element called `name`, or the element with the attribute `name`
-void note_look_alike(std::string_view name, const SdfElement& element, bool is_attribute,
-                     std::map<std::string, LookAlike>& found) {
-  const std::size_t colon = name.find(':');
-  if (colon == std::string_view::npos) {
-    return;
-  }
-  const std::string_view prefix = name.substr(0, colon);
-  const std::string_view local = name.substr(colon + 1);
-  const std::string meant = meant_name(prefix, local, is_attribute ? element.name : "");
-  if (prefix == "sonard" || prefix == "xml" || prefix == "xmlns" || meant.empty()) {
-    return;
-  }
-  LookAlike& kind = found[fmt::format("{} {}", is_attribute, name)];
-  if (kind.count++ == 0) {
-    const bool prefix_alone = meant.ends_with(fmt::format(":{}", local));
-    kind.line = fmt::format(
-        "{}: {} is left out: {} not sonard's; write {}{}", element.place(),
-        is_attribute ? fmt::format("attribute {} of <{}>", name, element.name) : fmt::format("<{}>", name),
-        prefix_alone ? "its prefix is" : "prefix and name are",
-        is_attribute ? meant : fmt::format("<{}>", meant),
-        prefix_alone ? fmt::format(", or declare xmlns:{}=\"{}\" in <sdf>", prefix, own_namespace) : "");
-  }
-}
-
-void find_look_alikes(const SdfElement& element, std::map<std::string, LookAlike>& found) {
-  note_look_alike(element.name, element, false, found);
-  for (const auto& [key, value] : element.attributes) {
-    note_look_alike(key, element, true, found);
-  }
-  for (const auto& child : element.children) {
-    if (element.name != "plugin") {
-      find_look_alikes(*child, found);
+/// Collects the kinds of elements and attributes that look like ours.
+class LookAlikes {
+ public:
+  void find_in(const SdfElement& element) {
+    if (const auto name = foreign_name(element.name)) {
+      add(element, fmt::format("<{}>", element.name), advice_for(*name, false));
+    }
+    for (const auto& [key, value] : element.attributes) {
+      const auto name = foreign_name(key);
+      if (name && (element.name == "sensor" || name->looks_like_sonard())) {
+        add(element, fmt::format("attribute {} of <{}>", key, element.name), advice_for(*name, true));
+      }
+    }
+    for (const auto& child : element.children) {
+      if (element.name == "plugin") {
+        find_in_plugin(*child);
+      } else {
+        find_in(*child);
+      }
     }
   }
-}
+
+  const std::map<std::string, LookAlike>& found() const { return found_; }
+
+ private:
+  /// Elements of a plugin belong to it, unless both prefix and name look like ours.
+  void find_in_plugin(const SdfElement& element) {
+    const auto name = foreign_name(element.name);
+    const std::string own =
+        name && name->looks_like_sonard() ? similar_own_name(name->local, own_elements) : "";
+    add(element, fmt::format("<{}> in a <plugin>", element.name),
+        own.empty() ? "" : fmt::format("write <{}> into {}", own, parents_of(own)));
+    for (const auto& child : element.children) {
+      find_in_plugin(*child);
+    }
+  }
+
+  void add(const SdfElement& element, const std::string& what, const std::string& advice) {
+    if (advice.empty()) {
+      return;
+    }
+    LookAlike& kind = found_[what];
+    if (kind.count++ == 0) {
+      kind.line = fmt::format("{}: {} is left out: {}", element.place(), what, advice);
+    }
+  }
+
+  std::map<std::string, LookAlike> found_;
+};
 
 }  // namespace
 
 std::vector<std::string> look_alikes(const SdfElement& root) {
-  std::map<std::string, LookAlike> found;
-  find_look_alikes(root, found);
+  LookAlikes look_alikes;
+  look_alikes.find_in(root);
   std::vector<std::string> lines;
-  for (const auto& [name, kind] : found) {
+  for (const auto& [what, kind] : look_alikes.found()) {
     lines.push_back(kind.line + (kind.count > 1 ? fmt::format(" ({} times in all)", kind.count) : ""));
   }
   return lines;

@@ -8,11 +8,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include <fmt/format.h>
 
+#include "common/text/edit_distance.hpp"
 #include "server/config/yaml_trouble.hpp"
+#include "server/net/interfaces.hpp"
 
 namespace sonard::server {
 namespace {
@@ -70,6 +71,20 @@ std::string ipv6_text(std::string_view value, std::string_view expected) {
                      expected);
 }
 
+/// The interface of this machine that `value` names, alone or before a port, if the key needs an address.
+std::optional<OwnAddress> interface_in_place_of_address(std::string_view value, std::string_view expected) {
+  const auto own = parse_own_address(value.substr(0, value.find(':')));
+  const bool named = own && !own->interface.empty() && own->trouble.empty();
+  return named && expected.find("address") != std::string_view::npos ? own : std::nullopt;
+}
+
+std::string interface_text(std::string_view value, std::string_view expected, const OwnAddress& own) {
+  return fmt::format(
+      "{} names an interface; only `alternate_address`, `address` and `netmask` under `network` can "
+      "(expected {}; {} has {})",
+      in_quotes(value), expected, own.interface, address_text(own.address));
+}
+
 /// A node as text; an IPv6 address in brackets, which YAML reads as a list, gets its own text.
 std::string describe_with_ipv6(const YAML::Node& node) {
   const bool address =
@@ -85,21 +100,6 @@ bool is_number_with_unit(std::string_view text) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   return error == std::errc{} && stop != end;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
 }
 
 /// In lower case, without the characters that separate words: "Fixed-Seed" as "fixedseed".
@@ -558,8 +558,13 @@ void YamlSection::problem(const SourcePosition& at, std::string path, std::strin
 }
 
 void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {
-  report(key, is_ipv6(value) ? ipv6_text(value, expected)
-                             : fmt::format("{} is not understood (expected {})", in_quotes(value), expected));
+  if (is_ipv6(value)) {
+    report(key, ipv6_text(value, expected));
+  } else if (const auto own = interface_in_place_of_address(value, expected)) {
+    report(key, interface_text(value, expected, *own));
+  } else {
+    report(key, fmt::format("{} is not understood (expected {})", in_quotes(value), expected));
+  }
 }
 
 void YamlSection::report_unknown(const Entry& entry) {

@@ -245,6 +245,35 @@ TEST(Prefix, IsNamedWithTheNameIfTheirLettersAreCapital) {
       Contains(HasSubstr("unknown element <sonard:Material>: write <sonard:material>")));
 }
 
+// The advice names only elements that sonard has.
+TEST(Prefix, GetsTheMostSimilarNameAsAdvice) {
+  const std::string box = "<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box/></geometry>";
+  const World world = load_text(
+      box + "<sonar:materials>mud</sonar:materials><sonar:range>20</sonar:range></visual></link></model>");
+  EXPECT_THAT(world.warnings,
+              testing::UnorderedElementsAre(
+                  testing::EndsWith("<sonar:materials> is left out: prefix and name are not sonard's; write "
+                                    "<sonard:material>"),
+                  testing::EndsWith("<sonar:range> is left out: prefix and name are not sonard's; expected "
+                                    "<sonard:material> or <sonard:water_surface_z>")));
+  const test::TempFolder folder;
+  EXPECT_THAT(
+      complaints(folder.write(
+          "w.sdf", in_a_world(box + "<sonard:materials>mud</sonard:materials></visual></link></model>"))),
+      Contains(HasSubstr("unknown element <sonard:materials>: write <sonard:material>")));
+}
+
+// sonard reads nothing in a plugin. Other contents of it belong to the plugin.
+TEST(Prefix, IsNamedInAPlugin) {
+  const World world =
+      load_text("<model name=\"m\"><link name=\"l\">" + small_box +
+                "</link><plugin name=\"p\" filename=\"f\"><sonar:material>mud</sonar:material>"
+                "<sonar:range>20</sonar:range><gz:material/></plugin></model>");
+  EXPECT_THAT(world.warnings, ElementsAre(testing::EndsWith(
+                                  "<sonar:material> in a <plugin> is left out: write "
+                                  "<sonard:material> into one of: visual, collision, link, model")));
+}
+
 TEST(Prefix, OfAnotherProgramIsItsOwnBusiness) {
   const World world = load_text("<model name=\"m\"><link name=\"l\">" + small_box +
                                 "<gz:system_priority>5</gz:system_priority><drake:joint/></link></model>");

@@ -17,6 +17,7 @@
 #include "server/devices/gemini/kind.hpp"
 #include "server/devices/kinds/kinds.hpp"
 #include "server/devices/micron/kind.hpp"
+#include "server/net/interfaces.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
 namespace sonard::server {
@@ -907,6 +908,21 @@ TEST_F(Loader, names_decimal_commas) {
   EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {position_m: [1,5, 2,0, 3,1]}}\n"),
               Contains(AllOf(StartsWith("config.yaml:2:31: poses.initial.position_m: is a list of 6"),
                              HasSubstr("decimals need a point"))));
+}
+
+TEST_F(Loader, says_which_keys_take_an_interface) {
+  const std::vector<InterfaceAddress> interfaces = interface_addresses();
+  if (interfaces.empty()) {
+    GTEST_SKIP() << "no interface has an address";
+  }
+  const InterfaceAddress& one = interfaces.front();
+  EXPECT_THAT(
+      complaints(fmt::format("world: {{file: w}}\nposes:\n  udp: {{bind: \"{}:14600\"}}\n", one.interface)),
+      Contains(HasSubstr(
+          fmt::format("poses.udp.bind: '{0}:14600' names an interface; only `alternate_address`, `address` "
+                      "and `netmask` under `network` can (expected an address and port such as "
+                      "127.0.0.1:14600; {0} has {1})",
+                      one.interface, address_text(one.address)))));
 }
 
 TEST_F(Loader, names_ipv6_addresses) {
