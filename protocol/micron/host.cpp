@@ -44,6 +44,9 @@ void Host::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
   const FrameHeader header = frame_header(frame);
   if (header.tx_node != config_.node || header.rx_node != host_node) {
     ++statistics_.other_nodes;
+    if (header.rx_node == host_node) {
+      other_heads_.insert(header.tx_node);
+    }
     return;
   }
   const auto report = decode_report(frame);

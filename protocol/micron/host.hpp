@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -86,6 +87,8 @@ class Host {
   std::vector<ReceivedLine> take_lines();
 
   const HeadIdentity& head() const { return head_; }
+  /// Nodes other than the head that sent frames to this host.
+  const std::set<std::uint8_t>& other_heads() const { return other_heads_; }
   /// True if all lines of start() are delivered, or stop() was called.
   bool finished() const { return stopped_ || (programme_ && programme_->finished()); }
   const HostStatistics& statistics() const { return statistics_; }
@@ -124,6 +127,7 @@ class Host {
   HostConfig config_;
   FrameBuffer input_;
   HeadIdentity head_;
+  std::set<std::uint8_t> other_heads_;
   Phase phase_ = Phase::meeting;
   std::optional<TimePoint> due_;  ///< time-out of the phase
   int tries_ = 0;       ///< user blocks: requests without an answer; configuring: alives without effect;

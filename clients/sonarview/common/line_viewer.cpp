@@ -166,7 +166,7 @@ void LineViewer::check_limits(TimePoint at) {
     if (spoke_) {
       give_up(ExitStatus::incomplete, line_text_ + " did not open again " + why);
     } else {
-      give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why);
+      give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why + not_open_advice());
     }
   } else if (!met_at_ && over(started_, options_.wait)) {
     give_up(ExitStatus::no_head, no_head_text(wait_s));

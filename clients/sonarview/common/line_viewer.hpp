@@ -71,6 +71,8 @@ class LineViewer {
   virtual std::string progress_text(std::uint64_t fresh) const = 0;
   /// Why no head was found within `wait_s`, if the line is open or no address is known yet.
   virtual std::string no_head_text(double wait_s) const = 0;
+  /// Advice if the line cannot be opened: "; ..." or "".
+  virtual std::string not_open_advice() const { return {}; }
   /// Why no ping arrived within `wait_s`.
   virtual std::string no_ping_text(double wait_s) const = 0;
   /// Prints the summary. Returns whether all requested data arrived.

@@ -188,15 +188,21 @@ void WatchedHead::check_limits(TimePoint at) {
                      std::chrono::duration<double>(options_.run.wait).count(), advice()));
   } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
              at - last_ping_at_ >= options_.run.ping_wait) {
-    fail(
-        ExitStatus::incomplete,
-        fmt::format(
-            "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from "
-            "{}, and that it has a pose",
-            std::chrono::duration<double>(options_.run.ping_wait).count(),
-            address_text(topside_.head()->address), gemini::head_port,
-            address_text(options_.topside_address)));
+    fail(ExitStatus::incomplete, no_ping_text());
   }
+}
+
+std::string WatchedHead::no_ping_text() const {
+  const gemini::HeadInfo& head = *topside_.head();
+  const std::string own = address_text(head.status.alternate_ip);
+  return fmt::format(
+      "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from {}, "
+      "and that it has a pose{}",
+      std::chrono::duration<double>(options_.run.ping_wait).count(), address_text(head.address),
+      gemini::head_port, address_text(options_.topside_address),
+      head.address == head.status.alternate_ip
+          ? ""
+          : fmt::format(". Its status gives the address {} (to use it, omit --head)", own));
 }
 
 void WatchedHead::fail(ExitStatus status, const std::string& why) {

@@ -46,6 +46,7 @@ class WatchedHead {
  private:
   void note_other_head(std::span<const std::uint8_t> datagram);
   std::string advice() const;
+  std::string no_ping_text() const;
   void send_commands();
   void take_ping(gemini::ReceivedPing ping);
   void greet_head();

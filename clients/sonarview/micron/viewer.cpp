@@ -2,6 +2,7 @@
 #include "clients/sonarview/micron/viewer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <optional>
@@ -185,9 +186,13 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
-  return fmt::format(
-      "{} is open, but head {} sent nothing within {:.1f} s: check its power, line, baud rate and node",
-      options_.line.text(), options_.host.node, wait_s);
+  const auto& others = host_.other_heads();
+  const std::string advice = others.empty()
+                                 ? "check its power, line, baud rate and node"
+                                 : fmt::format("only node {} sent frames (to view one, use --node {})",
+                                               fmt::join(others, ", node "), *others.begin());
+  return fmt::format("{} is open, but head {} sent nothing within {:.1f} s: {}", options_.line.text(),
+                     options_.host.node, wait_s, advice);
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {

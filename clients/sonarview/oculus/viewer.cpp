@@ -2,11 +2,14 @@
 #include "clients/sonarview/oculus/viewer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/crc.hpp>
 #include <cstdio>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -27,6 +30,10 @@ std::string one_line(std::string text) {
   return printable(text);
 }
 
+std::string address_of(const oculus::Status& status) {
+  return fmt::format("{}", fmt::join(status.address, "."));
+}
+
 class Viewer final : public LineViewer {
  public:
   explicit Viewer(const OculusOptions& options)
@@ -45,6 +52,7 @@ class Viewer final : public LineViewer {
   void finish_pictures(ImageWriter& to) override;
   std::string progress_text(std::uint64_t fresh) const override;
   std::string no_head_text(double wait_s) const override;
+  std::string not_open_advice() const override;
   std::string no_ping_text(double wait_s) const override;
   bool sum_up(const RunCounters& counters) override;
 
@@ -53,7 +61,8 @@ class Viewer final : public LineViewer {
   void take_ping(oculus::ReceivedPing ping);
 
   const OculusOptions options_;
-  std::optional<StatusListener> statuses_;  ///< until the head's address is known
+  std::optional<StatusListener> statuses_;  ///< until the connection is open
+  std::set<std::string> addresses_;         ///< of the heads that sent a status
   bool connected_ = false;                  ///< whether the connection was ever open
   oculus::Host host_;
   OculusPictures pictures_;
@@ -61,24 +70,28 @@ class Viewer final : public LineViewer {
 };
 
 void Viewer::begin(TimePoint) {
+  const Endpoint bind{options_.bind_address, options_.status_port};
   if (options_.head.empty()) {
-    statuses_.emplace(io(), Endpoint{options_.bind_address, options_.status_port},
-                      [this](const oculus::Status& status) { meet(status); });
-  } else {
-    connect_to(options_.head);
+    statuses_.emplace(io(), bind, [this](const oculus::Status& status) { meet(status); });
+    return;
   }
+  try {
+    statuses_.emplace(io(), bind,
+                      [this](const oculus::Status& status) { addresses_.insert(address_of(status)); });
+  } catch (const std::runtime_error&) {
+    // Statuses would only help to explain why no head answers at --head.
+  }
+  connect_to(options_.head);
 }
 
 void Viewer::meet(const oculus::Status& status) {
-  const auto& octets = status.address;
   const auto& client = status.client;
   if (!options_.run.quiet) {
-    fmt::print(stderr, "sonarview: head {}, part {}, at {}.{}.{}.{}{}\n", status.device_id,
-               status.part_number, octets[0], octets[1], octets[2], octets[3],
-               client == decltype(status.client){} ? "" : ", which already has a client");
+    fmt::print(stderr, "sonarview: head {}, part {}, at {}{}\n", status.device_id, status.part_number,
+               address_of(status), client == decltype(status.client){} ? "" : ", which already has a client");
   }
   statuses_->close();
-  connect_to(fmt::format("{}.{}.{}.{}", octets[0], octets[1], octets[2], octets[3]));
+  connect_to(address_of(status));
 }
 
 void Viewer::connect_to(const std::string& address) {
@@ -87,6 +100,9 @@ void Viewer::connect_to(const std::string& address) {
 
 void Viewer::on_opened() {
   connected_ = true;
+  if (statuses_) {
+    statuses_->close();
+  }
   host_.connected();
   send(oculus::encode(options_.fire));
 }
@@ -153,6 +169,12 @@ std::string Viewer::no_head_text(double wait_s) const {
       "no status on port {} within {:.1f} s: check that sonard runs, that it sends its status to this "
       "address or broadcasts it on this network, and that no firewall blocks UDP",
       options_.status_port, wait_s);
+}
+
+std::string Viewer::not_open_advice() const {
+  return addresses_.empty() ? ""
+                            : fmt::format("; a status came from {} (to view one, use --head {})",
+                                          fmt::join(addresses_, ", "), *addresses_.begin());
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {

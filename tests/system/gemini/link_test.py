@@ -264,6 +264,15 @@ class Topsides(LinkTest):
                       f"at {SECOND_HEAD_ADDRESS} sent a status (to view one, use --sonar-id 513)", viewer.output())
         self.end_daemon(daemon)
 
+    def test_a_wrong_address_is_told_with_the_address_in_the_status(self):
+        lab = self.make_lab()
+        daemon = self.start_daemon(lab, self.head_config())
+        viewer = lab.start(lab.topside, os.path.join(PROGRAMS, "sonarview"), "--head", HEAD_ADDRESS.rpartition(".")[0] + ".250",
+                           "--ping-wait", "2", "--pings", "1")
+        self.assertEqual(viewer.wait(PATIENCE_S), 4, viewer.tail())
+        self.assertIn(f"Its status gives the address {HEAD_ADDRESS} (to use it, omit --head)", viewer.output())
+        self.end_daemon(daemon)
+
     def test_daemon_ends_within_a_second_while_it_pings(self):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config())

@@ -32,13 +32,14 @@ class Demo(HeadCase):
                 self.assertEqual(file.read(4), b"\x89PNG")
 
     def test_sonarview_says_why_there_is_no_head(self):
-        view = [os.path.join(self.PROGRAMS, "sonarview"), "oculus", "--wait", "1"]
-        viewer = self.start(*view, "--status-port", "52103")
+        view = [os.path.join(self.PROGRAMS, "sonarview"), "oculus"]
+        viewer = self.start(*view, "--wait", "1", "--status-port", "52103")
         self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
         self.assertIn("no status on port 52103 within 1.0 s", viewer.output())
-        viewer = self.start(*view, "--head", "127.0.0.9")
+        viewer = self.start(*view, "--wait", "3", "--head", "127.0.0.9")
         self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
-        self.assertIn("cannot open tcp 127.0.0.9:52100 within 1.0 s: Connection refused", viewer.output())
+        self.assertIn("cannot open tcp 127.0.0.9:52100 within 3.0 s: Connection refused; a status came from 127.0.0.3 "
+                      "(to view one, use --head 127.0.0.3)", viewer.output())
 
     # ---- Status (6)
 

@@ -282,7 +282,10 @@ TEST_F(SonarviewMicron, a_line_that_nobody_answers_on_has_no_head) {
                                   .echo = echo});
   const ProcessResult result = run({"--tty", other.tty(), "--node", "2", "--wait", "3"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.err, HasSubstr("is open, but head 2 sent nothing within 3.0 s"));
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("is open, but head 2 sent nothing within 3.0 s: only node 7 sent frames (to view one, use "
+                "--node 7)"));
   EXPECT_EQ(run({"--tty", other.tty(), "--node", "7", "--lines", "4"}).exit_code, 0);
 }
 

@@ -216,6 +216,7 @@ TEST(Host, frames_of_other_nodes_are_passed_over) {
   alive[8] = 2;
   host.on_bytes(0ns, alive);
   EXPECT_EQ(host.statistics().other_nodes, 2U);
+  EXPECT_EQ(host.other_heads(), std::set<std::uint8_t>{20}) << "the second frame is for another host";
   EXPECT_EQ(host.statistics().alives, 0U);
   EXPECT_TRUE(host.take_outgoing().empty());
 }
