@@ -41,8 +41,8 @@ TEST(DeviceKinds, MakeAHeadThatCanBeRenderedAndRecorded) {
   }
 }
 
-// `sonard check` renders the usual ping, and the daemon the pings of clients. A survey without options has the
-// settings of `sonarview` without options.
+// `sonard check` renders the usual ping, and the daemon the pings of clients. A survey without options has
+// the settings of `sonarview` without options.
 TEST(DeviceKinds, UsualPingIsAsLoudAndLongAsThatOfAClient) {
   for (const DeviceKind* kind : device_kinds()) {
     const HeadConfig head = kind->make_default();
