@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <utility>
 
 #include "protocol/mcap/compression.hpp"
@@ -37,87 +38,175 @@ std::optional<WireError> take(const Record& record, Chunk& chunk) {
   return std::nullopt;
 }
 
-/// True if the sizes in the front of a chunk match the length of its record, which is no coincidence.
-bool looks_like_chunk(ByteView content) {
-  ByteReader reader{content};
-  reader.skip(8 + 8 + 8 + 4, "chunk.front");
-  const std::uint32_t compression_size = reader.u32le("chunk.compression");
-  reader.skip(compression_size, "chunk.compression");
-  const std::uint64_t stored_size = reader.u64le("chunk.records");
-  return reader.ok() && stored_size == reader.remaining();
-}
+/// Parts of a record's content: a number of bytes, or bytes after their length in 32 or 64 bits.
+constexpr int sized_32 = -4;
+constexpr int sized_64 = -8;
+using Form = std::initializer_list<int>;
 
-/// Channel and number of entries; nullopt if the content is not a message index.
-std::optional<std::pair<std::uint16_t, std::uint64_t>> read_message_index(ByteView content) {
-  constexpr std::size_t entry_size = 16;
+/// True if the content is exactly these parts.
+bool consists_of(ByteView content, Form form) {
   ByteReader reader{content};
-  const std::uint16_t channel_id = reader.u16le("message_index.channel_id");
-  const std::uint32_t size = reader.u32le("message_index.records");
-  if (!reader.ok() || size != reader.remaining() || size % entry_size != 0) {
-    return std::nullopt;
-  }
-  return std::pair{channel_id, std::uint64_t{size / entry_size}};
-}
-
-/// True if the content is exactly `fixed` bytes and `strings` strings.
-bool consists_of(ByteView content, std::size_t fixed, int strings) {
-  ByteReader reader{content};
-  reader.skip(fixed, "fixed");
-  for (int i = 0; i < strings; ++i) {
-    reader.skip(reader.u32le("size"), "string");
+  for (const int part : form) {
+    const std::uint64_t size = part == sized_32   ? reader.u32le("size")
+                               : part == sized_64 ? reader.u64le("size")
+                                                  : static_cast<std::uint64_t>(part);
+    if (size > reader.remaining()) {
+      return false;
+    }
+    reader.skip(static_cast<std::size_t>(size), "part");
   }
   return reader.ok() && reader.remaining() == 0;
 }
 
-/// True if the sizes in the content match its length, for a record of the data section of type `opcode`.
+/// True if the sizes in the front of a chunk match the length of its record, which is no coincidence.
+bool looks_like_chunk(ByteView content) {
+  return consists_of(content, {28, sized_32, sized_64});
+}
+
+/// The content of a message index.
+struct MessageIndex {
+  std::uint16_t channel_id = 0;
+  std::vector<IndexEntry> entries;
+};
+
+/// nullopt if the content is not a message index.
+std::optional<MessageIndex> read_message_index(ByteView content) {
+  constexpr std::size_t entry_size = 16;
+  ByteReader reader{content};
+  MessageIndex index{.channel_id = reader.u16le("message_index.channel_id"), .entries = {}};
+  const std::uint32_t size = reader.u32le("message_index.records");
+  if (!reader.ok() || size != reader.remaining() || size % entry_size != 0) {
+    return std::nullopt;
+  }
+  index.entries.resize(size / entry_size);
+  for (IndexEntry& entry : index.entries) {
+    entry.log_time_ns = reader.u64le("message_index.log_time");
+    entry.offset = reader.u64le("message_index.offset");
+  }
+  return index;
+}
+
+/// True if the sizes in the content match its length, for a record of type `opcode`; false for a message,
+/// which has no such sizes, and for an unknown type.
 bool has_form(ByteView content, Opcode opcode) {
   switch (opcode) {
     case Opcode::chunk:
       return looks_like_chunk(content);
     case Opcode::message_index:
-      return read_message_index(content).has_value();
+      return consists_of(content, {2, sized_32}) && (content.size() - 6) % 16 == 0;
     case Opcode::header:
-      return consists_of(content, 0, 2);
+    case Opcode::metadata:
+      return consists_of(content, {sized_32, sized_32});
     case Opcode::schema:
-      return consists_of(content, 2, 3);
+      return consists_of(content, {2, sized_32, sized_32, sized_32});
     case Opcode::channel:
-      return consists_of(content, 4, 3);
+      return consists_of(content, {4, sized_32, sized_32, sized_32});
+    case Opcode::attachment:
+      return consists_of(content, {16, sized_32, sized_32, sized_64, 4});
+    case Opcode::chunk_index:
+      return consists_of(content, {32, sized_32, 8, sized_32, 16});
+    case Opcode::statistics:
+      return consists_of(content, {42, sized_32});
+    case Opcode::summary_offset:
+      return content.size() == 17;
+    case Opcode::footer:
+      return content.size() == 20;
     case Opcode::data_end:
       return content.size() == 4;
-    default:
-      return false;
+    case Opcode::message:
+      break;
   }
+  return false;
 }
 
 bool is_consistent(const Record& record) {
   return has_form(record.content, static_cast<Opcode>(record.opcode));
 }
 
-/// Whether the content has the form of a record of any type except a chunk.
-bool looks_like_no_chunk(ByteView content) {
-  constexpr std::array others{Opcode::message_index, Opcode::header, Opcode::schema, Opcode::channel,
-                              Opcode::data_end};
-  return std::ranges::any_of(others, [&](Opcode opcode) { return has_form(content, opcode); });
+/// True for a type of a later version or of another program.
+/// A type of zero comes from a part of the disk that was never written.
+bool is_unknown(const Record& record) {
+  constexpr std::uint8_t last_known = 0x0F;
+  return record.opcode > last_known || record.opcode == 0x0A || record.opcode == 0x0D;
 }
 
-/// True if the unreadable record at `at` is a chunk. With one wrong bit its type or its length is correct.
-bool was_chunk(ByteView file, std::size_t at) {
+bool is_definition(const Record& record) {
+  return record.is(Opcode::schema) || record.is(Opcode::channel);
+}
+
+/// True if records of the data section begin at `at`. Bytes inside a record rarely look so: records of
+/// unknown types and definitions, which are also inside chunks, must lead to another consistent record.
+bool leads_on(ByteView file, std::size_t at) {
+  constexpr int enough = 64;  // so many whole records in a row are no coincidence
+  for (int i = 0; i < enough; ++i) {
+    if (at == file.size() || open_chunk_records(file, at)) {
+      return true;
+    }
+    const auto record = record_at(file, at);
+    if (!record || !(is_unknown(*record) || is_consistent(*record))) {
+      return false;
+    }
+    if (!is_unknown(*record) && !is_definition(*record)) {
+      return true;
+    }
+    at = record->end();
+  }
+  return true;
+}
+
+constexpr std::array types_without_messages{Opcode::message_index, Opcode::header, Opcode::schema,
+                                            Opcode::channel, Opcode::data_end};
+
+/// Whether the content has the form of a record of any type except a chunk.
+bool looks_like_no_chunk(ByteView content) {
+  return std::ranges::any_of(types_without_messages,
+                             [&](Opcode opcode) { return has_form(content, opcode); });
+}
+
+bool has_type_without_messages(const Record& record) {
+  return std::ranges::find(types_without_messages, static_cast<Opcode>(record.opcode)) !=
+         types_without_messages.end();
+}
+
+/// What the skipped bytes from `at` to `next` held. With one wrong bit the type or the length of a record is
+/// correct.
+Holds held(ByteView file, std::size_t at, std::size_t next) {
   const auto record = record_at(file, at);
   const bool named = file[at] == static_cast<std::uint8_t>(Opcode::chunk);
-  return record ? looks_like_chunk(record->content) || (named && !looks_like_no_chunk(record->content))
-                : named;
+  if (record ? looks_like_chunk(record->content) || (named && !looks_like_no_chunk(record->content))
+             : named) {
+    return Holds::chunk;
+  }
+  constexpr std::size_t smallest = chunk_start_size + record_prefix_size + 22;  // a chunk with one message
+  const bool is_known = record && record->end() == next && has_type_without_messages(*record);
+  return next - at < smallest || is_known ||
+                 looks_like_no_chunk(file.subspan(at + record_prefix_size, next - at - record_prefix_size))
+             ? Holds::no_message
+             : Holds::unknown;
+}
+
+/// True if a reader that searches for a record may continue with the one at `at`.
+bool is_found(ByteView file, std::size_t at) {
+  const auto record = record_at(file, at);
+  if (!record || !is_consistent(*record)) {
+    return false;
+  }
+  if (record->is(Opcode::chunk)) {
+    return record->content.size() > chunk_start_size - record_prefix_size;  // not empty, as zeros would be
+  }
+  return has_type_without_messages(*record) && leads_on(file, record->end());
 }
 
 /// The offset to continue at after an unreadable record at `from`: its end if the sizes in it match its
-/// length, else at the next consistent record.
+/// length and a record follows there, else at the next consistent record.
 std::optional<std::size_t> next_readable(ByteView file, std::size_t from) {
   const auto damaged = record_at(file, from);
-  if (damaged && (looks_like_chunk(damaged->content) || looks_like_no_chunk(damaged->content))) {
+  if (damaged && (looks_like_chunk(damaged->content) || looks_like_no_chunk(damaged->content)) &&
+      leads_on(file, damaged->end())) {
     return damaged->end();
   }
   for (std::size_t at = from + 1; at < file.size(); ++at) {
-    const auto record = record_at(file, at);
-    if (record && is_consistent(*record)) {
+    if (is_found(file, at)) {
       return at;
     }
   }
@@ -136,9 +225,35 @@ void set_times(Chunk& chunk) {
 /// The state of scan_data_section().
 class Scanner {
  public:
-  explicit Scanner(std::size_t start) { section_.end = start; }
+  Scanner(ByteView file, std::size_t start) : file_(file) { section_.end = start; }
 
-  /// Handles one record. @return false: stop here
+  /// Handles the next record. @return false: this is the end of the data section, or damage
+  bool take_next() {
+    const auto record = record_at(file_, section_.end);
+    if (const auto records = open_chunk_records(file_, section_.end)) {
+      return take_open_chunk(*records, record ? record->end() : 0);
+    }
+    return record && take(*record);
+  }
+
+  /// Continues after damage. @return false: this is the end of the data section, or no record follows
+  bool skip_damage() {
+    if (section_.ended || section_.end >= file_.size()) {
+      return false;
+    }
+    const bool in_open_chunk = end_of_damaged_chunk_ > section_.end;
+    const auto next = in_open_chunk && leads_on(file_, end_of_damaged_chunk_)
+                          ? std::optional(end_of_damaged_chunk_)
+                          : next_readable(file_, section_.end);
+    if (next) {
+      skip_to(*next, in_open_chunk ? Holds::messages : held(file_, section_.end, *next));
+    }
+    return next.has_value();
+  }
+
+  DataSection done() && { return std::move(section_); }
+
+ private:
   bool take(const Record& record) {
     if (record.is(Opcode::data_end) && is_consistent(record)) {
       section_.ended = true;
@@ -153,8 +268,9 @@ class Scanner {
     return true;
   }
 
-  /// Handles an open chunk. @return false: stop here
-  bool take_open_chunk(std::size_t offset, ByteView records) {
+  /// @param stated_end where the chunk ends by its length, which may be outdated
+  bool take_open_chunk(ByteView records, std::size_t stated_end) {
+    const std::size_t offset = section_.end;
     auto chunk = read_chunk_records(records);
     if (!chunk) {
       section_.error = shifted(chunk.error(), offset + chunk_start_size);
@@ -162,27 +278,23 @@ class Scanner {
     }
     section_.end = offset + chunk_start_size + records.size();
     add(std::move(*chunk), offset, section_.end, true);
-    return true;
+    end_of_damaged_chunk_ = stated_end;
+    if (stated_end > section_.end) {  // one of its records has a wrong type or length
+      section_.error = WireError{WireErrorReason::truncated, section_.end, "record"};
+    }
+    return !section_.error;
   }
-
-  enum class Skipped : std::uint8_t { chunk, end_of_chunk, other };
 
   /// Continues at `next` and lists the bytes before it as damaged.
-  void skip_to(std::size_t next, Skipped what) {
+  void skip_to(std::size_t next, Holds holds) {
     const WireError truncated{WireErrorReason::truncated, section_.end, "record"};
-    section_.damaged.push_back({{section_.end, next - section_.end, section_.error.value_or(truncated)},
-                                {},
-                                what != Skipped::other});
+    section_.damaged.push_back(
+        {{section_.end, next - section_.end, section_.error.value_or(truncated)}, {}, holds});
     section_.error.reset();
     section_.end = next;
-    behind_damage_ = behind_damage_ || what == Skipped::chunk;
+    behind_damage_ = behind_damage_ || holds != Holds::no_message;
   }
 
-  std::size_t end() const { return section_.end; }
-  bool ended() const { return section_.ended; }
-  DataSection done() && { return std::move(section_); }
-
- private:
   std::optional<WireError> take_in(const Record& record) {
     if (record.is(Opcode::chunk)) {
       return take_chunk(record);
@@ -190,7 +302,11 @@ class Scanner {
     if (record.is(Opcode::message_index)) {
       return take_message_index(record);
     }
-    if ((record.is(Opcode::schema) || record.is(Opcode::channel)) && !is_consistent(record)) {
+    if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
+        record.is(Opcode::data_end) || record.opcode == 0 || looks_like_chunk(record.content)) {
+      return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
+    }
+    if (is_unknown(record) ? !leads_on(file_, record.end()) : !is_consistent(record)) {
       return WireError{WireErrorReason::bad_length, record.offset + 1,
                        "length"};  // a wrong length would hide the next records
     }
@@ -199,11 +315,6 @@ class Scanner {
     }
     if (record.is(Opcode::channel)) {
       return put(read_channel(record));
-    }
-    // An opcode of zero comes from a part of the disk that was never written.
-    if (record.is(Opcode::message) || record.is(Opcode::header) || record.is(Opcode::footer) ||
-        record.is(Opcode::data_end) || record.opcode == 0 || looks_like_chunk(record.content)) {
-      return WireError{WireErrorReason::bad_value, record.offset, "opcode"};
     }
     return std::nullopt;
   }
@@ -250,19 +361,23 @@ class Scanner {
     if (!index || (section_.summary.chunks.empty() && !behind_damage_)) {
       return WireError{WireErrorReason::bad_value, record.offset, "message_index"};
     }
-    const auto [channel_id, messages] = *index;
-    if (behind_damage_) {  // this is the index of a skipped chunk
-      section_.damaged.back().lost_messages[channel_id] += messages;
+    const auto of_last_chunk = section_.last_indexes.find(index->channel_id);
+    if (behind_damage_ &&
+        (of_last_chunk == section_.last_indexes.end() || of_last_chunk->second != index->entries)) {
+      // This is the index of a skipped chunk.
+      section_.damaged.back().lost_messages[index->channel_id] += index->entries.size();
       return std::nullopt;
     }
     ChunkIndex& chunk = section_.summary.chunks.back();
-    chunk.message_index_offsets[channel_id] = record.offset;
+    chunk.message_index_offsets[index->channel_id] = record.offset;
     chunk.message_index_length += record.end() - record.offset;
     return std::nullopt;
   }
 
+  ByteView file_;
   DataSection section_;
-  bool behind_damage_ = false;  ///< the last chunk was skipped
+  std::size_t end_of_damaged_chunk_ = 0;  ///< stated end of an open chunk with a damaged record
+  bool behind_damage_ = false;            ///< after the last chunk, bytes were skipped that may be chunks
 };
 
 }  // namespace
@@ -370,8 +485,8 @@ std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const Chu
     const auto record = record_at(file, static_cast<std::size_t>(offset));
     const auto read =
         record && record->is(Opcode::message_index) ? read_message_index(record->content) : std::nullopt;
-    if (read && read->first == channel_id) {
-      messages.emplace(*read);
+    if (read && read->channel_id == channel_id) {
+      messages.emplace(channel_id, read->entries.size());
     }
   }
   return messages;
@@ -393,30 +508,10 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
   if (is_header && on_damage == OnDamage::skip) {
     is_header = is_consistent(*record);  // the length of the header may be damaged
   }
-  Scanner scanner{is_header ? record->end() : magic.size()};
-  while (true) {
-    bool goes_on = false;
-    if (const auto records = open_chunk_records(file, scanner.end())) {
-      const auto whole = record_at(file, scanner.end());
-      goes_on = scanner.take_open_chunk(scanner.end(), *records);
-      if (on_damage == OnDamage::skip && goes_on && whole && whole->end() > scanner.end()) {
-        scanner.skip_to(whole->end(),
-                        Scanner::Skipped::end_of_chunk);  // one of its records has a wrong type or length
-      }
-    } else {
-      record = record_at(file, scanner.end());
-      goes_on = record && scanner.take(*record);
-    }
-    if (!goes_on) {
-      const bool skips = on_damage == OnDamage::skip && !scanner.ended() && scanner.end() < file.size();
-      const auto next = skips ? next_readable(file, scanner.end()) : std::nullopt;
-      if (!next) {
-        return std::move(scanner).done();
-      }
-      scanner.skip_to(*next,
-                      was_chunk(file, scanner.end()) ? Scanner::Skipped::chunk : Scanner::Skipped::other);
-    }
+  Scanner scanner{file, is_header ? record->end() : magic.size()};
+  while (scanner.take_next() || (on_damage == OnDamage::skip && scanner.skip_damage())) {
   }
+  return std::move(scanner).done();
 }
 
 }  // namespace sonard::mcap

@@ -51,11 +51,19 @@ std::optional<ByteView> open_chunk_records(ByteView file, std::size_t offset);
 /// Adds new schemas and channels and the number of messages to `summary`.
 void add_contents(const Chunk& chunk, Summary& summary);
 
+/// What an unreadable part of the data section held.
+enum class Holds : std::uint8_t {
+  chunk,       ///< a chunk, whose message indexes may follow
+  messages,    ///< a part of an open chunk
+  no_message,  ///< a header, schema, channel or index
+  unknown,     ///< perhaps chunks
+};
+
 /// An unreadable part of the data section.
 struct DamagedChunk : Damage {
   /// By channel, from the message indexes after the chunk; empty if these are unreadable, too.
   std::map<std::uint16_t, std::uint64_t> lost_messages;
-  bool holds_messages = true;  ///< false: a header, schema, channel or index, so no message is lost
+  Holds holds = Holds::chunk;
 };
 
 /// Result of a scan of a file.

@@ -39,7 +39,9 @@ enum class Opcode : std::uint8_t {
   chunk = 0x06,
   message_index = 0x07,
   chunk_index = 0x08,
+  attachment = 0x09,
   statistics = 0x0B,
+  metadata = 0x0C,
   summary_offset = 0x0E,
   data_end = 0x0F,
 };

@@ -149,11 +149,11 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
 }
 
 std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {
-  if (!part.holds_messages) {
+  if (part.holds == mcap::Holds::no_message) {
     return "no ping is lost";
   }
   if (part.lost_messages.empty()) {
-    return "its pings are lost";
+    return part.holds == mcap::Holds::unknown ? "pings may be lost" : "its pings are lost";
   }
   std::uint64_t pings = 0;
   for (const auto& [channel, messages] : part.lost_messages) {

@@ -16,17 +16,25 @@ from .damage import warn, warn_of_bytes, warn_of_end
 from .ping import Array, LoggedPing, is_plausible_time
 
 MAGIC = b"\x89MCAP0\r\n"
-_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _ATTACHMENT, _STATISTICS, _METADATA, _DATA_END = (
-    1, 2, 3, 4, 5, 6, 7, 9, 11, 12, 15)
-# Fixed bytes of a record, and the number of fields with a length that follow them.
-_FORMS = {_HEADER: (0, 2), _FOOTER: (20, 0), _SCHEMA: (2, 3), _CHANNEL: (4, 3), _MESSAGE_INDEX: (2, 1),
-          _STATISTICS: (42, 1), _METADATA: (0, 2), _DATA_END: (4, 0)}
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = 1, 2, 3, 4, 5, 6, 7, 8
+_ATTACHMENT, _STATISTICS, _METADATA, _SUMMARY_OFFSET, _DATA_END = 9, 11, 12, 14, 15
+_LAST_KNOWN = 15
+# Parts of a record's content: a number of bytes, or bytes after their length in 32 or 64 bits.
+_SIZED_32, _SIZED_64 = -4, -8
+_FORMS = {_HEADER: (_SIZED_32, _SIZED_32), _FOOTER: (20,), _SCHEMA: (2, _SIZED_32, _SIZED_32, _SIZED_32),
+          _CHANNEL: (4, _SIZED_32, _SIZED_32, _SIZED_32), _CHUNK: (28, _SIZED_32, _SIZED_64),
+          _MESSAGE_INDEX: (2, _SIZED_32), _CHUNK_INDEX: (32, _SIZED_32, 8, _SIZED_32, 16),
+          _ATTACHMENT: (16, _SIZED_32, _SIZED_32, _SIZED_64, 4), _STATISTICS: (42, _SIZED_32),
+          _METADATA: (_SIZED_32, _SIZED_32), _SUMMARY_OFFSET: (17,), _DATA_END: (4,)}
+_WITHOUT_MESSAGES = (_HEADER, _SCHEMA, _CHANNEL, _MESSAGE_INDEX, _DATA_END)
 _AFTER_DATA = (_FOOTER, _STATISTICS, _DATA_END)
 # The start of a chunk with a known compression, of a schema of sonard, and of a message index below 16 MiB.
 _READABLE = re.compile(rb"\x06(?=.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))|\x03(?=.{14}sonard\.log\.)"
                        rb"|\x07(?=.{3}\x00{5}.{5}\x00)", re.DOTALL)
 _MOST_BYTES = 1 << 30  # of one chunk
 _FRONT_BYTES = 49  # of a chunk without compression, up to its records
+_SMALLEST_CHUNK = _FRONT_BYTES + 9 + 22  # with one message
+_ENOUGH = 64  # whole records in a row are no coincidence
 _FOOTER_BYTES = 9 + 20
 _MOST_BINS = 65535  # of a scan line
 _VARINT, _EIGHT_BYTES, _BYTES, _FOUR_BYTES = 0, 1, 2, 5  # wire types of fields
@@ -110,7 +118,8 @@ class _Reader:
                         raise _Damaged("the length of a chunk")
                     self._tell_lost_chunk()
                     yield from _records_of_chunk(data[at + 9: end], self._path)
-                elif _sizes_agree(data, at) or not (data[at] == _ATTACHMENT or _has_form(data, at, data[at])):
+                elif _sizes_agree(data, at) or not (_leads_on(data, end) if _is_unknown(data[at]) else
+                                                    _has_form(data, at, data[at])):
                     raise _Damaged(f"a record of type {data[at]}")
                 elif data[at] in _AFTER_DATA:
                     self._ended = True
@@ -135,7 +144,8 @@ class _Reader:
         if _was_chunk(data, at):
             self._lost_chunk = at, size, why
         else:
-            warn_of_bytes(self._path, at, size, why, "no ping is lost" if following else "the rest is lost")
+            warn_of_bytes(self._path, at, size, why, "the rest is lost" if following is None else
+                          "no ping is lost" if _held_no_message(data, at, following) else "pings may be lost")
         return following
 
     def _count_lost(self, index: bytes) -> None:
@@ -164,11 +174,7 @@ def _end(data: Any, at: int) -> Optional[int]:
 
 def _sizes_agree(data: Any, at: int) -> bool:
     """Whether the record has the inner sizes of a chunk, for any type byte."""
-    end = _end(data, at)
-    if end is None or end < at + 49:
-        return False
-    (name,) = struct.unpack_from("<I", data, at + 37)
-    return bool(name <= end - at - 49 and at + 49 + name + struct.unpack_from("<Q", data, at + 41 + name)[0] == end)
+    return _has_form(data, at, _CHUNK)
 
 
 def _is_cut_chunk(data: Any, at: int) -> bool:
@@ -180,33 +186,68 @@ def _is_cut_chunk(data: Any, at: int) -> bool:
                 40 + name + struct.unpack_from("<Q", data, at + 41 + name)[0])
 
 
-def _has_form(data: Any, at: int, kind: int) -> bool:
-    """Whether the lengths inside the record fit a record of this kind, for any type byte."""
-    end = _end(data, at)
+def _has_form(data: Any, at: int, kind: int, end: Optional[int] = None) -> bool:
+    """Whether the lengths inside the record fit a record of this kind, for any type byte. `end` replaces its own end."""
+    end = _end(data, at) if end is None else end
     if end is None or kind not in _FORMS:
         return False
-    fixed, fields = _FORMS[kind]
-    place = at + 9 + fixed
-    for _ in range(fields):
-        if place + 4 > end:
-            return False
-        place += 4 + struct.unpack_from("<I", data, place)[0]
+    place = at + 9
+    for part in _FORMS[kind]:
+        if part in (_SIZED_32, _SIZED_64):
+            if place - part > end:
+                return False
+            place += -part + struct.unpack_from("<I" if part == _SIZED_32 else "<Q", data, place)[0]
+        else:
+            place += part
     return place == end and (kind != _MESSAGE_INDEX or (end - at - 15) % 16 == 0)
+
+
+def _is_unknown(kind: int) -> bool:
+    """Whether records of this kind are of a later version or of another program."""
+    return kind > _LAST_KNOWN or (kind not in _FORMS and kind not in (0, _MESSAGE))
+
+
+def _leads_on(data: Any, at: int) -> bool:
+    """Whether records of the data section begin at `at`. Bytes inside a record rarely look so: records of unknown kinds and
+    definitions, which are also inside chunks, must lead to another consistent record."""
+    for _ in range(_ENOUGH):
+        if at == len(data) or _end_of_open_chunk(data, at) is not None:
+            return True
+        end = _end(data, at)
+        unknown = end is not None and _is_unknown(data[at])
+        if end is None or not (unknown or _has_form(data, at, data[at])):
+            return False
+        if not unknown and data[at] not in (_SCHEMA, _CHANNEL):
+            return True
+        at = end
+    return True
+
+
+def _looks_like_no_chunk(data: Any, at: int, end: Optional[int] = None) -> bool:
+    return any(_has_form(data, at, kind, end) for kind in _WITHOUT_MESSAGES)
 
 
 def _was_chunk(data: Any, at: int) -> bool:
     """Whether an unreadable record is a chunk. Assumes that one bit is wrong, so its length or its type is right."""
-    return _sizes_agree(data, at) or (data[at] == _CHUNK and not any(_has_form(data, at, kind) for kind in _FORMS))
+    return _sizes_agree(data, at) or (data[at] == _CHUNK and not _looks_like_no_chunk(data, at))
+
+
+def _held_no_message(data: Any, at: int, following: int) -> bool:
+    """Whether the damaged bytes up to `following` are too few for a chunk, or a record of another kind."""
+    return (following - at < _SMALLEST_CHUNK or (data[at] in _WITHOUT_MESSAGES and _end(data, at) == following)
+            or _looks_like_no_chunk(data, at, following))
 
 
 def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
-    """Where to continue: after the record if its content fits its length, which then is right; else at the next chunk,
+    """Where to continue: after the record if its content fits its length and a record follows; else at the next chunk,
     message index or schema."""
-    if end is not None and (_sizes_agree(data, at) or any(_has_form(data, at, kind) for kind in _FORMS)):
+    if end is not None and (_sizes_agree(data, at) or _looks_like_no_chunk(data, at)) and _leads_on(data, end):
         return end
     for match in _READABLE.finditer(data, at + 1):
         found = match.start()
-        if _sizes_agree(data, found) if data[found] == _CHUNK else _has_form(data, found, data[found]):
+        following = _end(data, found)
+        if following is not None and _has_form(data, found, data[found]) and (
+                data[found] == _CHUNK or _leads_on(data, following)):
             return found
     return None
 

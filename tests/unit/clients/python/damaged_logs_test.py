@@ -72,13 +72,13 @@ def mcap_end(size):
     return data_end + summary + footer + struct.pack("<I", zlib.crc32(summary + footer)) + MAGIC
 
 
-def mcap_log(pack=None):
+def mcap_log(pack=None, count=PINGS):
     """A log as sonard writes it (docs/logs.md 2): chunks, message indexes, schema and channel, a summary.
 
     pack: compresses a chunk by Zstandard
     """
     parts = [MAGIC, record(1, text(b"") + text(b"sonard 0.1.0"))]
-    for first in range(0, PINGS, PINGS_IN_CHUNK):
+    for first in range(0, count, PINGS_IN_CHUNK):
         messages = b"".join(message(number) for number in range(first, first + PINGS_IN_CHUNK))
         records = messages if first else SCHEMA + CHANNEL + messages
         parts += [chunk(records, compression=b"zstd", stored=pack(records)) if pack else chunk(records),
@@ -162,6 +162,20 @@ class DamagedLogs(unittest.TestCase):
 
     def test_a_flipped_bit_in_an_mcap_costs_its_chunk(self):
         self.expect_at_most(PINGS_IN_CHUNK, ".mcap", mcap_log(), [samples_of(number) for number in range(PINGS)])
+
+    def test_a_byte_too_many_in_a_long_mcap_costs_the_chunk_there(self):
+        # The length of an index of two messages, read one byte too early, is 9735: many chunks of this log.
+        whole = mcap_log(count=120)
+        self.assertGreater(len(whole), 12000)
+        written = [samples_of(number) for number in range(120)]
+        begin, end = (whole.index(samples_of(number)) for number in (6, 8))
+        for filler in (0x00, 0x05, 0x07, 0x09, 0x55, 0xFF):
+            for at in range(begin, end):
+                pings, told = self.read(".mcap", whole[:at] + bytes([filler]) + whole[at:])
+                place = f"{filler} at {at}: {told}"
+                self.assertLessEqual(len(set(written).difference(pings)), PINGS_IN_CHUNK, place)
+                if len(pings) < len(written):
+                    self.assertRegex(" ".join(told), "are lost|may be lost", place)
 
     def test_a_flipped_bit_in_a_dat_costs_its_record(self):
         images = images_of(4)

@@ -235,10 +235,11 @@ TEST(Damage, a_flipped_bit_in_a_glf_costs_its_record) {
 constexpr std::size_t magic_size = 8;  ///< the format of a log is known by its first bytes
 
 /// @param moved number of bytes too many (positive) or missing (negative) at `at`
-Bytes with_moved_bytes(Bytes bytes, std::size_t at, int moved) {
+/// @param filler value of the bytes that are too many
+Bytes with_moved_bytes(Bytes bytes, std::size_t at, int moved, std::uint8_t filler = 0xA5) {
   const auto place = bytes.begin() + static_cast<std::ptrdiff_t>(at);
   if (moved > 0) {
-    bytes.insert(place, static_cast<std::size_t>(moved), 0xA5);
+    bytes.insert(place, static_cast<std::size_t>(moved), filler);
   } else {
     bytes.erase(place, place + std::min<std::ptrdiff_t>(-moved, bytes.end() - place));
   }
@@ -253,7 +254,7 @@ void expect_at_most_when_moved(std::size_t most_lost, const std::string& suffix,
   ASSERT_EQ(undamaged.lost, 0U);
   std::size_t places_that_lose = 0;
   for (const int moved : {1, 7, 512, -1, -5, -40}) {
-    for (std::size_t at = magic_size; at < whole.size(); at += 3) {
+    for (std::size_t at = magic_size; at < whole.size(); ++at) {
       const Outcome outcome = outcome_of(suffix, with_moved_bytes(whole, at, moved), written);
       ASSERT_TRUE(outcome.opened) << moved << " bytes at " << at << ": " << outcome.problems.at(0);
       ASSERT_LE(outcome.lost, most_lost)
@@ -264,7 +265,42 @@ void expect_at_most_when_moved(std::size_t most_lost, const std::string& suffix,
       places_that_lose += outcome.lost > 0 ? 1 : 0;
     }
   }
-  EXPECT_GT(places_that_lose, whole.size() / 3) << "most bytes are those of pings";
+  EXPECT_GT(places_that_lose, whole.size()) << "most bytes are those of pings";
+}
+
+/// Like the above, with bytes of each value that begins a record of an MCAP file, or of none, at every place
+/// of the part in the middle of the log.
+void expect_at_most_with_any_byte_more(std::size_t most_lost, const Bytes& whole, const Pings& written,
+                                       std::size_t from, std::size_t to) {
+  const Outcome undamaged = outcome_of(".mcap", whole, written);
+  ASSERT_EQ(undamaged.lost, 0U);
+  for (const int filler : {0x00, 0x03, 0x05, 0x06, 0x07, 0x09, 0x0C, 0x0F, 0x55, 0xA5, 0xFF}) {
+    for (std::size_t at = from; at < to; ++at) {
+      const Bytes damaged = with_moved_bytes(whole, at, 1, static_cast<std::uint8_t>(filler));
+      const Outcome outcome = outcome_of(".mcap", damaged, written);
+      ASSERT_TRUE(outcome.opened) << filler << " at " << at;
+      ASSERT_LE(outcome.lost, most_lost)
+          << filler << " at " << at << ": " << testing::PrintToString(outcome.problems);
+      if (outcome.lost > 0) {
+        ASSERT_THAT(outcome.problems, Contains(AnyOf(HasSubstr("are lost"), HasSubstr("may be lost"))))
+            << filler << " at " << at;
+      }
+    }
+  }
+}
+
+// The length of an index of two messages, read one byte too early, is 9735: many chunks of this log.
+TEST(Damage, a_byte_too_many_in_a_long_mcap_costs_the_chunk_there) {
+  constexpr int images = 64;
+  for (const bool finished : {true, false}) {
+    const Bytes whole = mcap_log(images, false, finished);
+    Bytes copy = whole;
+    const auto place = [&](int number) {
+      return static_cast<std::size_t>(place_of(samples_of(number), copy) - copy.begin());
+    };
+    ASSERT_GT(whole.size() - place(8), 9735U);
+    expect_at_most_with_any_byte_more(2, whole, pings_written(images), place(6), place(8));
+  }
 }
 
 TEST(Damage, bytes_too_many_or_missing_in_a_glf_cost_the_pings_there) {
