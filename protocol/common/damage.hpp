@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "protocol/common/wire_error.hpp"
 
@@ -13,6 +14,13 @@ struct Damage {
   std::uint64_t offset = 0;  ///< in the file
   std::uint64_t size = 0;    ///< bytes that the reader skipped
   WireError error;           ///< why they cannot be read
+};
+
+/// A part of a file that is made from a damaged one: new bytes, then bytes of the damaged file.
+struct RebuiltPart {
+  std::vector<std::uint8_t> made{};
+  std::uint64_t offset = 0;  ///< in the damaged file
+  std::uint64_t size = 0;
 };
 
 enum class OnDamage : std::uint8_t {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs an MCAP file whose writer was killed.
+// Repairs an MCAP file whose writer was killed, or which is damaged.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
-#include "protocol/mcap/summary.hpp"
+#include "protocol/common/damage.hpp"
+#include "protocol/mcap/data_section.hpp"
 
 namespace sonard::mcap {
 
@@ -21,5 +23,16 @@ struct Recovery {
 /// an error if magic and header are not whole, because then there is nothing to keep. Also returns an error
 /// for other compressions, because sonard did not write such a file.
 Result<Recovery, WireError> recover(ByteView file);
+
+/// A file made from all whole chunks of a damaged file. They are not copied into memory.
+struct Rebuilt {
+  std::vector<RebuiltPart> parts;     ///< the new file is all parts, one after the other
+  std::vector<DamagedChunk> damaged;  ///< the lost bytes; there may be none
+  Summary summary;                    ///< of the new file
+};
+
+/// Rebuilds `file` from its readable chunks, also those after damaged bytes: adds a header, all schemas and
+/// channels, message indexes and the end. Returns an error if the file does not begin as MCAP.
+Result<Rebuilt, WireError> rebuild(ByteView file);
 
 }  // namespace sonard::mcap

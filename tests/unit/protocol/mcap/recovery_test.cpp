@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files whose writer was killed after any byte.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -189,6 +190,89 @@ TEST(McapRecovery, zeros_where_the_disk_was_not_written_are_cut_off) {
   ASSERT_TRUE(recovery);
   EXPECT_EQ(recovery->summary.message_count(), 5U);
   EXPECT_EQ(recovery->lost_size, 4096U);
+}
+
+Bytes rebuilt_file(const Bytes& damaged, const Rebuilt& rebuilt) {
+  Bytes file;
+  for (const RebuiltPart& part : rebuilt.parts) {
+    append(file, part.made);
+    const auto kept = ByteView{damaged}.subspan(part.offset, part.size);
+    file.insert(file.end(), kept.begin(), kept.end());
+  }
+  return file;
+}
+
+TEST(McapRecovery, a_whole_file_is_rebuilt_with_all_its_messages) {
+  const Bytes whole = finished_file();
+  const auto rebuilt = rebuild(whole);
+  ASSERT_TRUE(rebuilt);
+  EXPECT_TRUE(rebuilt->damaged.empty());
+  const Bytes file = rebuilt_file(whole, *rebuilt);
+  const auto reader = Reader::open(file);
+  ASSERT_TRUE(reader && reader->finished());
+  EXPECT_EQ(all_of(reader->messages()), messages_in_order);
+}
+
+/// Rebuilds `damaged` and checks that the new file is whole. @return its messages
+std::vector<Said> messages_rebuilt(const Bytes& damaged) {
+  const auto rebuilt = rebuild(damaged);
+  if (!rebuilt) {
+    ADD_FAILURE() << "not rebuilt";
+    return {};
+  }
+  const Bytes file = rebuilt_file(damaged, *rebuilt);
+  const auto reader = Reader::open(file);
+  EXPECT_TRUE(reader && reader->finished());
+  EXPECT_EQ(reader->summary(), rebuilt->summary);
+  const auto scanned = scan_data_section(file);
+  EXPECT_TRUE(scanned && scanned->ended && !scanned->error && !scanned->last_chunk_open);
+  EXPECT_EQ(scanned->summary, rebuilt->summary) << "message indexes are where the summary says";
+  MessageCursor cursor = reader->messages();
+  auto messages = all_of(cursor);
+  EXPECT_EQ(messages.size(), rebuilt->summary.message_count());
+  EXPECT_TRUE(!rebuilt->damaged.empty() || messages.size() == 7) << "a loss is listed";
+  return messages;
+}
+
+// The file has three chunks, of which the first holds the schema and the first channel.
+TEST(McapRecovery, a_damaged_chunk_does_not_cost_the_chunks_after_it) {
+  const Bytes whole = finished_file();
+  const auto summary = read_summary(whole);
+  const std::vector<std::size_t> messages_of{2, 3, 2};
+  const auto end_of_data = static_cast<std::ptrdiff_t>(whole.size() - 20);  // not closed
+  for (std::size_t hit = 0; hit < 3; ++hit) {
+    const ChunkIndex& chunk = summary->chunks[hit];
+    for (std::size_t at = chunk.offset; at < chunk.offset + chunk.length; ++at) {
+      SCOPED_TRACE(at);
+      Bytes wrong{whole.begin(), whole.begin() + end_of_data};
+      wrong[at] ^= 0x40;
+      const auto messages = messages_rebuilt(wrong);
+      ASSERT_GE(messages.size(), 7 - messages_of[hit]);
+      for (const Said& message : messages) {
+        EXPECT_THAT(messages_in_order, ::testing::Contains(message));
+      }
+      Bytes inserted{whole.begin(), whole.begin() + end_of_data};
+      inserted.insert(inserted.begin() + static_cast<std::ptrdiff_t>(at), 0x55);
+      if (at > chunk.offset) {  // else the byte is before the chunk, which is whole
+        ASSERT_EQ(messages_rebuilt(inserted).size(), 7 - messages_of[hit]);
+      }
+    }
+  }
+}
+
+TEST(McapRecovery, an_open_chunk_after_a_damaged_one_is_closed) {
+  GrowingFile growing;
+  for (int i = 0; i < 8; ++i) {
+    const Piece piece = growing.next();
+    append(growing.file, piece.append);
+    GrowingFile::rewrite(growing.file, piece, piece.rewrite.size());
+  }
+  const auto section = scan_data_section(growing.file);
+  ASSERT_TRUE(section && section->last_chunk_open);
+  ASSERT_EQ(section->summary.chunks.size(), 3U);
+  Bytes damaged = growing.file;
+  damaged[section->summary.chunks[1].offset + 80] ^= 1;
+  EXPECT_EQ(messages_rebuilt(damaged).size(), 5U) << "of 3, 3 and 2 messages";
 }
 
 TEST(McapRecovery, nothing_to_keep_is_an_error) {

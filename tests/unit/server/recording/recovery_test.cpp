@@ -24,6 +24,7 @@ namespace sonard::server {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using Bytes = std::vector<std::uint8_t>;
@@ -181,7 +182,7 @@ TEST_F(RecoveryTest, RemovesADatThatWasPacked) {
   EXPECT_EQ(folder.names(".glf").size(), 1U);
 }
 
-TEST_F(RecoveryTest, KeepsWhatIsDamagedAndWhatWasWholeBeforeIt) {
+TEST_F(RecoveryTest, KeepsADamagedDatAndAllItsWholeRecords) {
   Bytes dat = killed<GlfLog>(0);
   const glf::DatIndex index = glf::index_dat(glf::PiecewiseBytes(dat));
   ASSERT_EQ(index.records.size(), 3U);
@@ -189,17 +190,65 @@ TEST_F(RecoveryTest, KeepsWhatIsDamagedAndWhatWasWholeBeforeIt) {
   test::write_file(path, dat);
   EXPECT_EQ(recover_logs(folder.path()), std::vector<fs::path>{path});
   EXPECT_EQ(test::contents(path.string() + ".damaged"), dat);
-  EXPECT_EQ(test::contents(path),
-            Bytes(dat.begin(), dat.begin() + static_cast<std::ptrdiff_t>(index.records[1].offset)));
+  Bytes whole_records = dat;
+  const auto second = whole_records.begin() + static_cast<std::ptrdiff_t>(index.records[1].offset);
+  whole_records.erase(second, second + static_cast<std::ptrdiff_t>(index.records[1].size));
+  EXPECT_EQ(test::contents(path), whole_records);
+}
+
+TEST_F(RecoveryTest, SaysWhatADamagedDatLost) {
+  Bytes dat = killed<GlfLog>(0);
+  const glf::RecordEntry second = glf::index_dat(glf::PiecewiseBytes(dat)).records.at(1);
+  dat[second.offset] = 0;
+  test::write_file(path, dat);
+  EXPECT_THAT(told(), AllOf(HasSubstr("is damaged: its whole records are in a new file; kept unchanged as "),
+                            HasSubstr(std::to_string(second.size) + " bytes at byte " +
+                                      std::to_string(second.offset))));
+}
+
+TEST_F(RecoveryTest, KeepsThePacketsAfterADamagedOne) {
+  Bytes file = killed<PcapngLog>();
+  std::vector<std::size_t> packets;
+  ASSERT_TRUE(pcapng::for_each_block(file, [&](const pcapng::Block& block) {
+    if (block.type == static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet)) {
+      packets.push_back(block.offset);
+    }
+  }));
+  ASSERT_EQ(packets.size(), 3U);
+  file[packets[1] + 4] ^= 1;     // the length of the second packet
+  file.resize(file.size() + 4);  // the next one was being written
+  test::write_file(path, file);
+  EXPECT_THAT(told(), HasSubstr("its packets are lost"));
+  EXPECT_EQ(test::contents(path.string() + ".damaged"), file);
+  EXPECT_EQ(pcapng::recover(test::contents(path))->packets, 2U);
 }
 
 TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
   Bytes file = killed<McapLog>();
-  file[file.size() * 4 / 5] ^= 1;  // in the second chunk
+  const auto chunks = mcap::Reader::open(file)->summary().chunks;
+  ASSERT_EQ(chunks.size(), 3U);
+  file[chunks[0].offset + 80] ^= 1;
+  test::write_file(path, file);
+  const std::string log = told();
+  const std::uint64_t kept = messages_in(test::contents(path));
+  EXPECT_EQ(kept, 3U) << "of the second and the third chunk";
+  EXPECT_THAT(
+      log, AllOf(HasSubstr("log_stem.mcap is damaged: its whole records are in a new file; kept unchanged"),
+                 HasSubstr(std::to_string(chunks[0].length) + " bytes at byte " +
+                           std::to_string(chunks[0].offset)),
+                 HasSubstr("; " + std::to_string(2U * pings - kept) + " messages are lost")));
+  EXPECT_EQ(test::contents(path.string() + ".damaged"), file);
+}
+
+// A wrong length that points beyond the end looks like a record that was being written.
+TEST_F(RecoveryTest, KeepsTheChunksAfterAChunkWithAWrongLength) {
+  Bytes file = killed<McapLog>();
+  const auto chunks = mcap::Reader::open(file)->summary().chunks;
+  file[chunks[1].offset + 8] ^= 1;
   test::write_file(path, file);
   recover_logs(folder.path());
   EXPECT_EQ(test::contents(path.string() + ".damaged"), file);
-  EXPECT_GE(messages_in(test::contents(path)), 1U);
+  EXPECT_GE(messages_in(test::contents(path)), 2U * pings - 2);
 }
 
 TEST_F(RecoveryTest, KeepsWhatIsNoLogUntouched) {
