@@ -197,10 +197,13 @@ Trajectory load_trajectory(const std::filesystem::path& file, Axes axes) {
   std::ifstream stream{file, std::ios::binary};
   std::ostringstream text;
   // An empty file sets failbit on `text`, so only the state of `stream` shows whether the file could be read.
-  const std::error_code why = std::filesystem::is_directory(file)
-                                  ? std::make_error_code(std::errc::is_a_directory)
-                                  : std::error_code(errno, std::generic_category());
-  if (std::filesystem::is_directory(file) || !stream || !(text << stream.rdbuf(), !stream.bad())) {
+  std::error_code why(errno, std::generic_category());
+  std::error_code ignored;
+  const bool is_folder = std::filesystem::is_directory(file, ignored);
+  if (is_folder) {
+    why = std::make_error_code(std::errc::is_a_directory);
+  }
+  if (is_folder || !stream || !(text << stream.rdbuf(), !stream.bad())) {
     throw TrajectoryError(file.string() + ": cannot be read: " + why.message());
   }
   return parse_trajectory(text.str(), file.string(), axes);

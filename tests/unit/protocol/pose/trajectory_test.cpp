@@ -138,6 +138,33 @@ TEST(TrajectoryFile, ThatMayNotBeReadIsToldWithTheReason) {
   }
 }
 
+std::string complaint_about(const std::filesystem::path& file) {
+  try {
+    load_trajectory(file);
+  } catch (const TrajectoryError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TrajectoryFile, InAFolderWithoutRightsIsToldWithTheReason) {
+  const test::TemporaryFolder folder;
+  const auto closed = folder.path() / "closed";
+  std::filesystem::create_directory(closed);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+  std::filesystem::permissions(closed, std::filesystem::perms::none);
+  const test::WithoutRights nobody;
+  EXPECT_EQ(complaint_about(closed / "motion.csv"),
+            (closed / "motion.csv").string() + ": cannot be read: Permission denied");
+}
+
+TEST(TrajectoryFile, ALoopOfLinksIsToldWithTheReason) {
+  const test::TemporaryFolder folder;
+  const auto loop = folder.path() / "loop";
+  std::filesystem::create_symlink(loop, loop);
+  EXPECT_EQ(complaint_about(loop), loop.string() + ": cannot be read: Too many levels of symbolic links");
+}
+
 TEST(TrajectoryFile, AMissingFileIsNamed) {
   EXPECT_THROW(
       {
