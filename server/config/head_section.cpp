@@ -455,6 +455,12 @@ void read_pose(YamlSection& section, render::Pose& pose, std::string_view positi
                std::string_view rpy_meaning) {
   constexpr double far_m = 1e8;  // larger than the Earth's radius: geocentric coordinates fit
   section.vector3("position_m", pose.position_m, Range::from(-far_m, far_m), position_meaning);
+  for (const std::string_view key : {"roll", "pitch", "yaw", "roll_deg", "pitch_deg", "yaw_deg", "rpy"}) {
+    section.foreign(key, "expected rpy_deg: [roll, pitch, yaw], in degrees");
+  }
+  for (const std::string_view key : {"x", "y", "z", "position", "xyz"}) {
+    section.foreign(key, "expected position_m: [x, y, z], in metres");
+  }
   glm::dvec3 rpy_deg{0.0};
   section.vector3("rpy_deg", rpy_deg, Range::from(-360.0, 360.0), rpy_meaning);
   if (look_like_radians(rpy_deg)) {

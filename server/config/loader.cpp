@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -566,14 +567,30 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   }
 }
 
-void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds) {
+/// The type of the head that holds a key; empty outside of heads.
+std::string head_type_of(const std::string& key, const std::vector<HeadConfig>& heads) {
+  constexpr std::string_view front = "heads[";
+  std::size_t number = 0;
+  if (!key.starts_with(front) ||
+      std::from_chars(key.data() + front.size(), key.data() + key.size(), number).ec != std::errc() ||
+      number >= heads.size() || heads[number].kind == nullptr) {
+    return {};
+  }
+  return std::string(heads[number].kind->type());
+}
+
+void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds,
+                   const std::vector<HeadConfig>& heads) {
   if (findings.unknown_keys.empty()) {
     return;
   }
-  std::vector<std::vector<KeyReference>> known;
+  std::vector<KindKeys> known;
   known.reserve(kinds.size());
   for (const HeadKind* const kind : kinds) {
-    known.push_back(describe_config(*kind));
+    known.push_back({std::string(kind->type()), describe_config(*kind)});
+  }
+  for (UnknownKey& key : findings.unknown_keys) {
+    key.head_type = head_type_of(findings.problems[key.problem].key, heads);
   }
   name_sections(findings.problems, findings.unknown_keys, known);
 }
@@ -598,7 +615,7 @@ LoadedConfig load_config(const std::filesystem::path& file, const std::string& t
     YamlSection root(findings, document, "");
     read_document(root, kinds, loaded.config);
   }
-  name_sections(findings, kinds);
+  name_sections(findings, kinds, loaded.config.heads);
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);
   }

@@ -33,23 +33,60 @@ void add_keys(const std::vector<KeyReference>& keys, const std::string& path, Ke
   }
 }
 
+/// The path of a key, from the head on if a head holds it: "mount.roll" for "heads[0].mount.roll".
+std::string path_in_head(const std::string& key) {
+  return key.starts_with("heads[") ? key.substr(key.find('.') + 1) : key;
+}
+
+/// The paths of a name in files whose heads are of this type, or of any type if it is empty.
+KnownPaths paths_of(const UnknownKey& key, std::span<const KindKeys> known,
+                    std::span<const KeyIndex> indexes) {
+  KnownPaths paths;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto entry = indexes[i].find(key.name);
+    if (entry != indexes[i].end() && (key.head_type.empty() || key.head_type == known[i].type)) {
+      paths.of_key.insert(entry->second.of_key.begin(), entry->second.of_key.end());
+      paths.of_value.insert(entry->second.of_value.begin(), entry->second.of_value.end());
+    }
+  }
+  return paths;
+}
+
+/// The kinds of heads that have a key of this path.
+std::vector<std::string_view> kinds_with(const std::string& name, const std::string& path,
+                                         std::span<const KindKeys> known, std::span<const KeyIndex> indexes) {
+  std::vector<std::string_view> kinds;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const auto entry = indexes[i].find(name);
+    if (entry != indexes[i].end() && entry->second.of_key.contains(path)) {
+      kinds.emplace_back(known[i].type);
+    }
+  }
+  return kinds;
+}
+
 }  // namespace
 
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
-                   std::span<const std::vector<KeyReference>> known) {
-  KeyIndex index;
-  for (const std::vector<KeyReference>& keys : known) {
-    add_keys(keys, "", index);
+                   std::span<const KindKeys> known) {
+  std::vector<KeyIndex> indexes(known.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    add_keys(known[i].keys, "", indexes[i]);
   }
   for (const UnknownKey& key : unknown) {
-    const auto entry = index.find(key.name);
-    if (entry == index.end()) {
+    ConfigProblem& problem = problems[key.problem];
+    if (!problem.message.starts_with(complaint)) {
       continue;
     }
-    const std::set<std::string>& paths = key.has_value ? entry->second.of_value : entry->second.of_key;
-    std::string& message = problems[key.problem].message;
-    if (paths.size() == 1 && message.starts_with(complaint)) {
-      message.insert(complaint.size(), fmt::format(" here, did you mean '{}'?", *paths.begin()));
+    const std::string here = path_in_head(problem.key);
+    const KnownPaths all = paths_of(key, known, indexes);
+    const std::set<std::string>& paths = key.has_value ? all.of_value : all.of_key;
+    if (paths.size() == 1 && !all.of_key.contains(here)) {
+      problem.message.insert(complaint.size(), fmt::format(" here, did you mean '{}'?", *paths.begin()));
+    } else if (const auto kinds = kinds_with(key.name, here, known, indexes);
+               !key.head_type.empty() && !kinds.empty()) {
+      problem.message.insert(complaint.size(), fmt::format(" of a {}, it is a key of {}", key.head_type,
+                                                           fmt::join(kinds, ", ")));
     }
   }
 }

@@ -16,12 +16,21 @@ struct UnknownKey {
   std::size_t problem = 0;  ///< index
   std::string name;         ///< "multipath"
   bool has_value = false;   ///< a word or number, not a mapping or list
+  std::string head_type{};  ///< of the head that holds it; empty outside of heads
+};
+
+/// The keys of a file whose heads are all of one kind.
+struct KindKeys {
+  std::string type;  ///< of the heads, as in the configuration
+  std::vector<KeyReference> keys;
 };
 
 /// Adds the right section to the message of each unknown key whose name is a key of exactly one other
-/// section: "unknown key here, did you mean 'acoustics.physical.multipath.level'? (...)".
-/// @param known keys of the whole file, one list for each kind of head
+/// section: "unknown key here, did you mean 'acoustics.physical.multipath.level'? (...)". In a head, only
+/// keys that a head of its type may have are named; a key that another kind has at this place is said to be a
+/// key of that kind.
+/// @param known one for each kind of head
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
-                   std::span<const std::vector<KeyReference>> known);
+                   std::span<const KindKeys> known);
 
 }  // namespace sonard::server

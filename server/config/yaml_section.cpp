@@ -203,7 +203,10 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
                          SourcePosition key_at)
     : findings_(findings), path_(std::move(path)), at_(place_of(node, key_at)) {
   if (!node.IsMap()) {
-    problem(at_, path_, fmt::format("is {} (expected a mapping, key: value)", describe(node)));
+    const std::string one_word = node.IsScalar() ? missing_blank(node.Scalar()) : std::string();
+    problem(
+        at_, path_,
+        one_word.empty() ? fmt::format("is {} (expected a mapping, key: value)", describe(node)) : one_word);
     is_map_ = false;
     return;
   }
@@ -214,6 +217,10 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
       continue;
     }
     const std::string& name = pair.first.Scalar();
+    if (const std::string one_word = missing_blank(name); !one_word.empty() && pair.second.IsNull()) {
+      problem(name_at, path_, one_word);
+      continue;
+    }
     // yaml-cpp keeps every occurrence and looks up the first one.
     if (const Entry* first = peek(name)) {
       problem(name_at, path_of(name),
@@ -571,6 +578,12 @@ void YamlSection::report_unknown(const Entry& entry) {
   for (const auto& [key, what_to_do] : retired_) {
     if (entry.name == key) {
       problem(entry.key_at, path_of(entry.name), fmt::format("is no longer a key: {}", what_to_do));
+      return;
+    }
+  }
+  for (const auto& [key, what_to_do] : foreign_) {
+    if (entry.name == key) {
+      problem(entry.key_at, path_of(entry.name), fmt::format("unknown key ({})", what_to_do));
       return;
     }
   }

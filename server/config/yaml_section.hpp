@@ -91,6 +91,8 @@ class YamlSection {
   void warn_if_given(std::string_view key, std::string_view why);
   /// A key of earlier versions, and what to do instead. Both texts must outlive the section.
   void retired(std::string_view key, std::string_view what_to_do) { retired_.emplace_back(key, what_to_do); }
+  /// A key that other programs have here, and what to write instead. Both texts must outlive the section.
+  void foreign(std::string_view key, std::string_view what_to_do) { foreign_.emplace_back(key, what_to_do); }
   /// Reads the key `former`, if a file still has it, as `key`, and warns. Call it before `key` is read.
   void renamed(std::string_view former, std::string_view key);
   std::string path_of(std::string_view key) const;
@@ -162,8 +164,9 @@ class YamlSection {
         report_bad_value(key, *word, form.expected);
         return false;
       }
+      return true;
     }
-    return true;
+    return !has(key);
   }
 
   /// A list of such texts; replaces `out`.
@@ -236,6 +239,7 @@ class YamlSection {
   std::map<std::string, std::size_t, std::less<>> entry_of_;  ///< by name, places in entries_
   std::vector<KeyReference> known_;
   std::vector<std::pair<std::string_view, std::string_view>> retired_;
+  std::vector<std::pair<std::string_view, std::string_view>> foreign_;
   std::string introduction_;
 };
 

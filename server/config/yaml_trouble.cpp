@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -74,6 +76,18 @@ int column(std::size_t offset) {
   return static_cast<int>(offset) + 1;
 }
 
+/// The problem of a key in this line that no blank follows.
+std::optional<ConfigProblem> key_without_blank(std::string_view line, int number) {
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    const std::size_t word = std::min(line.find_first_not_of(" -{,", at), line.size());
+    if (std::string why = missing_blank(line.substr(word)); !why.empty()) {
+      return ConfigProblem{{number, column(word)}, "", std::move(why)};
+    }
+    at = std::min(line.find_first_of("{,", word), line.size());
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint) {
@@ -81,6 +95,7 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     return *unclosed;
   }
   Indents indents;
+  std::optional<ConfigProblem> without_blank;
   for (int number = 1; number <= at.line && !text.empty(); ++number) {
     const std::string_view whole = next_line(text);
     const std::size_t first = std::min(whole.find_first_not_of(" \t"), whole.size());
@@ -93,7 +108,13 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     if (indent == line.size() || line[indent] == '#') {
       continue;
     }
+    if (auto found = key_without_blank(line, number); found || number < at.line) {
+      without_blank = std::move(found);  // the parser rejects the next line
+    }
     if (number == at.line) {
+      if (without_blank) {
+        return *without_blank;
+      }
       if (const std::string_view word = word_with_ipv6(line); !word.empty()) {
         return {{number, column(static_cast<std::size_t>(word.data() - whole.data()))},
                 "",
@@ -111,6 +132,19 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     indents.add(line);
   }
   return {at, "", fmt::format("{} (expected valid YAML)", complaint)};
+}
+
+std::string missing_blank(std::string_view text) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789";
+  const std::size_t end = std::min(text.find_first_not_of(letters), text.size());
+  const std::string_view value = text.substr(std::min(end + 1, text.size()));
+  if (end == 0 || !text.substr(end).starts_with(':') ||
+      std::isdigit(static_cast<unsigned char>(text[0])) != 0 || value.find_first_of(" \t\r,}") == 0 ||
+      value.empty() || value.starts_with("//")) {
+    return {};
+  }
+  return fmt::format("{} is one word (expected '{}:' and a value; write a blank after ':')",
+                     in_quotes(text.substr(0, text.find_first_of(" ,}"))), text.substr(0, end));
 }
 
 std::string with_decimal_point(std::string_view text) {

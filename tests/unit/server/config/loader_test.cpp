@@ -2,9 +2,12 @@
 // Values that the loader reads from good configurations, and its messages for bad ones.
 #include "server/config/loader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 
@@ -216,6 +219,112 @@ TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
   // A key that several sections have is named without a section.
   EXPECT_THAT(complaints(minimal_config + "bind: 127.0.0.1\n"),
               ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
+}
+
+TEST_F(Loader, names_the_kind_of_head_that_has_an_unknown_key) {
+  const std::string micron = "  - {type: micron, name: side, serial: {tcp: [{bind: '127.0.0.2:4001'}]}, ";
+  EXPECT_THAT(
+      complaints(minimal_config + micron + "sonar_id: 3}\n"),
+      ElementsAre(HasSubstr(
+          "heads[1].sonar_id: unknown key of a micron, it is a key of gemini_720i (expected one of ")));
+}
+
+TEST_F(Loader, leads_from_single_angles_and_coordinates_to_the_keys_of_a_pose) {
+  for (const char* const key : {"roll", "pitch", "yaw"}) {
+    EXPECT_THAT(
+        complaints(minimal_config + fmt::format("    mount: {{{}: 3}}\n", key)),
+        ElementsAre(HasSubstr(fmt::format("heads[0].mount.{}: unknown key (expected rpy_deg: [roll, pitch, "
+                                          "yaw], in degrees)",
+                                          key))));
+  }
+  EXPECT_THAT(complaints(minimal_config + "    mount: {x: 3}\n"),
+              ElementsAre(HasSubstr("unknown key (expected position_m: [x, y, z], in metres)")));
+}
+
+/// All names of keys, at any depth.
+void add_names(const std::vector<KeyReference>& keys, std::set<std::string>& names) {
+  for (const KeyReference& key : keys) {
+    names.insert(key.name);
+    add_names(key.keys, names);
+  }
+}
+
+/// `path: value` as nested mappings: "a.b" and "1" make "{a: {b: 1}}".
+std::string nested(std::string_view path, const std::string& value) {
+  const std::size_t dot = path.find('.');
+  return dot == std::string_view::npos
+             ? fmt::format("{{{}: {}}}", path, value)
+             : fmt::format("{{{}: {}}}", path.substr(0, dot), nested(path.substr(dot + 1), value));
+}
+
+/// The path that a problem offers instead of an unknown key; empty if it offers none.
+std::string offered_in(const std::string& problem) {
+  constexpr std::string_view front = "unknown key here, did you mean '";
+  const std::size_t found = problem.find(front);
+  const std::size_t begin = found + front.size();
+  return found == std::string::npos ? "" : problem.substr(begin, problem.find('\'', begin) - begin);
+}
+
+TEST_F(Loader, offers_only_keys_that_a_head_of_this_type_may_have) {
+  const auto is_known = [&](const std::string& text) {
+    return std::ranges::none_of(complaints(text), [](const std::string& one) {
+      return one.find("unknown key") != std::string::npos;
+    });
+  };
+  std::set<std::string> names;
+  for (const HeadKind* const kind : head_kinds()) {
+    add_names(describe_config(*kind), names);
+  }
+  std::size_t offers = 0;
+  for (const HeadKind* const kind : head_kinds()) {
+    const std::string head = fmt::format("{{type: {}", kind->type());
+    for (const std::string& name : names) {
+      for (const std::string& problem : complaints(fmt::format("heads: [{}, {}: 1}}]\n", head, name))) {
+        if (const std::string path = offered_in(problem); !path.empty()) {
+          const std::string inner = nested(path, "1").substr(1);
+          const bool in_head = is_known(fmt::format("heads: [{}, {}]\n", head, inner));
+          EXPECT_TRUE(in_head || is_known(fmt::format("{{heads: [{}}}], {}\n", head, inner)))
+              << kind->type() << ": " << problem;
+          ++offers;
+        }
+      }
+    }
+  }
+  EXPECT_GT(offers, 50U);
+}
+
+TEST_F(Loader, names_a_key_without_a_blank_after_its_colon) {
+  const std::string heads = "heads: [{type: gemini_720i, name: a}]\n";
+  const auto expected = [](const char* at, const char* word, const char* key) {
+    return Contains(
+        AllOf(StartsWith(fmt::format("config.yaml:{}: ", at)),
+              HasSubstr(fmt::format("{} is one word (expected '{}:' and a value; write a blank after "
+                                    "':')",
+                                    word, key))));
+  };
+  EXPECT_THAT(complaints("world:empty\nposes:\n  initial: {}\n" + heads),
+              expected("1:1", "'world:empty'", "world"));
+  EXPECT_THAT(complaints("world: empty\nposes:\n  initial:\n    position_m:[0,0,-5]\n" + heads),
+              expected("4:5", "'position_m:[0'", "position_m"));
+  EXPECT_THAT(complaints("world: empty\nposes:\n  initial:\n    position_m:[0,0,-5]\n    rpy_deg: [0,0,0]\n"),
+              expected("4:5", "'position_m:[0'", "position_m"));
+  EXPECT_THAT(complaints("world: empty\nposes:\n  initial: {position_m:[0,0,-5]}\n" + heads),
+              expected("3:13", "'position_m:[0'", "position_m"));
+  EXPECT_THAT(complaints("world: empty\nheads:\n  - type:gemini_720i\n    name: a\n"),
+              expected("3:5", "'type:gemini_720i'", "type"));
+  EXPECT_THAT(complaints("world: empty\nheads: [{type:gemini_720i, name: a}]\n"),
+              expected("2:10", "'type:gemini_720i'", "type"));
+  EXPECT_THAT(complaints("world: empty\nposes: {udp: {bind:127.0.0.1:14600}}\n"),
+              expected("2:15", "'bind:127.0.0.1:14600'", "bind"));
+}
+
+TEST_F(Loader, an_empty_bind_is_the_only_problem_of_its_socket) {
+  for (const char* const value : {"", "[]", "{}"}) {
+    EXPECT_THAT(complaints("world: empty\nposes: {initial: {position_m: [0, 0, 0]}, udp: {bind: " +
+                           std::string(value) + "}}\n" + minimal_config.substr(minimal_config.find("heads"))),
+                ElementsAre(HasSubstr("poses.udp.bind: is ")))
+        << value;
+  }
 }
 
 TEST_F(Loader, names_a_quote_that_nothing_opens) {
