@@ -56,6 +56,26 @@ void check_recovered(ByteView cut) {
           "all messages of a recovered file are read");
 }
 
+void check_rebuilt(ByteView damaged) {
+  const auto rebuilt = rebuild(damaged);
+  if (!rebuilt) {
+    require(rebuilt.error().offset <= damaged.size(), "an error lies inside the file");
+    return;
+  }
+  Bytes file;
+  for (const auto& part : rebuilt->parts) {
+    require(part.offset <= damaged.size() && part.size <= damaged.size() - part.offset,
+            "a kept part lies inside the file");
+    const ByteView kept = damaged.subspan(part.offset, part.size);
+    file.insert(file.end(), part.made.begin(), part.made.end());
+    file.insert(file.end(), kept.begin(), kept.end());
+  }
+  const auto reader = Reader::open(file);
+  require(reader.has_value() && reader->finished(), "a rebuilt file is whole");
+  require(read_all(*reader, file) == rebuilt->summary.message_count(),
+          "all messages of a rebuilt file are read");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -64,5 +84,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_all(*reader, file);
   }
   check_recovered(file);
+  check_rebuilt(file);
   return 0;
 }

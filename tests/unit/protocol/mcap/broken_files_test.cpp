@@ -125,6 +125,12 @@ void flip_bits(const Bytes& whole) {
         ASSERT_LE(message->data.size(), file.size());
       }
     }
+    if (const auto rebuilt = rebuild(file)) {
+      const Bytes whole_again = rebuilt_file(file, *rebuilt);
+      const auto reader = Reader::open(whole_again);
+      ASSERT_TRUE(reader && reader->finished());
+      ASSERT_EQ(all_of(reader->messages()).size(), rebuilt->summary.message_count());
+    }
     if (const auto recovery = recover(file)) {
       ASSERT_LE(recovery->keep_size, file.size());
     } else {

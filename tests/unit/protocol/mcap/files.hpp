@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/mcap/reader.hpp"
+#include "protocol/mcap/recovery.hpp"
 #include "protocol/mcap/writer.hpp"
 
 namespace sonard::mcap::testing {
@@ -28,6 +29,17 @@ struct FileInMemory {
 
 inline Bytes bytes_of(std::string_view text) {
   return {text.begin(), text.end()};
+}
+
+/// The file that rebuild() describes.
+inline Bytes rebuilt_file(const Bytes& damaged, const Rebuilt& rebuilt) {
+  Bytes file;
+  for (const RebuiltPart& part : rebuilt.parts) {
+    append(file, part.made);
+    const auto kept = ByteView{damaged}.subspan(part.offset, part.size);
+    file.insert(file.end(), kept.begin(), kept.end());
+  }
+  return file;
 }
 
 /// A message that a reader must return.

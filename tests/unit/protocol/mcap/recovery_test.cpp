@@ -192,16 +192,6 @@ TEST(McapRecovery, zeros_where_the_disk_was_not_written_are_cut_off) {
   EXPECT_EQ(recovery->lost_size, 4096U);
 }
 
-Bytes rebuilt_file(const Bytes& damaged, const Rebuilt& rebuilt) {
-  Bytes file;
-  for (const RebuiltPart& part : rebuilt.parts) {
-    append(file, part.made);
-    const auto kept = ByteView{damaged}.subspan(part.offset, part.size);
-    file.insert(file.end(), kept.begin(), kept.end());
-  }
-  return file;
-}
-
 TEST(McapRecovery, a_whole_file_is_rebuilt_with_all_its_messages) {
   const Bytes whole = finished_file();
   const auto rebuilt = rebuild(whole);
