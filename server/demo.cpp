@@ -47,7 +47,8 @@ fs::path folder_of_programs() {
 fs::path folder_of_configurations() {
   const fs::path programs = folder_of_programs();
   for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
-    if (fs::exists(programs / folder / list_file)) {
+    std::error_code ignored;
+    if (fs::exists(programs / folder / list_file, ignored)) {
       return fs::canonical(programs / folder);
     }
   }

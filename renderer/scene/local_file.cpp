@@ -63,6 +63,22 @@ std::string head_of(const std::filesystem::path& file, std::size_t limit) {
   return text;
 }
 
+std::string trouble_reaching(const std::filesystem::path& path) {
+  std::error_code why;
+  if (std::filesystem::exists(path, why) ||
+      (why != std::errc::permission_denied && why != std::errc::too_many_symbolic_link_levels)) {
+    return {};
+  }
+  return fmt::format("{}: cannot be read: {} (expected a file that the user of sonard may read)",
+                     path.string(), why.message());
+}
+
+void require_reachable(const std::filesystem::path& path) {
+  if (const std::string trouble = trouble_reaching(path); !trouble.empty()) {
+    throw WorldError(trouble);
+  }
+}
+
 void require_readable(const std::filesystem::path& file) {
   if (faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0) {
     const std::error_code why(errno, std::generic_category());
@@ -78,6 +94,7 @@ void require_local_file(const std::filesystem::path& file, std::span<const std::
         fmt::format("{}: {} must be a local file; sonard downloads nothing", file.string(), what));
   }
   std::error_code error;
+  require_reachable(file);
   if (!file.is_absolute() || !std::filesystem::exists(file, error)) {
     throw WorldError(fmt::format("{}: {} file not found", file.string(), what));
   }

@@ -19,6 +19,13 @@ namespace sonard::render {
 void require_local_file(const std::filesystem::path& file, std::span<const std::string_view> extensions,
                         std::string_view what);
 
+/// A message with the path and the system's reason, if a folder without rights or a loop of links hides
+/// whether the path exists; else empty.
+std::string trouble_reaching(const std::filesystem::path& path);
+
+/// @throws WorldError with trouble_reaching(), if there is any.
+void require_reachable(const std::filesystem::path& path);
+
 /// @throws WorldError with the file name and the system's reason, if this process may not read it.
 void require_readable(const std::filesystem::path& file);
 

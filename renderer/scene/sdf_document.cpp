@@ -258,7 +258,9 @@ fs::path SdfReader::included_file(const SdfElement& include) {
   const SdfElement* const uri = include.child("uri");
   const fs::path found = resolver_.resolve(uri == nullptr ? "" : uri->text, include.folder());
   fs::path file = found;
-  if (fs::is_directory(found)) {
+  std::error_code error;
+  if (fs::is_directory(found, error)) {
+    require_reachable(manifest_in(found));
     resolver_.check_place(uri->text, fs::weakly_canonical(manifest_in(found)), found);
     file = model_file_in(found);
     if (manifest_in(found).filename() == "manifest.xml") {
@@ -266,9 +268,9 @@ fs::path SdfReader::included_file(const SdfElement& include) {
           fmt::format("{}: manifest.xml is out of date; rename it to model.config", found.string()));
     }
   }
-  std::error_code error;
   const fs::path canonical = fs::canonical(file, error);
-  if (error || !fs::is_regular_file(canonical)) {
+  if (error || !fs::is_regular_file(canonical, error)) {
+    require_reachable(file);
     throw MissingFile(fmt::format("'{}': file {} not found", uri->text, file.string()));
   }
   resolver_.check_place(uri->text, file, found);

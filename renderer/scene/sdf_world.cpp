@@ -18,6 +18,7 @@
 #include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/image_file.hpp"
 #include "renderer/scene/left_out.hpp"
+#include "renderer/scene/local_file.hpp"
 #include "renderer/scene/map_placement.hpp"
 #include "renderer/scene/materials.hpp"
 #include "renderer/scene/mesh.hpp"
@@ -612,6 +613,7 @@ World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_fo
   std::error_code error;
   const fs::path file = fs::canonical(sdf_file, error);
   if (error || !fs::is_regular_file(file, error)) {
+    require_reachable(sdf_file);
     throw WorldError(fmt::format("{}: world file not found", sdf_file.string()));
   }
   return WorldBuilder(file, model_folders, missing, origin, max_triangles).build();

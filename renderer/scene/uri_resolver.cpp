@@ -151,6 +151,11 @@ fs::path UriResolver::search(const std::string& uri, std::string_view rest,
   if (leads_out) {
     throw WorldError(*leads_out);
   }
+  for (const fs::path& folder : folders) {
+    if (const std::string trouble = trouble_reaching(folder / rest); !trouble.empty()) {
+      throw MissingFile(trouble);
+    }
+  }
   throw MissingFile(
       fmt::format("'{}' not found; looked in {}{}; to search other folders, set GZ_SIM_RESOURCE_PATH", uri,
                   list(folders), absent_.empty() ? "" : "; these folders do not exist: " + list(absent_)));
@@ -197,7 +202,8 @@ fs::path UriResolver::resolve(const std::string& uri, const fs::path& naming_fol
   }
   if (fs::path(rest).is_absolute()) {
     if (!existing(rest)) {  // a path of another machine, perhaps
-      throw MissingFile(fmt::format("'{}' not found", uri));
+      const std::string trouble = trouble_reaching(rest);
+      throw MissingFile(trouble.empty() ? fmt::format("'{}' not found", uri) : trouble);
     }
     return allowed(uri, rest, naming_folder);
   }

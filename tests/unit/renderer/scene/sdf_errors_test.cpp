@@ -370,6 +370,41 @@ TEST(BadWorldFile, MayNotBeRead) {
   EXPECT_THAT(error_of_world(with_include), HasSubstr("m/model.sdf: cannot be read: Permission denied"));
 }
 
+TEST(BadWorldFile, IsInAFolderThatMayNotBeRead) {
+  const test::TempFolder folder;
+  folder.write("m/model.sdf", "<sdf version=\"1.9\"><model name=\"m\"/></sdf>");
+  folder.write("parts/quad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  folder.write("hidden/w.sdf", "<sdf version=\"1.9\"><world name=\"w\"/></sdf>");
+  const auto world = [&](const std::string& name, const std::string& content) {
+    return folder.write(name, "<sdf version=\"1.9\"><world name=\"w\">" + content + "</world></sdf>");
+  };
+  const auto with_mesh =
+      world("mesh.sdf", model("<geometry><mesh><uri>parts/quad.obj</uri></mesh></geometry>"));
+  const auto with_include = world("include.sdf", "<include><uri>model://m</uri></include>");
+  using std::filesystem::perms;
+  std::filesystem::permissions(folder.path(), perms::all);
+  for (const char* const name : {"m", "parts", "hidden"}) {
+    std::filesystem::permissions(folder.path() / name, perms::none);
+  }
+  const std::string why = ": cannot be read: Permission denied";
+  const sonard::test::WithoutRights nobody;
+  EXPECT_THAT(error_of_world(with_mesh), HasSubstr("parts/quad.obj" + why));
+  EXPECT_THAT(error_of_world(with_include), HasSubstr("m/model.config" + why));
+  EXPECT_THAT(error_of_world(folder.path() / "hidden/w.sdf"), HasSubstr("hidden/w.sdf" + why));
+}
+
+TEST(BadWorldFile, IsALoopOfLinks) {
+  const test::TempFolder folder;
+  const std::filesystem::path loop = folder.path() / "loop";
+  std::filesystem::create_symlink(loop, loop);
+  const std::string why = ": cannot be read: Too many levels of symbolic links";
+  EXPECT_THAT(error_of_world(loop), HasSubstr("loop" + why));
+  EXPECT_THAT(error_of_world(folder.write(
+                  "w.sdf",
+                  "<sdf version=\"1.9\"><world name=\"w\"><include><uri>loop</uri></include></world></sdf>")),
+              HasSubstr("loop" + why));
+}
+
 TEST(BadWorldFile, IsNamed) {
   const test::TempFolder folder;
   EXPECT_EQ(error_of_world("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
