@@ -200,6 +200,13 @@ void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
                                     "files, another folder, or --overwrite)",
                                     differences(before, manifest)));
     }
+  } else if (!overwrite && !names_of(is_frame_or_log).empty()) {
+    throw OutputError(folder_,
+                      fmt::format("the folder contains frames or logs, but no {} of their run (expected "
+                                  "an empty folder, another folder, or --overwrite)",
+                                  manifest_name));
+  }
+  if (overwrite) {
     remove_if(is_frame_or_log);
   }
   write(manifest_name, manifest);
@@ -209,18 +216,22 @@ void OutputFolder::remove_parts() const {
   remove_if(is_part);
 }
 
-void OutputFolder::remove_if(bool (*unwanted)(const std::string& name)) const {
+std::vector<std::string> OutputFolder::names_of(bool (*wanted)(const std::string& name)) const {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
-    if (const std::string name = entry.path().filename().string(); unwanted(name)) {
+    if (const std::string name = entry.path().filename().string(); wanted(name)) {
       names.push_back(name);
     }
   }
   if (error) {
     throw OutputError(folder_, "cannot be listed: " + error.message());
   }
-  for (const std::string& name : names) {
+  return names;
+}
+
+void OutputFolder::remove_if(bool (*unwanted)(const std::string& name)) const {
+  for (const std::string& name : names_of(unwanted)) {
     remove(name);
   }
 }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sonard::server {
 
@@ -57,8 +58,9 @@ class OutputFolder {
   /// Manifest of the run that owns the folder; nullopt: no run yet. @throws OutputError
   std::optional<std::string> manifest() const;
   /// Claims the folder for a run with this manifest, written as the file run.json. An existing manifest must
-  /// be equal byte for byte; otherwise `overwrite` removes all frames and logs. The caller holds the lock.
-  /// @throws OutputError if the manifest differs, without `overwrite`
+  /// be equal byte for byte, and frames or logs need a manifest; otherwise `overwrite` removes all frames and
+  /// logs. The caller holds the lock.
+  /// @throws OutputError if the manifest differs, or is missing beside frames or logs, without `overwrite`
   void claim(const std::string& manifest, bool overwrite) const;
 
   /// Only one process at a time has a lock, on this machine or another that shares the folder. It ends with
@@ -80,6 +82,7 @@ class OutputFolder {
   void remove_parts() const;
 
  private:
+  std::vector<std::string> names_of(bool (*wanted)(const std::string& name)) const;
   void remove_if(bool (*unwanted)(const std::string& name)) const;
 
   std::filesystem::path folder_;

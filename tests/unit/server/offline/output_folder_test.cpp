@@ -80,6 +80,25 @@ TEST_F(OutputFolderTest, ARunThatIsTheSameMayGoOn) {
   EXPECT_THAT(names(), ElementsAre("ping_000000.png", "run.json"));
 }
 
+TEST_F(OutputFolderTest, FramesWithoutARunAreRefused) {
+  for (const char* name : {"ping_000000.png", "scan_000001.npy", "log_1980-01-01-000000.glf"}) {
+    folder.write(name, "x");
+    EXPECT_THAT(
+        [&] { folder.claim("{1}", false); },
+        testing::ThrowsMessage<OutputError>(AllOf(
+            StartsWith(folder.path().string() + ": the folder contains frames or logs, but no run.json"),
+            HasSubstr("--overwrite"))))
+        << name;
+    EXPECT_THAT(names(), ElementsAre(name));
+    folder.claim("{1}", true);
+    EXPECT_THAT(names(), ElementsAre("run.json"));
+    folder.remove("run.json");
+  }
+  folder.write("notes.txt", "x");
+  folder.claim("{1}", false);
+  EXPECT_THAT(names(), ElementsAre("notes.txt", "run.json"));
+}
+
 TEST_F(OutputFolderTest, AnotherRunIsRefusedByName) {
   folder.claim("{1}", false);
   try {
@@ -105,16 +124,16 @@ TEST_F(OutputFolderTest, AnotherRunIsToldByWhatDiffers) {
   };
   EXPECT_THAT(complaint(R"({"head": "bow", "settings": {"range_m": 30.0, "bits": 8}})",
                         R"({"head": "bow", "settings": {"range_m": 50.0, "bits": 8}})"),
-              HasSubstr("another run: settings.range_m was 30.0 and is 50.0 now (expected"));
+              HasSubstr("another run: settings.range_m was 30.0 and now is 50.0 (expected"));
   EXPECT_THAT(
       complaint(R"({"world_crc32": "1", "truth": false})", R"({"world_crc32": "2", "truth": true})"),
       HasSubstr("another run: truth was false and now is true; world is a different file, or was changed ("));
   EXPECT_THAT(complaint(R"({"head": "bow"})", R"({"head": "bow", "seed": 7})"),
-              HasSubstr("another run: seed was not set and is 7 now ("));
+              HasSubstr("another run: seed was not set and now is 7 ("));
   EXPECT_THAT(complaint(R"({"bodies_crc32": {"crab": "1"}})", R"({"bodies_crc32": {"crab": "2"}})"),
               HasSubstr("another run: bodies.crab is a different file, or was changed ("));
   EXPECT_THAT(complaint(R"({"a": 1, "b": 1, "c": 1, "d": 1, "e": 1, "f": 1, "g": 1})", "{}"),
-              HasSubstr("e was 1 and is not set now; and 2 more ("));
+              HasSubstr("e was 1 and now is not set; and 2 more ("));
   EXPECT_THAT(complaint("cut", "{}"), HasSubstr("another run: its run.json cannot be read ("));
 }
 
