@@ -338,7 +338,7 @@ void Check::check_recording() {
 void Check::try_folder(const std::filesystem::path& folder, const std::string& key) {
   namespace fs = std::filesystem;
   std::error_code error;
-  fs::path there = fs::absolute(folder);
+  fs::path there = fs::absolute(folder, error);
   while (!fs::exists(there, error) && there.has_relative_path()) {
     there = there.parent_path();
   }
@@ -428,7 +428,8 @@ void Check::try_connecting(std::size_t head) {
     const SteadyClock clock;
     kind_of(config_.heads[head]).connect(config_.heads[head], io, clock);
   } catch (const SocketError& error) {
-    problem(fmt::format("heads[{}].{}", head, kind_of(config_.heads[head]).socket_key()), error.what());
+    problem(fmt::format("heads[{}].{}", head, trouble_of(error, kind_of(config_.heads[head])).key),
+            error.what());
   }
 }
 

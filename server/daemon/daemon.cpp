@@ -217,7 +217,9 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     try {
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
-      throw StartError(head_key(i, kind_of(config.heads[i]).socket_key()), exit_network, error.what());
+      const SocketTrouble trouble = trouble_of(error, kind_of(config.heads[i]));
+      throw StartError(head_key(i, trouble.key), trouble.of_network ? exit_network : exit_config,
+                       error.what());
     }
   }
   for (PlannedSocket& socket : planned_sockets(config)) {

@@ -6,11 +6,20 @@
 #include <numbers>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
 #include "renderer/sample_grid/sample_grid.hpp"
+#include "server/net/pty_port.hpp"
 
 namespace sonard::server {
+
+SocketTrouble trouble_of(const SocketError& error, const DeviceKind& kind) {
+  if (const auto* const link = dynamic_cast<const PtyLinkError*>(&error)) {
+    return {fmt::format("serial.pty[{}].link", link->item), false};
+  }
+  return {kind.socket_key(), true};
+}
 
 // If the head looks straight up or down, heading and roll are not distinct: roll is then 0.
 SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m) {

@@ -22,6 +22,7 @@
 #include "server/logs/recording.hpp"
 #include "server/net/interfaces.hpp"
 #include "server/net/transport.hpp"
+#include "server/net/udp_endpoint.hpp"
 #include "server/recording/log.hpp"
 
 namespace boost::asio {
@@ -65,7 +66,7 @@ class DeviceKind : public HeadKind {
   /// Opens the sockets. @throws SocketError
   virtual std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                                    const Clock& clock) const = 0;
-  /// The configuration key that a SocketError is about.
+  /// The configuration key that a SocketError is about, except a PtyLinkError.
   virtual std::string socket_key() const = 0;
 
   /// A ping with the settings that clients usually request, for work before the first ping.
@@ -106,6 +107,13 @@ class DeviceKind : public HeadKind {
 inline const DeviceKind& kind_of(const HeadConfig& head) {
   return static_cast<const DeviceKind&>(*head.kind);
 }
+
+/// Where a SocketError of a head lies.
+struct SocketTrouble {
+  std::string key;         ///< of the head: "serial.pty[0].link"
+  bool of_network = true;  ///< it may pass; false: the configuration or a folder must change
+};
+SocketTrouble trouble_of(const SocketError& error, const DeviceKind& kind);
 
 /// Readings of a head's sensors if its mount has this pose.
 /// @param water_surface_z_m height of the surface in the world frame; nullopt: the world has no surface

@@ -81,7 +81,7 @@ void make_link(const fs::path& link, const std::string& target) {
   if (error == std::errc::file_exists) {
     const std::string before = linked_slave(link);
     if (before.empty()) {
-      throw SocketError(
+      throw PtyLinkError(
           fmt::format("cannot create the link {}: the path exists and is not a link to a pseudo terminal, so "
                       "sonard does not replace it",
                       link.string()));
@@ -91,7 +91,7 @@ void make_link(const fs::path& link, const std::string& target) {
     fs::create_symlink(target, link, error);
   }
   if (error) {
-    throw SocketError(
+    throw PtyLinkError(
         fmt::format("cannot create the link {} to {}: {}", link.string(), target, error.message()));
   }
 }

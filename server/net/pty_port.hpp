@@ -7,12 +7,20 @@
 #include <string>
 
 #include "server/net/serial_port.hpp"
+#include "server/net/udp_endpoint.hpp"
 
 namespace boost::asio {
 class io_context;
 }
 
 namespace sonard::server {
+
+/// The link to a pseudo terminal cannot be made. To try again is of no use: the configuration or the folder
+/// must change.
+struct PtyLinkError : SocketError {
+  using SocketError::SocketError;
+  std::size_t item = 0;  ///< place in SerialLinkConfig::pty
+};
 
 /// The slave is in raw mode, without echo, each time a client finds it closed; settings of the last client
 /// are undone, and its unread data is dropped. Several clients may open it at a time: as on a real tty, each
@@ -29,7 +37,7 @@ class PtyPort final : public SerialPort {
  public:
   static constexpr std::chrono::milliseconds look_again{20};
 
-  /// @throws SocketError
+  /// @throws SocketError, PtyLinkError
   PtyPort(boost::asio::io_context& io, const SerialPtyConfig& config);
   ~PtyPort() override;
 

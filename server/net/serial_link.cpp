@@ -88,8 +88,13 @@ SerialLink::Impl::Impl(asio::io_context& io, const SerialLinkConfig& config, con
   for (const SerialUdpConfig& item : config.udp) {
     open(udp, std::make_unique<UdpPort>(io, item));
   }
-  for (const SerialPtyConfig& item : config.pty) {
-    open(pty, std::make_unique<PtyPort>(io, item));
+  for (std::size_t i = 0; i < config.pty.size(); ++i) {
+    try {
+      open(pty, std::make_unique<PtyPort>(io, config.pty[i]));
+    } catch (PtyLinkError& error) {
+      error.item = i;
+      throw;
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "server/net/pty_port.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/server/net/link_fixture.hpp"
 
@@ -245,6 +246,16 @@ TEST_F(PtyLinkName, names_the_path_that_cannot_be_made) {
   EXPECT_THAT(complaint(),
               testing::AllOf(StartsWith("cannot create the link " + link_name_.string() + " to /dev/"),
                              HasSubstr("No such file or directory")));
+}
+
+TEST_F(PtyLinkName, says_which_of_several_links_cannot_be_made) {
+  const fs::path missing = folder_.path() / "no" / "such" / "folder";
+  try {
+    open({{}, {}, {{link_name_}, {missing}}, 0});
+    FAIL() << "it was made";
+  } catch (const PtyLinkError& error) {
+    EXPECT_EQ(error.item, 1U);
+  }
 }
 
 TEST_F(PtyLinkName, leaves_alone_what_somebody_else_has_put_there) {

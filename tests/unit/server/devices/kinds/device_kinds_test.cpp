@@ -9,6 +9,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "renderer/sonar_settings.hpp"
+#include "server/net/pty_port.hpp"
 
 namespace sonard::server {
 namespace {
@@ -68,6 +69,17 @@ TEST(DeviceKinds, UsualPulsesAreThoseOfTheDocuments) {
   };
   EXPECT_NEAR(pulse_s("gemini_720i"), 11 / 723e3, 1e-8);
   EXPECT_NEAR(pulse_s("ping360"), 53e-6, 1e-9);
+}
+
+TEST(DeviceKinds, NameThePtyLinkThatCannotBeMade) {
+  PtyLinkError link("cannot create the link");
+  link.item = 2;
+  for (const DeviceKind* kind : device_kinds()) {
+    EXPECT_EQ(trouble_of(link, *kind).key, "serial.pty[2].link");
+    EXPECT_FALSE(trouble_of(link, *kind).of_network);
+    EXPECT_EQ(trouble_of(SocketError("in use"), *kind).key, kind->socket_key());
+    EXPECT_TRUE(trouble_of(SocketError("in use"), *kind).of_network);
+  }
 }
 
 TEST(DeviceKinds, LayOutASurveyOfWholeFrames) {
