@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <system_error>
 
+#include <spdlog/spdlog.h>
+
 #include "server/devices/device_kind.hpp"
 
 namespace sonard::server {
@@ -28,7 +30,7 @@ McapFile::McapFile(const OutputFolder& folder, const std::vector<HeadConfig>& he
       setting_{config_, heads_, {}, 0, ""},
       log_(setting_) {
   folder_.remove(part_name);  // from an interrupted run
-  log_.file().begin(folder_.path() / part_name);
+  log_.file().begin(folder_.path() / part_name, GrowingLog::Lines::none);
   check();
 }
 
@@ -46,11 +48,12 @@ void McapFile::publish(const std::string& name) {
   if (std::rename((folder_.path() / part_name).c_str(), (folder_.path() / name).c_str()) != 0) {
     throw OutputError(folder_.path() / name, "cannot create it: " + std::generic_category().message(errno));
   }
+  spdlog::info("render: wrote {}", (folder_.path() / name).string());
 }
 
 void McapFile::check() const {
   if (log_.file().failed()) {
-    throw OutputError(folder_.path() / part_name, "cannot be written");
+    throw OutputError(folder_.path(), "cannot write the .mcap file in it: " + log_.file().error().message());
   }
 }
 

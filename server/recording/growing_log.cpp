@@ -5,7 +5,8 @@
 
 namespace sonard::server {
 
-void GrowingLog::begin(const std::filesystem::path& path) {
+void GrowingLog::begin(const std::filesystem::path& path, Lines lines) {
+  lines_ = lines;
   begun_ = true;
   std::error_code error;
   file_ = AppendFile::create(path, error);
@@ -13,7 +14,9 @@ void GrowingLog::begin(const std::filesystem::path& path) {
     fail(error);
     return;
   }
-  spdlog::info("recording: writes {}", path.string());
+  if (lines_ == Lines::all) {
+    spdlog::info("recording: writes {}", path.string());
+  }
 }
 
 void GrowingLog::append(std::span<const std::uint8_t> piece) {
@@ -61,9 +64,12 @@ void GrowingLog::end() {
 
 void GrowingLog::fail(const std::error_code& error) {
   failed_ = true;
+  error_ = error;
   file_.close();
-  spdlog::error("recording: cannot write {}: {}; this log ends here, serving continues",
-                file_.path().string(), error.message());
+  if (lines_ == Lines::all) {
+    spdlog::error("recording: cannot write {}: {}; this log ends here, serving continues",
+                  file_.path().string(), error.message());
+  }
 }
 
 }  // namespace sonard::server

@@ -20,11 +20,14 @@ class GrowingLog {
 
   bool begun() const { return begun_; }
   bool failed() const { return failed_; }
+  const std::error_code& error() const { return error_; }  ///< why it failed
   std::uint64_t size() const { return file_.size(); }
   const std::filesystem::path& path() const { return file_.path(); }
 
+  /// Lines in the program's log: none for a file with a temporary name, whose owner logs its own.
+  enum class Lines : std::uint8_t { all, none };
   /// Creates the file. Call it once.
-  void begin(const std::filesystem::path& path);
+  void begin(const std::filesystem::path& path, Lines lines = Lines::all);
   /// Appends a piece after which the file is whole or recoverable. Discarded before begin().
   void append(std::span<const std::uint8_t> piece);
   /// Overwrites bytes that were appended.
@@ -42,6 +45,8 @@ class GrowingLog {
   AppendFile file_;
   bool begun_ = false;
   bool failed_ = false;
+  std::error_code error_;
+  Lines lines_ = Lines::all;
 };
 
 }  // namespace sonard::server
