@@ -433,7 +433,8 @@ int main_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool has_option = argc > 1 && argv[1][0] == '-';
     if (app.get_subcommands().empty() && !has_option) {
-      fmt::print(stderr, "{}\n", missing_subcommand(app, argc > 1 ? argv[1] : ""));
+      const std::filesystem::path first = argc > 1 ? argv[1] : "";
+      fmt::print(stderr, "{}\n", missing_subcommand(app, first));
       return exit_usage;
     }
     return app.exit(error) == 0 ? exit_clean : exit_usage;

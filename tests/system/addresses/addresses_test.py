@@ -231,7 +231,7 @@ class AddressThatChanges(Machine):
                 self.give(NEW)
                 daemon.wait_for_line(f"head={name}: follows eth0: its address is {NEW} now", PATIENCE_S)
                 daemon.signal(signal.SIGHUP)
-                daemon.wait_for_line("beginning anew", PATIENCE_S)
+                daemon.wait_for_line("configuration valid, restarting", PATIENCE_S)
                 daemon.wait_for_line("sonard ready", START_S, count=2)
                 daemon.kill()
                 self.take(NEW)

@@ -211,7 +211,7 @@ class CutFiles(World):
                 ("hull.glb", MESH, glb(1), "its header declares 132 bytes, there are 131"),
                 ("hull.dae", MESH, collada.encode(), "it does not end with </COLLADA>"),
                 ("hull.3ds", MESH, struct.pack("<HI", 0x4D4D, 5000) + bytes(99), "declares 5000 bytes"),
-                ("hull.obj", MESH, b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "out of range"),
+                ("hull.obj", MESH, b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "expected one of the 2 vertices"),
                 ("bed.png", HEIGHTMAP, png(64, 64)[:-20], "its chunk IDAT declares"),
                 ("bed.pgm", HEIGHTMAP, b"P5 64 64 255\n" + bytes(999), "its header declares"),
                 ("bed.tif", HEIGHTMAP, tif[:-8], "its directory is damaged"),

@@ -251,7 +251,7 @@ class Signals(DaemonCase):
         before, self.port = self.port, free_port()
         self.configuration()
         daemon.signal(signal.SIGHUP)
-        daemon.wait_for_line("beginning anew", PATIENCE_S)
+        daemon.wait_for_line("configuration valid, restarting", PATIENCE_S)
         daemon.wait_for_line("sonard ready", START_S, count=2)
         self.configured(self.client())
         with self.assertRaises(ConnectionRefusedError):
@@ -713,7 +713,7 @@ class Micron(DaemonCase):
         self.configured(client)
         self.lines(client, 5)
         daemon.wait_for_line(r"head=stern: scanning$", PATIENCE_S)
-        daemon.wait_for_line(r"pings: range=10\.18m bins=400 .* scan=all_round step=1\.80deg direction=right inverted=no$",
+        daemon.wait_for_line(r"pings range=10\.18m bins=400 .* scan=all_round step=1\.80deg direction=right inverted=no$",
                              PATIENCE_S)
         daemon.wait_for_line(r"head=stern: ready$", PATIENCE_S)
 

@@ -573,11 +573,11 @@ TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
                                 HasSubstr("(to set the absorption, use water.absorption_db_per_km)"))));
   EXPECT_THAT(warnings("m750d", "{}"), IsEmpty());
   EXPECT_THAT(warnings("m750d", "{salinity_ppt: 0}"),
-              ElementsAre(HasSubstr("for: 0 ppt are not within 30 to 35 ppt.")));
-  EXPECT_THAT(
-      warnings("m1200d", "{temperature_c: 35}"),
-      ElementsAre(HasSubstr("for: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
-                            "degrees.")));
+              ElementsAre(HasSubstr("not valid here: 0 ppt are not within 30 to 35 ppt.")));
+  EXPECT_THAT(warnings("m1200d", "{temperature_c: 35}"),
+              ElementsAre(HasSubstr(
+                  "here: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
+                  "degrees.")));
 }
 
 TEST_F(Loader, refuses_masks_with_holes) {
@@ -751,7 +751,7 @@ TEST_F(Loader, refuses_heads_that_overlap) {
                   HasSubstr(":13:15: heads[1].sonar_id: 513 is already used by heads[0]"),
                   HasSubstr(":14:34: heads[1].network.bind: UDP 127.0.0.2:52901 overlaps 127.0.0.2:52901 of "
                             "heads[0].network.bind"),
-                  HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 already belongs")));
+                  HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 is already used")));
 }
 
 TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
