@@ -59,7 +59,7 @@ TEST(GlDevices, WhatIsNotThereIsToldWithWhatIs) {
   EXPECT_THAT(complaint({}, ""), HasSubstr("no OpenGL 4.5 through EGL: EGL lists no device"));
   EXPECT_THAT(complaint({none}, ""), HasSubstr("0: no OpenGL 4.5, /dev/dri/card2"));
   EXPECT_THAT(complaint({none, software}, "0"), HasSubstr("gpu.device: no device '0' with OpenGL 4.5"));
-  EXPECT_THAT(complaint({software}, "1"), HasSubstr("there is 0: Mesa / llvmpipe"));
+  EXPECT_THAT(complaint({software}, "1"), HasSubstr("found 0: Mesa / llvmpipe"));
   EXPECT_THAT(complaint({software}, "radeon"), HasSubstr("'radeon'"));
 }
 

@@ -98,7 +98,7 @@ TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
   config_.heads[0].hides_vehicle = true;
   config_.poses.gazebo.emplace();
   EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].hides_vehicle", "expected world.vehicle_model"),
-                                  is_problem("poses.gazebo.vehicle", "is required")));
+                                  is_problem("poses.gazebo.vehicle", "expected the name of an entity")));
   config_.vehicle_model = "rov";
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.poses.gazebo->vehicle.name, "rov");

@@ -57,7 +57,7 @@ TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
   log.warn("again");
   log.warn("again");
   ASSERT_EQ(lines->texts.size(), 11U);
-  EXPECT_THAT(lines->texts.back(), HasSubstr("again (20 lines"));
+  EXPECT_THAT(lines->texts.back(), HasSubstr("again (20 earlier lines"));
 }
 
 TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
