@@ -10,7 +10,7 @@ SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
   if (preset == Sampling::Preset::fast) {
     accuracy.most_divisions = 5;
     accuracy.most_divisions_of_lone_echoes = 25;
-    accuracy.disagreement = accuracy.disagreement_with_facets = 2.5e-2F;
+    accuracy.disagreement = 2.5e-2F;
     accuracy.shift_lines = 0.9F;
     accuracy.sagitta_lines = 3e-3F;
     accuracy.linearity = 0.15F;
@@ -20,7 +20,7 @@ SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
     accuracy.facet_lines = 0.012F;
   } else if (preset == Sampling::Preset::reference) {
     accuracy.slices_per_beam = 9;
-    accuracy.disagreement = accuracy.disagreement_with_facets = 1e-4F;
+    accuracy.disagreement = 1e-4F;
     accuracy.shift_lines = 0.02F;
     accuracy.sagitta_lines = 5e-5F;
     accuracy.linearity = 0.005F;

@@ -23,9 +23,6 @@ struct SliceAccuracy {
   /// shares are weighted by the elevation pattern. The sum over the beam is computed as for independent
   /// errors.
   float disagreement = 2e-3F;
-  /// Replaces `disagreement` if parts have facets: their echo is concentrated at few elevations, so an error
-  /// there counts more.
-  float disagreement_with_facets = 6e-4F;
   /// Slices are also divided while the elevations at which they disagree may move the centroid of the beam's
   /// echo by more than this, because a few elevations may hold much of an echo.
   float shift_lines = 0.2F;

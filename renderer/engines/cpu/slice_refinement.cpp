@@ -167,7 +167,7 @@ void SliceSampler::compare_neighbours(const Setting& setting) {
       const float lines = std::max(1.0F, std::min(port.sides.lines, starboard.sides.lines));
       const float narrower = std::min(setting.share_of_beam(port), setting.share_of_beam(starboard));
       const Comparison compare{setting.side_view, setting.accuracy.sagitta_lines * lines * setting.line_m,
-                               setting.disagreement() / narrower};
+                               setting.accuracy.disagreement / narrower};
       port.to_starboard = compare(port, starboard);
     }
   });
@@ -228,7 +228,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
     if (width * static_cast<float>(most_divisions) < 1.5F) {
       continue;
     }
-    const float most = setting.disagreement() * ensonified[beam] / width;
+    const float most = setting.accuracy.disagreement * ensonified[beam] / width;
     const float most_mismatch = most / std::sqrt(in_error[beam]);
     const bool shifted =
         std::max(port.shift_lines, starboard.shift_lines) * width > setting.accuracy.shift_lines;

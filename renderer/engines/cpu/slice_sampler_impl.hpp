@@ -22,9 +22,6 @@ struct SliceSampler::Setting {
   float line_m;
   SideView side_view;
 
-  float disagreement() const {
-    return any_facets ? accuracy.disagreement_with_facets : accuracy.disagreement;
-  }
   float share_of_beam(const SliceCell& cell) const {
     return cell.slice.width_rad / static_cast<float>(fan.edge_rad(cell.beam) - fan.edge_rad(cell.beam + 1));
   }
