@@ -21,7 +21,7 @@ PROMISES = {"fast": {"bin_rms": 0.05, "total_p99": 0.01, "centroid_lines_p99": 2
 # Facets concentrate the echo, so that a small displacement of an edge changes the sums of a beam more.
 PROMISES_WITH_FACETS = {"fast": {"bin_rms": 0.05, "total_p99": 0.02, "centroid_lines_p99": 4.0, "first_echo_lines_p99": 2.0,
                                  "holes": 1e-3},
-                        "default": {"bin_rms": 0.01, "total_p99": 0.003, "centroid_lines_p99": 0.75,
+                        "default": {"bin_rms": 0.0125, "total_p99": 0.003, "centroid_lines_p99": 0.75,
                                     "first_echo_lines_p99": 1.0, "holes": 1e-4}}
 WITH_FACETS = ["docking_demo"]
 COLUMNS = {"bin_rms": ("bins %", 100), "total_p99": ("total %", 100), "centroid_lines_p99": ("centroid", 1),

@@ -170,7 +170,6 @@ std::vector<Candidate> candidates(int drawn, unsigned seed) {
     set.most_divisions = divisions.at(static_cast<std::size_t>(std::clamp(rank, 0.0, 7.0)));
     set.first_in_five = std::bernoulli_distribution(std::clamp(along, 0.0, 0.7))(random);
     set.disagreement = between(exact.disagreement, coarse.disagreement);
-    set.disagreement_with_facets = between(exact.disagreement_with_facets, coarse.disagreement_with_facets);
     set.shift_lines = between(exact.shift_lines, coarse.shift_lines);
     set.sagitta_lines = between(exact.sagitta_lines, coarse.sagitta_lines);
     set.linearity = between(exact.linearity, coarse.linearity);
@@ -188,7 +187,6 @@ ordered_json parameters(const SliceAccuracy& set) {
           {"most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes},
           {"first_in_five", set.first_in_five},
           {"disagreement", set.disagreement},
-          {"disagreement_with_facets", set.disagreement_with_facets},
           {"shift_lines", set.shift_lines},
           {"sagitta_lines", set.sagitta_lines},
           {"linearity", set.linearity},
@@ -205,7 +203,6 @@ SliceAccuracy accuracy_of(const nlohmann::json& row) {
   read("most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes);
   read("first_in_five", set.first_in_five);
   read("disagreement", set.disagreement);
-  read("disagreement_with_facets", set.disagreement_with_facets);
   read("shift_lines", set.shift_lines);
   read("sagitta_lines", set.sagitta_lines);
   read("linearity", set.linearity);
