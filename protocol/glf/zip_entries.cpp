@@ -304,15 +304,21 @@ std::optional<DamagedDat> damaged_dat(std::span<const std::uint8_t> archive, std
     return std::pair(begins_with_a_record(dat), dat.pieces.size() + dat.unpacked.size());
   };
   std::optional<DamagedDat> best;
+  std::optional<Content> tried;
   for (const auto& find : {content_by_local_header, content_by_directory, content_by_blocks}) {
     if (find == content_by_blocks && best && begins_with_a_record(*best)) {
       break;
     }
-    if (const auto content = find(archive)) {
-      DamagedDat dat = dat_in(*content, max_size);
-      if (!best || rank(dat) > rank(*best)) {
-        best = std::move(dat);
-      }
+    const auto content = find(archive);
+    const bool again = content && tried && content->data.data() == tried->data.data() &&
+                       content->deflated == tried->deflated;
+    if (!content || again) {  // header and directory mostly agree; unpacking takes long
+      continue;
+    }
+    tried = content;
+    DamagedDat dat = dat_in(*content, max_size);
+    if (!best || rank(dat) > rank(*best)) {
+      best = std::move(dat);
     }
   }
   return best;
