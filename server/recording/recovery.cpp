@@ -144,6 +144,10 @@ std::string lost_messages(const mcap::DamagedChunk& part) {
 
 /// @return nullopt if records follow no damaged part, so that the file is at most cut
 std::optional<Mending> rebuilding_of_mcap(std::span<const std::uint8_t> file) {
+  const auto section = mcap::scan_data_section(file, OnDamage::skip);
+  if (section && section->damaged.empty() && !section->error) {
+    return std::nullopt;
+  }
   const auto front = mcap::scan_data_section(file);
   auto rebuilt = mcap::rebuild(file);
   if (!rebuilt || rebuilt->summary.chunks.empty()) {
