@@ -81,8 +81,8 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
     const float displaced = sagitta > difference ? sagitta : difference;
     curved += (in_range & all_seen & (displaced > most_sagitta * product)) ? weight[i] : 0;
   }
-  const float mismatch = static_cast<float>(mismatched) / (side_probes * SideView::unit);
-  return {mismatch, static_cast<float>(curved) / (side_probes * SideView::unit),
+  const float mismatch = static_cast<float>(mismatched) / (side_probes * probe_weight_unit);
+  return {mismatch, static_cast<float>(curved) / (side_probes * probe_weight_unit),
           mismatch > 0 && mismatch < divided_anyway ? shift_lines(port_side, starboard_side) : 0.0F};
 }
 
@@ -135,7 +135,7 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
   OfProbes echo, moment, error, error_moment;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float a = wa[i], b = wb[i], scale = secant[i], next_scale = secant[i + 1];
-    const float pattern = static_cast<float>(weight[i]) / SideView::unit;
+    const float pattern = static_cast<float>(weight[i]) / probe_weight_unit;
     const float moment_a = moment_of(a, wa[i + 1], scale, next_scale, pattern), echo_a = moment_a * a;
     const float moment_b = moment_of(b, wb[i + 1], scale, next_scale, pattern), echo_b = moment_b * b;
     const float nearer = a > b ? a : b;

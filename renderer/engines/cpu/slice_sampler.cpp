@@ -138,6 +138,16 @@ void SliceSampler::place_parts(const Pose& T_world_sonar) {
   }
 }
 
+const SliceSampler::Elevations& SliceSampler::elevations_of(const Aperture& aperture, float tan_limit) {
+  if (!elevations_ || elevations_->elevation != aperture.elevation ||
+      elevations_->vertical_beamwidth_rad != aperture.vertical_beamwidth_rad) {
+    elevations_ = std::make_unique<const Elevations>(Elevations{
+        aperture.elevation, aperture.vertical_beamwidth_rad,
+        ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)), probe_weights(aperture, tan_limit)});
+  }
+  return *elevations_;
+}
+
 std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   if (cells_used_ == cells_.size()) {
     cells_.push_back(std::make_unique<SliceCell>());
@@ -176,14 +186,14 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                                                    const SliceAccuracy& accuracy) {
   place_parts(T_world_sonar);
   const Fan fan(aperture, sampled_range_m);
+  const Elevations& elevations = elevations_of(aperture, fan.tan_limit());
   setting_ = std::make_unique<const Setting>(
-      Setting{fan, ElevationPattern(aperture, !skip_.on(SkipRule::flat_elevation)), surface, accuracy,
-              surfaces_, any_mapped_,
+      Setting{fan, elevations.pattern, surface, accuracy, surfaces_, any_mapped_,
               std::any_of(surfaces_.begin(), surfaces_.end(),
                           [](const PartSurface& part) { return part.vertex_normals; }),
               surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
               static_cast<float>(range.step_m),
-              SideView(aperture, fan.tan_limit(), static_cast<float>(range.max_range_m()),
+              SideView(elevations.probes, fan.tan_limit(), static_cast<float>(range.max_range_m()),
                        static_cast<float>(range.step_m))});
   triangles_.find(placed_, fan, bend_, workers_, skip_);
   if (setting_->any_vertex_normals) {

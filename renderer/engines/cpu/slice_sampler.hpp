@@ -86,11 +86,13 @@ class SliceSampler {
     bool vertex_normals = false;
   };
   struct Prepared;
+  struct Elevations;
   struct Setting;
   struct Scratch;
 
   void add_part(const BodyPart& part, Prepared& prepared);
   void place_parts(const Pose& T_world_sonar);
+  const Elevations& elevations_of(const Aperture& aperture, float tan_limit);
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
   static void see_cell(const Setting& setting, Scratch& scratch, SliceCell& cell);
@@ -122,7 +124,8 @@ class SliceSampler {
   std::size_t cells_used_ = 0;
   std::vector<std::size_t> order_;  ///< cells from port to starboard
   SkipCounts skipped_;
-  std::unique_ptr<const Setting> setting_;  ///< of the last call
+  std::unique_ptr<const Elevations> elevations_;  ///< of the last call
+  std::unique_ptr<const Setting> setting_;        ///< of the last call
 };
 
 }  // namespace sonard::render

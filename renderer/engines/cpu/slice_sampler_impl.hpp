@@ -9,10 +9,19 @@
 
 namespace sonard::render {
 
+/// Tables of the elevation pattern. Pings with one aperture share them: they take as long as a quarter of a
+/// narrow ping.
+struct SliceSampler::Elevations {
+  Aperture::Elevation elevation;
+  double vertical_beamwidth_rad;
+  ElevationPattern pattern;
+  ProbeWeights probes;
+};
+
 /// Constants of one ping.
 struct SliceSampler::Setting {
   Fan fan;
-  ElevationPattern pattern;
+  const ElevationPattern& pattern;
   SurfaceModel surface;
   SliceAccuracy accuracy;
   const std::vector<PartSurface>& parts;

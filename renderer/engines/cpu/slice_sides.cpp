@@ -19,6 +19,11 @@ float probe_step(float tan_limit) {
   return -2 * first_probe(tan_limit) / (side_probes - 1);
 }
 
+/// The tangent of the elevation of a probe.
+float probe_at(float tan_limit, std::size_t i) {
+  return first_probe(tan_limit) + static_cast<float>(i) * probe_step(tan_limit);
+}
+
 /// Computes shares and lines of SliceSides from its profiles. Ranges are positive, so their bit patterns have
 /// the same order; GCC 12 vectorises extremes of integers only.
 SONARD_SIMD_CLONES
@@ -45,28 +50,36 @@ void summarise(const SideView& view, SliceSides& sides) {
     furthest = high > furthest ? high : furthest;
   }
   sides.ensonified =
-      static_cast<float>(in_range_port + in_range_starboard) / (2 * side_probes * SideView::unit);
+      static_cast<float>(in_range_port + in_range_starboard) / (2 * side_probes * probe_weight_unit);
   sides.one_sided =
-      static_cast<float>(std::abs(in_range_port - in_range_starboard)) / (side_probes * SideView::unit);
+      static_cast<float>(std::abs(in_range_port - in_range_starboard)) / (side_probes * probe_weight_unit);
   const float span_m = std::bit_cast<float>(furthest) - std::bit_cast<float>(nearest);
   sides.lines = span_m > 0 ? span_m / view.line_m : 0.0F;
 }
 
 }  // namespace
 
-SideView::SideView(const Aperture& aperture, float tan_limit_, float max_range_m_, float line_m_)
-    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight() {
+ProbeWeights probe_weights(const Aperture& aperture, float tan_limit) {
   std::array<double, side_probes> pattern{};
   double sum = 0.0;
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = first_probe(tan_limit) + static_cast<float>(i) * probe_step(tan_limit);
-    secant[i] = std::sqrt(1 + t * t);
+    const float t = probe_at(tan_limit, i);
     pattern[i] = aperture.elevation_weight(std::atan(static_cast<double>(t)));
     sum += pattern[i];
   }
+  ProbeWeights weights{};
   for (std::size_t i = 0; i < side_probes; ++i) {
-    weight[i] =
-        static_cast<std::int32_t>(std::lround(static_cast<double>(unit) * side_probes * pattern[i] / sum));
+    const double share = side_probes * pattern[i] / sum;
+    weights[i] = static_cast<std::int32_t>(std::lround(static_cast<double>(probe_weight_unit) * share));
+  }
+  return weights;
+}
+
+SideView::SideView(const ProbeWeights& weight_, float tan_limit_, float max_range_m_, float line_m_)
+    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight(weight_) {
+  for (std::size_t i = 0; i < side_probes; ++i) {
+    const float t = probe_at(tan_limit, i);
+    secant[i] = std::sqrt(1 + t * t);
   }
 }
 

@@ -18,22 +18,25 @@ using SideProfile = std::array<float, side_probes + probe_padding>;
 /// Expectation of a slice at both sides of its wedge; neighbours compare theirs.
 struct SliceSides {
   SideProfile port, starboard;
-  // Shares of elevations, weighted by the elevation pattern (SideView::weight).
+  // Shares of elevations, weighted by the elevation pattern (ProbeWeights).
   float ensonified = 0.0F;  ///< at which a surface is expected within the range
   float one_sided = 0.0F;   ///< at which only one side expects a surface
   float lines = 0.0F;       ///< range lines over which the expected ranges spread
 };
 
+/// The elevation pattern at the probes, divided by its mean: errors in a side lobe count little. In whole
+/// numbers of 1 / probe_weight_unit, because sums of floats do not vectorise.
+using ProbeWeights = std::array<std::int32_t, side_probes>;
+inline constexpr float probe_weight_unit = 1024.0F;
+ProbeWeights probe_weights(const Aperture& aperture, float tan_limit);
+
 /// The elevations and the range for the comparison of sides, for one ping.
 struct SideView {
-  SideView(const Aperture& aperture, float tan_limit, float max_range_m, float line_m);
+  SideView(const ProbeWeights& weight, float tan_limit, float max_range_m, float line_m);
 
   float tan_limit, max_range_m, line_m;
   SideProfile secant;  ///< of the probes' elevations: range = secant / w
-  /// Elevation pattern at the probes, divided by its mean: errors in a side lobe count little. In whole
-  /// numbers, because sums of floats do not vectorise; `unit` is 1.
-  std::array<std::int32_t, side_probes> weight;
-  static constexpr float unit = 1024.0F;
+  const ProbeWeights& weight;
 };
 
 /// Computes SliceSides. One per thread; reuses its memory.
