@@ -63,14 +63,22 @@ std::string head_of(const std::filesystem::path& file, std::size_t limit) {
   return text;
 }
 
+namespace {
+
+std::string cannot_be_read(const std::filesystem::path& path, const std::error_code& why) {
+  return fmt::format("{}: cannot be read: {} (expected a file that the user of sonard may read)",
+                     path.string(), why.message());
+}
+
+}  // namespace
+
 std::string trouble_reaching(const std::filesystem::path& path) {
   std::error_code why;
   if (std::filesystem::exists(path, why) ||
       (why != std::errc::permission_denied && why != std::errc::too_many_symbolic_link_levels)) {
     return {};
   }
-  return fmt::format("{}: cannot be read: {} (expected a file that the user of sonard may read)",
-                     path.string(), why.message());
+  return cannot_be_read(path, why);
 }
 
 void require_reachable(const std::filesystem::path& path) {
@@ -82,8 +90,7 @@ void require_reachable(const std::filesystem::path& path) {
 void require_readable(const std::filesystem::path& file) {
   if (faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0) {
     const std::error_code why(errno, std::generic_category());
-    throw WorldError(fmt::format("{}: cannot be read: {} (expected a file that the user of sonard may read)",
-                                 file.string(), why.message()));
+    throw WorldError(cannot_be_read(file, why));
   }
 }
 
