@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -254,9 +253,11 @@ class Rewriter {
     if (std::ranges::all_of(corners_, lacks)) {
       return;
     }
-    for (Corner& corner : corners_ | std::views::filter(lacks)) {
-      corner.*attribute = zero;
-      count_bad(line);
+    for (Corner& corner : corners_) {
+      if (lacks(corner)) {
+        corner.*attribute = zero;
+        count_bad(line);
+      }
     }
   }
 
