@@ -31,7 +31,7 @@ std::string header(std::string_view dtype, int rows, int columns);
 std::string encode(const Table& table);
 
 /// Parses a file with a table of at least one sample in C order.
-/// @return the table, or what is wrong with the file: "is not a NumPy file of format 1.0"
+/// @return the table, or the error of the file: "is not a NumPy file of format 1.0"
 Result<Table, std::string> parse(std::string_view file);
 
 }  // namespace sonard::npy

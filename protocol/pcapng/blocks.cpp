@@ -136,8 +136,8 @@ class BlockCheck {
                : std::nullopt;
   }
 
-  bool ours_ =
-      false;  ///< sonard wrote the section, so it has only BlockType blocks, raw links and IPv4 packets
+  /// sonard wrote the section, so it has only BlockType blocks, raw links and IPv4 packets.
+  bool ours_ = false;
 };
 
 /// Offset of the next block of a known type after `offset`. Blocks begin at multiples of four bytes,

@@ -121,8 +121,8 @@ std::optional<ForeignName> foreign_name(std::string_view name) {
   return is_known ? std::nullopt : std::optional(parts);
 }
 
-/// What is wrong with an element or attribute that looks like ours, and what to write; empty if it belongs to
-/// another program.
+/// The error of an element or attribute that looks like ours, with advice; empty if it belongs to another
+/// program.
 std::string advice_for(const ForeignName& name, bool is_attribute) {
   const std::string similar = is_attribute ? similar_own_name(name.local, own_attributes)
                                            : similar_own_name(name.local, own_elements);

@@ -14,9 +14,8 @@ constexpr std::string_view complaint = "unknown key";
 
 /// The paths at which a key's name is known.
 struct KnownPaths {
-  std::set<std::string> of_key;  ///< "acoustics.physical.multipath"
-  std::set<std::string>
-      of_value;  ///< the same; the path of a mapping's first key in place of the mapping's own
+  std::set<std::string> of_key;    ///< "acoustics.physical.multipath"
+  std::set<std::string> of_value;  ///< of a mapping, the path of its first key
 };
 
 /// All names of keys, each with its paths. The keys of a head have paths that begin at the head, as in the

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The result of `sonard_bench --quick`: what was measured, comparable between machines, beside the promise.
+// The table of `sonard_bench --quick`: times, their ratios to plain rays, errors, and the promises of
+// presets.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace sonard::bench {
 
-/// One line of the table. Only the values that were measured, and that exist for this line, are set.
+/// One line of the table. Values that were not measured, or do not exist for this line, are not set.
 struct QuickRow {
   std::string what;
   std::optional<double> ms{};
