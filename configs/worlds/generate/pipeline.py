@@ -11,8 +11,9 @@ from seabed import Line
 class Pipeline:
     """Runs along x. `sway(x)` is its y; the bed under it is the natural seabed, averaged as a stiff pipe does."""
 
-    def __init__(self, seabed, sway, start_x, end_x, diameter_m, burial):
-        """`burial` is the share of the diameter below the bed: a function of x."""
+    def __init__(self, seabed, sway, start_x, end_x, diameter_m, burial, trench_m=0.07):
+        """`burial` is the share of the diameter below the bed: a function of x. Beside the pipe the bed is washed out
+        to a depth of `trench_m`."""
         self.seabed, self.sway = seabed, sway
         self.start_x, self.end_x = start_x, end_x
         self.radius = 0.5 * diameter_m
@@ -23,7 +24,7 @@ class Pipeline:
                   for k in range(len(xs))]
         self.bed = Line(xs, smooth)
         self.burial = burial
-        seabed.trench(lambda x: (sway(x), self.bed(x)), 2.6 * self.radius, 0.07)
+        seabed.trench(lambda x: (sway(x), self.bed(x)), 2.6 * self.radius, trench_m)
 
     def centre(self, x):
         return (x, self.sway(x), self.bed(x) + self.radius * (1.0 - 2.0 * self.burial(x)))

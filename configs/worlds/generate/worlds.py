@@ -204,7 +204,7 @@ def ssiv():
 
 def manifold():
     folder = "meshes/manifold"
-    seabed = Seabed(seed=61, depth_m=25.147, undulation_m=0.20, ripple_height_m=0.04, ripple_length_m=2.1,
+    seabed = Seabed(seed=61, depth_m=25.147, undulation_m=0.20, ripple_height_m=0.03, ripple_length_m=2.1,
                     ripple_heading_rad=math.radians(115.0))
 
     def sway(x):
@@ -214,7 +214,7 @@ def manifold():
         # Negative: the flowlines come down from the ends of the cover.
         at_end = 0.5 * (1.0 - FLOWLINE_TIE_IN / FLOWLINE_RADIUS)
         t = smoothstep(COVER_HALF[0] + 0.5, 8.5, abs(x))
-        return at_end * (1.0 - t) + (0.55 + 0.06 * math.sin(x / 4.0)) * t
+        return at_end * (1.0 - t) + (0.65 + 0.06 * math.sin(x / 4.0)) * t
 
     level = round(seabed.natural(0.0, 0.0), 3)
     natural = seabed.natural
@@ -225,8 +225,8 @@ def manifold():
 
     seabed.natural = natural_at_cover
     reach = COVER_HALF[0] + 0.5
-    west = Pipeline(seabed, sway, -27.0, -reach, 2.0 * FLOWLINE_RADIUS, burial)
-    east = Pipeline(seabed, sway, reach, 27.0, 2.0 * FLOWLINE_RADIUS, burial)
+    west = Pipeline(seabed, sway, -27.0, -reach, 2.0 * FLOWLINE_RADIUS, burial, 0.03)
+    east = Pipeline(seabed, sway, reach, 27.0, 2.0 * FLOWLINE_RADIUS, burial, 0.03)
     # The corridor of the installation: level under the cover and as far as its shadow reaches in the demo.
     seabed.flatten((0.0, 3.9), (3.6, 6.9), level, 3.0)
     for sx in (-1, 1):
