@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/oculus/codec.hpp"
 
+#include <array>
 #include <cassert>
+#include <tuple>
 
 #include "protocol/oculus/image_form.hpp"
 #include "protocol/oculus/layout.hpp"
@@ -28,10 +30,37 @@ Header take_header(ByteReader& reader) {
   return header;
 }
 
+// The sign of a zero means nothing, but clients print it.
+void make_zero_positive(double& value) {
+  value += 0.0;
+}
+template <std::size_t N>
+void make_zero_positive(std::array<double, N>& values) {
+  for (double& value : values) {
+    make_zero_positive(value);
+  }
+}
+template <class Value>
+void make_zero_positive(Value&) {}
+
+template <class Message, class Member>
+void make_zero_positive(Message& message, const Field<Message, Member>& field) {
+  make_zero_positive(message.*field.member);
+}
+template <class Message, std::size_t Size>
+void make_zero_positive(Message&, const Spare<Size>&) {}
+
+/// Writes `message` by `Table`, with 0.0 in place of -0.0.
+template <class Table, class Message>
+void write_message(ByteWriter& writer, Message message) {
+  std::apply([&](const auto&... field) { (make_zero_positive(message, field), ...); }, Table::fields);
+  write_fields<Table>(writer, message);
+}
+
 void write_fire(ByteWriter& writer, const SimpleFire& fire) {
-  write_fields<FireLayout>(writer, fire.fire);
+  write_message<FireLayout>(writer, fire.fire);
   if (fire.extension) {
-    write_fields<FireExtensionLayout>(writer, *fire.extension);
+    write_message<FireExtensionLayout>(writer, *fire.extension);
   }
 }
 
@@ -40,7 +69,7 @@ std::vector<std::uint8_t> encode_fixed(MessageId id, const Message& message, con
   std::vector<std::uint8_t> bytes;
   ByteWriter writer(bytes);
   write_fields<HeaderLayout>(writer, header_of(id, 0, Layout::size, identity));
-  write_fields<Layout>(writer, message);
+  write_message<Layout>(writer, message);
   return bytes;
 }
 
@@ -127,9 +156,9 @@ std::vector<std::uint8_t> encode(const PingResult& ping, const Identity& identit
       writer, header_of(MessageId::simple_ping_result, ping.fire.version, stated.message_size, identity));
   write_fire(writer, ping.fire);
   if (second) {
-    write_fields<ResultV2Layout>(writer, stated);
+    write_message<ResultV2Layout>(writer, stated);
   } else {
-    write_fields<ResultV1Layout>(writer, stated);
+    write_message<ResultV1Layout>(writer, stated);
   }
   for (const std::int16_t bearing : ping.bearings_cdeg) {
     write_value(writer, bearing);

@@ -128,6 +128,32 @@ TEST(OculusExamples, status_both_ways) {
   EXPECT_TRUE(decode_status(load_fixture("status")).value() == status);
 }
 
+/// A ping with this value in every floating-point field.
+PingResult ping_of(double value, bool second_version) {
+  PingResult ping;
+  ping.fire.fire.range = ping.fire.fire.gain_percent = value;
+  ping.fire.fire.sound_speed_mps = ping.fire.fire.salinity_ppt = value;
+  if (second_version) {
+    ping.fire.extension = FireExtension{};
+  }
+  ping.frequency_hz = ping.temperature_c = ping.pressure_bar = value;
+  ping.heading_deg = ping.pitch_deg = ping.roll_deg = value;
+  ping.sound_speed_mps = ping.start_time_s = ping.range_resolution_m = value;
+  ping.image_offset = 2048;
+  return ping;
+}
+
+TEST(OculusExamples, a_zero_is_positive_on_the_wire) {
+  for (const bool second_version : {false, true}) {
+    EXPECT_EQ(encode(ping_of(-0.0, second_version), m1200d), encode(ping_of(0.0, second_version), m1200d));
+  }
+  Status negative;
+  negative.temperatures_c.fill(-0.0);
+  negative.pressure_bar = -0.0;
+  EXPECT_EQ(encode(negative, m1200d), encode(Status{}, m1200d));
+  EXPECT_NE(encode(ping_of(-1.0, true), m1200d), encode(ping_of(1.0, true), m1200d));
+}
+
 TEST(OculusExamples, a_status_of_another_size_is_none) {
   Bytes bytes = load_fixture("status");
   bytes.push_back(0);
