@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "protocol/log/sonard_log.pb.h"
+#include "protocol/pose/quiet_protobuf.hpp"
 
 namespace sonard::log {
 
@@ -30,6 +31,7 @@ std::optional<std::string> problem_of(const SonarImage& image);
 /// Decodes a message; nullopt if `bytes` are not such a message.
 template <class Message>
 std::optional<Message> decode(std::span<const std::uint8_t> bytes) {
+  pose::keep_protobuf_quiet();
   Message message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return std::nullopt;

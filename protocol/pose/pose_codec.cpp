@@ -6,16 +6,12 @@
 #include <unordered_set>
 
 #include "protocol/pose/pose_message.hpp"
+#include "protocol/pose/quiet_protobuf.hpp"
 
 namespace sonard::pose {
 namespace {
 
 using Kind = PoseError::Kind;
-
-/// Protobuf prints a line to stderr for each name that is not UTF-8, so a peer could fill a disk.
-void keep_library_quiet() {
-  [[maybe_unused]] static const auto before = google::protobuf::SetLogHandler(nullptr);
-}
 
 Vec3 read(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -102,7 +98,7 @@ Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message) {
   if (message.size() > max_message_bytes) {
     return PoseError{Kind::malformed, "message", "is longer than 65507 bytes"};
   }
-  keep_library_quiet();
+  keep_protobuf_quiet();
   if (!update.ParseFromArray(message.data(), static_cast<int>(message.size()))) {
     return PoseError{Kind::malformed, "message", "is not a PoseUpdate (pose.proto)"};
   }
@@ -137,6 +133,7 @@ Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message) {
 }
 
 std::vector<std::uint8_t> encode(const PoseSample& sample) {
+  keep_protobuf_quiet();
   PoseUpdate update;
   update.set_time_ns(sample.time_ns);
   update.set_frame(FRAME_ENU_FLU);

@@ -51,6 +51,17 @@ TEST(LogMessages, an_image_has_a_pixel_and_a_bearing_for_each_beam) {
   EXPECT_EQ(problem_of(bearings), "3 beams have 4 bearings");
 }
 
+// Programs count these messages and print a line of their own.
+TEST(LogMessages, a_text_that_is_not_utf_8_is_refused_without_a_line_of_the_library) {
+  const std::vector<std::uint8_t> head_is_ff{0x0A, 1, 0xFF};  // field 1 of 1 byte
+  SonarImage message;
+  message.set_head("\xFF");
+  testing::internal::CaptureStderr();
+  EXPECT_FALSE(decode<SonarImage>(head_is_ff));
+  encode(message);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 TEST(LogMessages, bytes_of_something_else_are_refused) {
   const auto encoded = encode(image());
   EXPECT_TRUE(decode<SonarImage>(encoded));
