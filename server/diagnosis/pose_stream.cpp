@@ -12,104 +12,142 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate
+constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate,
+constexpr std::uint64_t few_poses = 5;           // and so are these
+constexpr double long_run_s = 2.0;               // over this time
 constexpr std::chrono::minutes worth_saying{1};  // a clock that went back once is reported for so long
-
-constexpr const char* wrong_unit = "stamps_unit";
 
 struct Unit {
   std::string_view name;
-  double time_rate;  ///< measured rate of stamps in this unit, read as nanoseconds
+  double unit_s;
 };
 constexpr double shortest_run_s = 1e-3;  ///< stamps of all poses that span less are not times
-constexpr std::array units{Unit{"microseconds", 1e-3}, Unit{"milliseconds", 1e-6}, Unit{"seconds", 1e-9}};
+constexpr std::array units{Unit{"nanoseconds", 1e-9}, Unit{"microseconds", 1e-6}, Unit{"milliseconds", 1e-3},
+                           Unit{"seconds", 1.0}};
 
-/// Compares the rate of the stamps with the clock.
-std::optional<Finding> look_at_rate(const PoseStatistics::Summary& summary) {
-  if (summary.poses < enough_poses || !summary.time_rate) {
+/// What to do about stamps.
+std::string advice(const StampField& field) {
+  return fmt::format("Send the time of each pose as {}, in {}.", field.name, field.unit);
+}
+
+bool shows_rate(const PoseStatistics::Summary& summary) {
+  return summary.poses >= enough_poses ||
+         (summary.poses >= few_poses && static_cast<double>(summary.poses) >= long_run_s * summary.rate_hz);
+}
+
+/// Finds stamps in another unit, by their rate.
+std::optional<Finding> look_at_unit(const PoseStatistics::Summary& summary, const StampField& field) {
+  if (!shows_rate(summary) || summary.time_rate.value_or(0.0) <= 0.0) {
     return std::nullopt;
   }
-  const double time_rate = *summary.time_rate;
+  const double sent_s = field.unit_s / *summary.time_rate;
+  for (const Unit& unit : units) {
+    if (unit.unit_s != field.unit_s && sent_s > 0.2 * unit.unit_s && sent_s < 5 * unit.unit_s) {
+      return Finding{"stamps_unit", fmt::format("Stamps of poses look like {}. Send {} in {}.", unit.name,
+                                                field.name, field.unit)};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Finds stamps that run backwards, or that advance too little for times.
+std::optional<Finding> look_at_advance(const PoseStatistics::Summary& summary, const StampField& field) {
+  const double time_rate = summary.time_rate.value_or(0.0);
+  if (!shows_rate(summary) || time_rate == 0.0) {
+    return std::nullopt;
+  }
   if (time_rate < 0.0) {
     return Finding{"stamps_backwards",
                    fmt::format("Stamps run backwards by {:.2g} s per second, but sonard orders poses by "
-                               "their stamps. Send the time of each pose.",
-                               -time_rate)};
-  }
-  for (const Unit& unit : units) {
-    if (time_rate > 0.2 * unit.time_rate && time_rate < 5 * unit.time_rate) {
-      return Finding{wrong_unit,
-                     fmt::format("Stamps of poses look like {}. Send them in nanoseconds.", unit.name)};
-    }
+                               "their stamps. {}",
+                               -time_rate, advice(field))};
   }
   const double run_s = time_rate * static_cast<double>(summary.poses) / summary.rate_hz;
   if (run_s < shortest_run_s) {
-    return Finding{"stamps_count", fmt::format("Stamps advanced by only {:.2g} s over {} poses: do they "
-                                               "count poses? Send the time of each pose, in nanoseconds.",
-                                               run_s, summary.poses)};
+    return Finding{"stamps_count",
+                   fmt::format("Stamps advanced by only {:.2g} s over {} poses: do they count poses? {}",
+                               run_s, summary.poses, advice(field))};
   }
   return std::nullopt;
 }
 
 /// Finds stamps that do not advance with the poses.
-std::optional<Finding> look_at_stamps(const StampWatch& stamps, const std::string& name, PingClock clock) {
+std::optional<Finding> look_at_standstill(const StampWatch& stamps, const StampField& field,
+                                          PingClock clock) {
   switch (stamps.looks()) {
     case StampWatch::Looks::good:
       break;
     case StampWatch::Looks::stand_still:
-      return Finding{"stamps_stand_still", fmt::format("The stamps do not change while the vehicle moves: is "
-                                                       "{0} missing? Send the time of each pose as {0}.",
-                                                       name)};
+      return Finding{"stamps_stand_still",
+                     fmt::format("The stamps do not change while the vehicle moves: is {} missing? {}",
+                                 field.name, advice(field))};
     case StampWatch::Looks::in_steps: {
       const double step_s = 1e-9 * static_cast<double>(stamps.last_step().count());
-      return Finding{"stamps_in_steps",
-                     fmt::format("The stamps change only every {:.2g} s while the vehicle moves: is {} {}? "
-                                 "Send the time of each pose, with its fraction.",
-                                 step_s, name, step_s > 0.5 ? "in whole seconds" : "rounded")};
+      return Finding{
+          "stamps_in_steps",
+          fmt::format("The stamps change only every {:.2g} s while the vehicle moves: is {} {}? {}", step_s,
+                      field.name, step_s > 0.5 ? "in whole seconds" : "rounded", advice(field))};
     }
     case StampWatch::Looks::never_moved:
       if (clock == PingClock::wall) {
-        return Finding{"stamps_stand_still", fmt::format("The stamps have not changed since the first pose: "
-                                                         "is {0} missing? Send the time of each pose as {0}.",
-                                                         name)};
+        return Finding{"stamps_stand_still",
+                       fmt::format("The stamps have not changed since the first pose: is {} missing? {}",
+                                   field.name, advice(field))};
       }
       return Finding{no_ping_by_stamps,
                      fmt::format("The stamps have not changed since the first pose, so the heads do not ping "
-                                 "(poses.clock): is the simulation paused, or is {} missing?",
-                                 name)};
+                                 "(poses.clock): is the simulation paused, or is {} missing? {}",
+                                 field.name, advice(field))};
   }
   return std::nullopt;
 }
 
+std::optional<Finding> look_at_restarts(const PoseStatistics::Summary& summary, const StampField& field) {
+  if (!summary.since_restart || *summary.since_restart >= worth_saying) {
+    return std::nullopt;
+  }
+  return Finding{"clock_backwards",
+                 fmt::format("The publisher's clock went back {} time{}: a simulation was restarted, or the "
+                             "stamps ({}) come from several clocks.",
+                             summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s", field.name)};
+}
+
 }  // namespace
+
+// The order matters: stamps in seconds also stand still for a second at a time.
+std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const StampField& field,
+                                      PingClock clock, TimePoint now) {
+  const PoseStatistics::Summary summary = statistics.in_all(now);
+  if (auto found = look_at_unit(summary, field)) {
+    return found;
+  }
+  if (auto found = look_at_standstill(statistics.stamps(), field, clock)) {
+    return found;
+  }
+  if (auto found = look_at_advance(summary, field)) {
+    return found;
+  }
+  return look_at_restarts(summary, field);
+}
 
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   std::vector<Finding> findings;
-  const PoseStatistics::Summary summary = inputs.statistics(index).in_all(now);
   const std::vector<std::string> publishers = inputs.publishers(index, now);
   if (publishers.size() > 1) {
     findings.push_back(
         {"several_publishers", fmt::format("{} publishers send poses at the same time: {}. Stop all but one.",
                                            publishers.size(), fmt::join(publishers, ", "))});
-  } else if (summary.since_restart && *summary.since_restart < worth_saying) {
-    findings.push_back(
-        {"clock_backwards", fmt::format("The publisher's clock went back {} time{}: a simulation was "
-                                        "restarted, or the stamps come from several clocks.",
-                                        summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s")});
   }
-  auto of_rate = look_at_rate(summary);
-  // Stamps in seconds also stand still for a second at a time.
-  if (!of_rate || of_rate->code != wrong_unit) {
-    if (auto found = look_at_stamps(inputs.statistics(index).stamps(), inputs.source(index).stamp_name(),
-                                    inputs.ping_clock())) {
+  // Stamps of publishers with different clocks show nothing.
+  const PoseStatistics& statistics = inputs.statistics(index);
+  if (publishers.size() <= 1 || statistics.in_all(now).clock_restarts == 0) {
+    if (auto found =
+            look_at_stamps(statistics, inputs.source(index).stamp_field(), inputs.ping_clock(), now)) {
       findings.push_back(std::move(*found));
     }
   }
   if (std::string remark = inputs.source(index).remark(); !remark.empty()) {
     findings.push_back({"depth_alone", std::move(remark)});
-  }
-  if (of_rate) {
-    findings.push_back(std::move(*of_rate));
   }
   return findings;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "server/diagnosis/finding.hpp"
@@ -10,8 +11,12 @@
 
 namespace sonard::server {
 
-/// Finds stamps in a wrong unit or without meaning, a clock that went back, and several publishers at once.
-/// Belongs to the I/O thread.
+/// Finds the most likely fault of the stamps of one stream: missing ones, a wrong unit, or a clock that went
+/// back. One fault may have several signs, so there is at most one finding. It names the field and its unit.
+std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const StampField& field,
+                                      PingClock clock, TimePoint now);
+
+/// Finds faults of the stamps, and several publishers at once. Belongs to the I/O thread.
 /// @param index of the input
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now);
 

@@ -22,7 +22,7 @@ class GazeboPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::vector<std::string> entities() const override;
-  std::string stamp_name() const override { return "header.stamp"; }
+  StampField stamp_field() const override { return {"header.stamp", "seconds and nanoseconds", 1e-9}; }
   std::string silence_hint() const override;
 
   static constexpr int max_waiting = 16;

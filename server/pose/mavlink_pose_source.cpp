@@ -77,6 +77,7 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   UdpListener listener;
   PoseSink sink;
   std::optional<Endpoint> publisher;  // of the newest pose
+  bool pose_of_odometry = false;      // the newest pose is that of an ODOMETRY
   MavlinkPoses poses;
   mavlink::FrameCounters frames;
   Received received;
@@ -116,6 +117,7 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
   if (sample) {
     ++counters.samples;
     publisher = listener.peer();
+    pose_of_odometry = std::holds_alternative<mavlink::Odometry>(*message);
     sink(*sample, arrival);
   } else {
     tell_what_is_missing(arrival);
@@ -244,6 +246,11 @@ std::string MavlinkPoseSource::received() const {
   return impl_->publisher ? fmt::format("from {} system {} component {}", endpoint_text(*impl_->publisher),
                                         impl_->input.system_id, impl_->input.component_id)
                           : std::string();
+}
+
+StampField MavlinkPoseSource::stamp_field() const {
+  return impl_->pose_of_odometry ? StampField{"time_usec", "microseconds", 1e-6}
+                                 : StampField{"time_boot_ms", "milliseconds", 1e-3};
 }
 
 std::string MavlinkPoseSource::remark() const {

@@ -21,7 +21,7 @@ class MavlinkPoseSource final : public PoseSource {
   const PoseSourceCounters& counters() const override;
   std::string details() const override;
   std::string received() const override;
-  std::string stamp_name() const override { return "time_boot_ms (of ODOMETRY: time_usec)"; }
+  StampField stamp_field() const override;
   std::string remark() const override;
   std::string silence_hint() const override;
   /// The listening address, after start().

@@ -40,6 +40,13 @@ struct PoseSourceCounters {
   std::uint64_t closed = 0;  ///< connections closed because the peer was at fault
 };
 
+/// The time stamp in a publisher's messages.
+struct StampField {
+  std::string name = "time_ns";
+  std::string unit = "nanoseconds";
+  double unit_s = 1e-9;  ///< its smallest step
+};
+
 /// Belongs to the I/O thread: call every member function there, or before the thread runs.
 ///
 /// Shutdown: stop() closes the sockets and cancels the timers. Queued handlers still run on the io_context,
@@ -63,8 +70,8 @@ class PoseSource {
   virtual std::string received() const { return {}; }
   /// Names that a simulator sent, used or not: the first 256 that arrived.
   virtual std::vector<std::string> entities() const { return {}; }
-  /// Name of the time stamp in the publisher's messages.
-  virtual std::string stamp_name() const { return "time_ns"; }
+  /// The stamp of the newest pose.
+  virtual StampField stamp_field() const { return {}; }
   /// Problems with the newest pose, in whole sentences; empty if there are no known ones.
   virtual std::string remark() const { return {}; }
   /// Advice if nothing at all has arrived, in one line.

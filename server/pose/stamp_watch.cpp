@@ -11,7 +11,7 @@ namespace {
 // repeats stamp and pose.
 constexpr std::size_t least_poses = 5;
 constexpr std::chrono::milliseconds least_length{50};
-constexpr std::chrono::milliseconds soon{500};  // for stamps that have never moved
+constexpr std::chrono::milliseconds soon{500};  // for stamps that have always been 0
 constexpr std::chrono::milliseconds longest_step{
     1500};  // stamps in whole seconds stay for one second at a time
 constexpr std::chrono::milliseconds at_rest{2000};
@@ -52,9 +52,8 @@ StampWatch::Looks StampWatch::looks() const {
   if (!run_) {
     return Looks::good;
   }
-  constexpr std::int64_t second_ns = 1'000'000'000;
-  const bool may_be_seconds = run_->time_ns != 0 && run_->time_ns % second_ns == 0;
-  const std::chrono::milliseconds patience = runs_before_ == 0 && !may_be_seconds ? soon : longest_step;
+  const bool left_out = runs_before_ == 0 && run_->time_ns == 0;
+  const std::chrono::milliseconds patience = left_out ? soon : longest_step;
   if (run_->of_a_moving_vehicle() && run_->length() >= patience) {
     return Looks::stand_still;
   }

@@ -236,7 +236,7 @@ class Diagnosis(OwnMachine):
         for ticks_per_s, unit in ((1e6, "microseconds"), (1e3, "milliseconds"), (1.0, "seconds")):
             with self.subTest(unit):
                 publisher = self.publish(GOOD, ticks_per_s=ticks_per_s)
-                says = f"Stamps of poses look like {unit}[.] Send them in nanoseconds"
+                says = f"Stamps of poses look like {unit}[.] Send time_ns in nanoseconds"
                 self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
                 daemon = self.start()
                 daemon.wait_for_line(says, PATIENCE_S)
@@ -258,7 +258,7 @@ class Diagnosis(OwnMachine):
     def test_stamps_that_count_poses_are_named(self):
         numbers = itertools.count(1)
         self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: next(numbers))
-        says = r"Stamps advanced by only \S+ s over \d+ poses: do they count poses\? Send the time of each pose, in nanoseconds"
+        says = r"Stamps advanced by only \S+ s over \d+ poses: do they count poses\? Send the time of each pose as time_ns, in nanoseconds"
         self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
         self.start()
         self.wait_for_finding(self.inputs_findings, says)

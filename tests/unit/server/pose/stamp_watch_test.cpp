@@ -53,7 +53,8 @@ TEST_F(StampWatchTest, StampsThatAreLeftOutStandStill) {
 
 TEST_F(StampWatchTest, SoDoOthersThatAreAllAlike) {
   const auto alike = [](std::int64_t) { return std::int64_t{1'732'800'000'123'456'789}; };
-  EXPECT_EQ(stream(50, 0.02, alike), Looks::stand_still);
+  EXPECT_EQ(stream(60, 0.02, alike), Looks::good) << "they may count seconds";
+  EXPECT_EQ(stream(20, 0.02, alike), Looks::stand_still);
 }
 
 TEST_F(StampWatchTest, SoDoThoseOfAVehicleThatOnlyTurns) {
