@@ -57,7 +57,7 @@ struct Layout<GlobalPositionInt> : WholeLayout<28> {
                                      Field{4, "lat", &G::lat},
                                      Field{8, "lon", &G::lon},
                                      Field{12, "alt", &G::alt},
-                                     Spare<4>{16},  // relative_alt
+                                     Field{16, "relative_alt", &G::relative_alt},
                                      Field{20, "vx", &G::vx},
                                      Field{22, "vy", &G::vy},
                                      Field{24, "vz", &G::vz},

@@ -63,15 +63,16 @@ struct LocalPositionNed {
   bool operator==(const LocalPositionNed&) const = default;
 };
 
-/// GLOBAL_POSITION_INT (33), without relative_alt and without hdg, because the attitude is more accurate.
+/// GLOBAL_POSITION_INT (33), without hdg, because the attitude is more accurate.
 struct GlobalPositionInt {
   std::uint32_t time_boot_ms = 0;
-  std::int32_t lat = 0;  ///< 1e-7 degrees
-  std::int32_t lon = 0;  ///< 1e-7 degrees
-  std::int32_t alt = 0;  ///< above mean sea level, millimetres
-  std::int16_t vx = 0;   ///< north, cm/s
-  std::int16_t vy = 0;   ///< east, cm/s
-  std::int16_t vz = 0;   ///< down, cm/s
+  std::int32_t lat = 0;           ///< 1e-7 degrees
+  std::int32_t lon = 0;           ///< 1e-7 degrees
+  std::int32_t alt = 0;           ///< above mean sea level, millimetres
+  std::int16_t vx = 0;            ///< north, cm/s
+  std::int16_t vy = 0;            ///< east, cm/s
+  std::int16_t vz = 0;            ///< down, cm/s
+  std::int32_t relative_alt = 0;  ///< above home, millimetres
 
   bool operator==(const GlobalPositionInt&) const = default;
 };

@@ -159,6 +159,12 @@ std::string MavlinkPoseSource::Impl::what_is_missing() const {
   }
   switch (input.messages) {
     case MavlinkMessages::automatic:
+      if (poses.receives_depth_alone()) {
+        return fmt::format(
+            "GLOBAL_POSITION_INT gives only a depth, which sonard uses if no position arrives "
+            "for {} s",
+            std::chrono::duration_cast<std::chrono::seconds>(MavlinkPoses::precedence).count());
+      }
       return input.world_origin ? ""
                                 : "GLOBAL_POSITION_INT arrives, which requires the position of the world on "
                                   "Earth (set world.origin)";

@@ -140,16 +140,17 @@ std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::LocalP
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::GlobalPositionInt& position,
                                                            TimePoint arrival) {
+  const bool no_place = position.lat == 0 && position.lon == 0 && !world_is_there_;
+  global_without_place_ = no_place;
   if (!global_position_is_wanted(arrival)) {
     ++counters_.not_wanted;
     return std::nullopt;
   }
-  const bool no_place = position.lat == 0 && position.lon == 0 && !world_is_there_;
   if (no_place && wanted_ == MavlinkMessages::automatic) {
     depth_alone_ = true;
     return add(Place{boot_ns(position.time_boot_ms),
                      T_world_local_,
-                     {0, 0, -1e-3 * position.alt},
+                     {0, 0, -height_m(position)},
                      {0, 0, 0.01 * position.vz}},
                arrival);
   }
@@ -264,6 +265,13 @@ bool MavlinkPoses::global_position_is_wanted(TimePoint arrival) {
   }
   last_local_ = last_local_.value_or(arrival);
   return arrival - *last_local_ > precedence;
+}
+
+/// The height of a vehicle without a place. Where home is above the sea, `alt` of a diving vehicle is
+/// positive.
+double MavlinkPoses::height_m(const mavlink::GlobalPositionInt& position) {
+  knows_height_above_home_ = knows_height_above_home_ || position.relative_alt != 0;
+  return 1e-3 * (knows_height_above_home_ ? position.relative_alt : position.alt);
 }
 
 std::optional<pose::PoseSample> MavlinkPoses::take_message(const mavlink::Odometry& odometry,

@@ -45,8 +45,9 @@ struct MavlinkPoseCounters {
 /// time_boot_ms wraps after 49.7 days, with the same effect.
 ///
 /// A vehicle without a position fix sends GLOBAL_POSITION_INT at latitude 0, longitude 0. With `auto`, its
-/// altitude is then used as depth at the origin of its positions. If GLOBAL_POSITION_INT is configured, the
-/// message is dropped and counted.
+/// altitude is then used as depth at the origin of its positions, so the world needs no place on Earth. This
+/// is the altitude above home, or above mean sea level if the vehicle leaves the other at 0. If
+/// GLOBAL_POSITION_INT is configured, the message is dropped and counted.
 class MavlinkPoses {
  public:
   explicit MavlinkPoses(const MavlinkPoseInput& input);
@@ -58,6 +59,8 @@ class MavlinkPoses {
   const MavlinkPoseCounters& counters() const { return counters_; }
   /// True if the newest position has only a depth, because the vehicle has no fix.
   bool knows_depth_alone() const { return depth_alone_; }
+  /// True if the newest GLOBAL_POSITION_INT, used or not, has only a depth.
+  bool receives_depth_alone() const { return global_without_place_; }
 
   static constexpr std::int64_t longest_gap_ns = 500'000'000;
   static constexpr std::int64_t nearest_limit_ns = 100'000'000;
@@ -98,6 +101,7 @@ class MavlinkPoses {
   bool attitude_is_wanted(TimePoint arrival) const;
   bool local_position_is_wanted(TimePoint arrival) const;
   bool global_position_is_wanted(TimePoint arrival);
+  double height_m(const mavlink::GlobalPositionInt& position);
   /// Returns true if the clock restarted.
   bool observe(VehicleClock& clock, std::int64_t stamp_ns, TimePoint arrival);
   /// Checks and converts a pose; nullopt, and counted, if it is invalid.
@@ -118,6 +122,8 @@ class MavlinkPoses {
   std::optional<TimePoint> last_odometry_;
   std::optional<TimePoint> last_local_;  ///< ODOMETRY, LOCAL_POSITION_NED, or the very first message
   bool depth_alone_ = false;
+  bool global_without_place_ = false;
+  bool knows_height_above_home_ = false;  ///< relative_alt was not always 0
   std::bitset<256> frames_said_, velocity_frames_said_;
   MavlinkPoseCounters counters_;
 };

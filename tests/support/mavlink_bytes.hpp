@@ -118,6 +118,16 @@ inline Bytes position_frame(std::uint32_t time_boot_ms, float x, float y, float 
   return mavlink_frame(32, 185, payload + floats({x, y, z, 0, 0, 0}), sender);
 }
 
+/// GLOBAL_POSITION_INT of a vehicle without a fix: latitude and longitude are 0.
+inline Bytes depth_frame(std::uint32_t time_boot_ms, std::int32_t alt_mm, std::int32_t relative_alt_mm) {
+  Bytes payload;
+  append(payload, time_boot_ms);
+  for (const std::int32_t value : {0, 0, alt_mm, relative_alt_mm, 0, 0}) {
+    append(payload, value);
+  }
+  return mavlink_frame(33, 104, payload);
+}
+
 /// A vehicle at rest, heading north.
 inline Bytes odometry_frame(std::uint64_t time_usec, float x, float y, float z, std::uint8_t frame_id = 1,
                             const MavlinkSender& sender = {}) {

@@ -336,6 +336,22 @@ TEST_F(MavlinkPosesTest, ADepthAloneIsAPoseAtTheOriginWhereNothingBetterComes) {
   EXPECT_EQ(poses.counters().not_wanted, not_wanted + 1) << "the local position goes before it";
 }
 
+// A lake 300 m above the sea: `alt` stays positive, and only relative_alt has the depth.
+TEST_F(MavlinkPosesTest, ADepthAloneIsTheHeightAboveHomeIfTheVehicleSendsOne) {
+  const auto z_after = [&](std::int32_t alt_mm, std::int32_t relative_alt_mm) {
+    const auto time_ms = static_cast<std::uint32_t>(now.count() / 1'000'000);
+    take(GlobalPositionInt{time_ms, 0, 0, alt_mm, 0, 0, 0, relative_alt_mm});
+    take(Attitude{time_ms});
+    return samples.empty() ? 0.0 : samples.back().T_world_vehicle.position_m.z;
+  };
+  z_after(0, 0);
+  now += MavlinkPoses::precedence;
+  EXPECT_NEAR(z_after(-4000, 0), -4.0, 1e-9) << "only `alt` is there so far";
+  EXPECT_NEAR(z_after(287'500, -12'500), -12.5, 1e-9);
+  EXPECT_NEAR(z_after(0, -7'000), -7.0, 1e-9);
+  EXPECT_NEAR(z_after(300'000, 0), 0.0, 1e-9) << "the vehicle is at the surface";
+}
+
 TEST_F(MavlinkPosesTest, AutoTakesGlobalPositionsWhereTheWorldHasAPlaceAndNothingBetterComes) {
   MavlinkPoseInput input;
   input.world_origin = {45.0, 10.0, 100.0};

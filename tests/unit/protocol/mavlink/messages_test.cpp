@@ -77,7 +77,7 @@ TEST(MavlinkMessages, GlobalPositionInt) {
                                                                        {"int16_t", "vz"},
                                                                        {"uint16_t", "hdg"}});
   EXPECT_EQ(content_of<GlobalPositionInt>(test::mavlink_frame(33, seed, payload)),
-            (GlobalPositionInt{123456, 473977418, -85455939, -30250, -120, 50, 3}));
+            (GlobalPositionInt{123456, 473977418, -85455939, -30250, -120, 50, 3, 77}));
 }
 
 TEST(MavlinkMessages, Attitude) {

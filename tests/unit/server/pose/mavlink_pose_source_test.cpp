@@ -70,6 +70,24 @@ TEST_F(MavlinkPoseSourceTest, DropsAndCountsWhatIsBrokenOrOfOthers) {
                              HasSubstr(" wrong_component=1 "), HasSubstr(" unknown_frame=1 ")));
 }
 
+// A world without a place on Earth, and a vehicle without a fix: nothing is missing but two seconds.
+TEST_F(MavlinkPoseSourceTest, TakesTheDepthOfAVehicleWithoutAPlaceAndAsksForNoOrigin) {
+  const auto source = started();
+  std::uint32_t time_ms = 1000;
+  const auto deliver = [&] {
+    time_ms += 20;
+    send(*source, test::attitude_frame(time_ms, 0, 0, 0) + test::depth_frame(time_ms, 0, -12'500));
+    return run_until([&] { return !delivered_.empty(); }, milliseconds{20});
+  };
+  EXPECT_FALSE(deliver());
+  EXPECT_THAT(source->silence_hint(), testing::AllOf(HasSubstr("gives only a depth"), HasSubstr("2 s"),
+                                                     testing::Not(HasSubstr("world.origin"))));
+  EXPECT_TRUE(test::wait_for(deliver));
+  ASSERT_FALSE(delivered_.empty());
+  EXPECT_NEAR(delivered_[0].sample.T_world_vehicle.position_m.z, -12.5, 1e-9);
+  EXPECT_THAT(source->remark(), HasSubstr("has a depth but no position"));
+}
+
 TEST_F(MavlinkPoseSourceTest, ListensOnlyToWhomItIsAllowed) {
   const auto source = started({{localhost, 32}});
   send(*source, test::odometry_frame(1, 1, 1, 1), 0x7F000009);
