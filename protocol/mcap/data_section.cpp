@@ -168,6 +168,8 @@ bool has_type_without_messages(const Record& record) {
          types_without_messages.end();
 }
 
+constexpr std::size_t smallest_chunk_size = chunk_start_size + record_prefix_size + 22;  // one message
+
 /// What the skipped bytes from `at` to `next` held. With one wrong bit the type or the length of a record is
 /// correct.
 Holds held(ByteView file, std::size_t at, std::size_t next) {
@@ -177,9 +179,8 @@ Holds held(ByteView file, std::size_t at, std::size_t next) {
              : named) {
     return Holds::chunk;
   }
-  constexpr std::size_t smallest = chunk_start_size + record_prefix_size + 22;  // a chunk with one message
   const bool is_known = record && record->end() == next && has_type_without_messages(*record);
-  return next - at < smallest || is_known ||
+  return next - at < smallest_chunk_size || is_known ||
                  looks_like_no_chunk(file.subspan(at + record_prefix_size, next - at - record_prefix_size))
              ? Holds::no_message
              : Holds::unknown;
@@ -226,7 +227,24 @@ void set_times(Chunk& chunk) {
 class Scanner {
  public:
   Scanner(ByteView file, std::size_t start) : file_(file) { section_.end = start; }
+  /// @param start the damaged bytes before the first record
+  Scanner(ByteView file, const DamagedChunk& start) : Scanner(file, start.offset + start.size) {
+    section_.damaged.push_back(start);
+    behind_damage_ = start.holds != Holds::no_message;
+    // The header is the first record; a scan that meets one elsewhere calls it damage.
+    if (const auto record = record_at(file_, section_.end); record && record->is(Opcode::header)) {
+      section_.end = record->end();
+    }
+  }
 
+  void scan(OnDamage on_damage) {
+    while (take_next() || (on_damage == OnDamage::skip && skip_damage())) {
+    }
+  }
+
+  DataSection done() && { return std::move(section_); }
+
+ private:
   /// Handles the next record. @return false: this is the end of the data section, or damage
   bool take_next() {
     const auto record = record_at(file_, section_.end);
@@ -251,9 +269,6 @@ class Scanner {
     return next.has_value();
   }
 
-  DataSection done() && { return std::move(section_); }
-
- private:
   bool take(const Record& record) {
     if (record.is(Opcode::data_end) && is_consistent(record)) {
       section_.ended = true;
@@ -492,12 +507,47 @@ std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const Chu
   return messages;
 }
 
+std::optional<DamagedChunk> damaged_start(ByteView file) {
+  const bool has_magic = begins_as_mcap(file);
+  const auto header = has_magic ? record_at(file, magic.size()) : std::nullopt;
+  if (header && header->is(Opcode::header) && is_consistent(*header)) {
+    return std::nullopt;
+  }
+  const std::size_t from = has_magic ? magic.size() : 0;
+  for (std::size_t at = from; at < file.size(); ++at) {
+    if (is_found(file, at)) {
+      const WireError error{WireErrorReason::bad_value, from, has_magic ? "header" : "magic"};
+      const bool may_be_chunk = at - from >= smallest_chunk_size;
+      return DamagedChunk{{from, at - from, error}, {}, may_be_chunk ? Holds::unknown : Holds::no_message};
+    }
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+/// Scans a file without the magic of MCAP, from its first readable record on.
+Result<DataSection, WireError> scan_without_magic(ByteView file) {
+  const WireError no_mcap{WireErrorReason::bad_value, 0, "magic"};
+  const auto start = damaged_start(file);
+  if (!start) {
+    return no_mcap;
+  }
+  Scanner scanner{file, *start};
+  scanner.scan(OnDamage::skip);
+  DataSection section = std::move(scanner).done();
+  return section.summary.chunks.empty() ? Result<DataSection, WireError>(no_mcap) : std::move(section);
+}
+
+}  // namespace
+
 Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_damage) {
   if (file.size() < magic.size()) {
     return WireError{WireErrorReason::truncated, file.size(), "magic"};
   }
   if (!begins_as_mcap(file)) {
-    return WireError{WireErrorReason::bad_value, 0, "magic"};
+    return on_damage == OnDamage::skip ? scan_without_magic(file)
+                                       : WireError{WireErrorReason::bad_value, 0, "magic"};
   }
   auto record = record_at(file, magic.size());
   bool is_header = record && record->is(Opcode::header);
@@ -509,8 +559,7 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
     is_header = is_consistent(*record);  // the length of the header may be damaged
   }
   Scanner scanner{file, is_header ? record->end() : magic.size()};
-  while (scanner.take_next() || (on_damage == OnDamage::skip && scanner.skip_damage())) {
-  }
+  scanner.scan(on_damage);
   return std::move(scanner).done();
 }
 

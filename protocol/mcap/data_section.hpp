@@ -81,8 +81,13 @@ struct DataSection {
 
 /// Scans the data section from the magic on. Returns an error if magic or header are incomplete or not MCAP.
 /// A message outside a chunk or an unreadable record stops the scan. OnDamage::skip continues with the next
-/// consistent record or chunk, and lists the skipped parts.
+/// consistent record or chunk, and lists the skipped parts, also at the start. It returns an error only if
+/// the file does not begin as MCAP and holds no chunk.
 Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_damage = OnDamage::stop);
+
+/// The bytes before the first readable record, if the magic is not whole or no header follows it; nullopt if
+/// the start is whole, or if there is no readable record.
+std::optional<DamagedChunk> damaged_start(ByteView file);
 
 /// Number of messages by channel, from the message indexes in `index`, without unreadable ones.
 std::map<std::uint16_t, std::uint64_t> indexed_messages(ByteView file, const ChunkIndex& index);

@@ -76,9 +76,27 @@ std::optional<WireError> MessageCursor::open(const ChunkIndex& index) {
 
 // ---- Reader
 
+namespace {
+
+/// True if every chunk is where the summary says. Bytes that are missing or too many at the start move them.
+bool leads_to_chunks(const Summary& summary, ByteView file) {
+  return std::ranges::all_of(summary.chunks, [&](const ChunkIndex& chunk) {
+    const auto record = record_at(file, static_cast<std::size_t>(chunk.offset));
+    return record && record->is(Opcode::chunk) && record->end() - record->offset == chunk.length;
+  });
+}
+
+}  // namespace
+
 Result<Reader, WireError> Reader::open(ByteView file) {
-  if (auto summary = read_summary(file)) {
-    return Reader{file, std::move(*summary)};
+  const auto start = damaged_start(file);
+  if (auto summary = read_summary(file); summary && (!start || leads_to_chunks(*summary, file))) {
+    Reader reader{file, std::move(*summary)};
+    if (start) {
+      reader.damaged_.push_back(*start);
+      reader.damaged_.back().holds = Holds::no_message;  // MessageCursor lists lost chunks
+    }
+    return reader;
   }
   auto section = scan_data_section(file, OnDamage::skip);
   if (!section) {

@@ -63,7 +63,7 @@ class MessageCursor {
 /// metadata and unknown records are skipped. Views the file; threads may share it.
 class Reader {
  public:
-  /// Opens a file; an error if it does not begin as an MCAP file.
+  /// Opens a file; an error if it does not begin as an MCAP file and holds no chunk.
   static Result<Reader, WireError> open(ByteView file);
 
   const Summary& summary() const { return summary_; }
@@ -75,7 +75,8 @@ class Reader {
   const std::optional<WireError>& stopped_by() const { return stopped_by_; }
   /// Bytes at the end of an unfinished file: an incomplete or damaged record.
   std::size_t tail_size() const { return tail_size_; }
-  /// Parts that the scan skipped. A file with a summary is not scanned; use MessageCursor::damaged().
+  /// Parts that the scan skipped, and a damaged start. A file with a summary is not scanned; see also
+  /// MessageCursor::damaged().
   const std::vector<DamagedChunk>& damaged() const { return damaged_; }
 
   /// @param channels return only messages of these channels; empty: all

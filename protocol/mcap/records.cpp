@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/mcap/records.hpp"
 
-#include <functional>
-#include <numeric>
+#include <algorithm>
 
 #include <zlib.h>
 
@@ -153,13 +152,7 @@ std::optional<Record> record_at(ByteView bytes, std::size_t offset) {
 }
 
 bool begins_as_mcap(ByteView file) {
-  if (file.size() < magic.size()) {
-    return false;
-  }
-  const auto differ =
-      std::inner_product(magic.begin(), magic.end(), file.begin(), 0, std::plus{}, std::not_equal_to{});
-  const auto record = differ == 1 ? record_at(file, magic.size()) : std::nullopt;
-  return differ == 0 || (record && record->is(Opcode::header));
+  return file.size() >= magic.size() && std::ranges::equal(file.first(magic.size()), magic);
 }
 
 std::string read_string(ByteReader& reader, std::string_view field) {

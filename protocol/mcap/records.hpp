@@ -145,8 +145,7 @@ struct Record {
 /// The record at `offset`; nullopt if the bytes end before the record does.
 std::optional<Record> record_at(ByteView bytes, std::size_t offset);
 
-/// True if `file` begins with the magic of MCAP. One damaged byte in it is tolerated if a header record
-/// follows.
+/// True if `file` begins with the magic of MCAP.
 bool begins_as_mcap(ByteView file);
 
 Result<Schema, WireError> read_schema(const Record& record);

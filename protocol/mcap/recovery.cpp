@@ -138,7 +138,7 @@ Result<Rebuilt, WireError> rebuild(ByteView file) {
 
 Result<Recovery, WireError> recover(ByteView file) {
   Recovery recovery;
-  if (auto summary = read_summary(file)) {
+  if (auto summary = read_summary(file); summary && begins_as_mcap(file)) {
     recovery.keep_size = file.size();
     recovery.summary = std::move(*summary);
     return recovery;

@@ -32,7 +32,8 @@ struct Rebuilt {
 };
 
 /// Rebuilds `file` from its readable chunks, also those after damaged bytes: adds a header, all schemas and
-/// channels, message indexes and the end. Returns an error if the file does not begin as MCAP.
+/// channels, message indexes and the end. Returns an error if the file does not begin as MCAP and has no
+/// chunk.
 Result<Rebuilt, WireError> rebuild(ByteView file);
 
 }  // namespace sonard::mcap

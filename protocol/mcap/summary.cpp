@@ -123,8 +123,7 @@ struct FoundFooter {
 
 Result<FoundFooter, WireError> find_footer(ByteView file) {
   constexpr std::size_t end_size = footer_record_size + magic.size();
-  if (file.size() < magic.size() + end_size || !begins_as_mcap(file) ||
-      !std::ranges::equal(file.last(magic.size()), magic)) {
+  if (file.size() < magic.size() + end_size || !std::ranges::equal(file.last(magic.size()), magic)) {
     return WireError{WireErrorReason::truncated, file.size(), "magic"};
   }
   const std::size_t offset = file.size() - end_size;

@@ -35,7 +35,8 @@ void add_once(Summary& summary, Channel channel);
 /// footer and magic. `offset` is its position in the file, `data_crc` the CRC32 of all bytes before it.
 Bytes make_end(const Summary& summary, std::uint64_t offset, std::uint32_t data_crc);
 
-/// The summary at the end of a file; an error if the file is not finished or the summary is invalid.
+/// The summary at the end of a file; an error if the file is not finished or the summary is invalid. The
+/// start of the file may be damaged.
 Result<Summary, WireError> read_summary(ByteView file);
 
 }  // namespace sonard::mcap

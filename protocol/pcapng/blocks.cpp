@@ -265,6 +265,12 @@ Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
   return damaged;
 }
 
+bool begins_with_section(ByteView file) {
+  const auto first = block_at(file, 0);
+  return first && *first && is(**first, BlockType::section_header) &&
+         ByteReader{(*first)->body}.u32le("magic") == byte_order_magic;
+}
+
 Result<Recovery, WireError> recover(ByteView file) {
   const auto first = block_at(file, 0);
   if (!first) {
@@ -273,12 +279,10 @@ Result<Recovery, WireError> recover(ByteView file) {
   if (!*first) {
     return WireError{WireErrorReason::truncated, file.size(), "section_header"};
   }
-  const Block& section = **first;
-  if (!is(section, BlockType::section_header) ||
-      ByteReader{section.body}.u32le("magic") != byte_order_magic) {
+  if (!begins_with_section(file)) {
     return WireError{WireErrorReason::bad_value, 0, "section_header"};
   }
-  Recovery recovery{.keep_size = section.end()};
+  Recovery recovery{.keep_size = (*first)->end()};
   while (true) {
     const auto block = block_at(file, recovery.keep_size);
     if (!block || !*block) {

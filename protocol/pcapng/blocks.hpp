@@ -79,6 +79,9 @@ Result<Packet, WireError> read_packet(const Block& block);
 Result<std::vector<Damage>, WireError> for_each_block(ByteView file,
                                                       const std::function<void(const Block&)>& take);
 
+/// True if the file begins with a whole header of a section as sonard writes it.
+bool begins_with_section(ByteView file);
+
 /// The whole blocks at the front of a file. Truncate it to `keep_size` to make it valid; then blocks may be
 /// appended.
 struct Recovery {

@@ -86,7 +86,9 @@ void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& p
   std::uint64_t of_section = 0;  // interfaces of this section; packets refer to them by number
   std::uint64_t others = 0;
   PacketFaults faults;
+  std::optional<pcapng::Block> first;
   const auto damaged = pcapng::for_each_block(file.bytes(), [&](const pcapng::Block& block) {
+    first = first.value_or(block);
     switch (static_cast<pcapng::BlockType>(block.type)) {
       case pcapng::BlockType::section_header:
         of_section = 0;
@@ -107,14 +109,20 @@ void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& p
     ++others;
   });
   if (!damaged) {
-    throw file.error(to_string(damaged.error()));
+    throw file.error(fmt::format("is not a .pcapng log, or none of its blocks can be read ({})",
+                                 to_string(damaged.error())));
   }
   log.other_records.insert(log.other_records.begin(), {"interfaces", interfaces});
   if (others > 0) {
     count(log, "blocks of other types", others);
   }
-  add_damage(log.problems, *damaged,
-             [](const Damage&) { return std::string("the packets in them are lost"); });
+  // Sections and interfaces are described before the packets.
+  const bool lost_no_packet =
+      first && first->type != static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet);
+  add_damage(log.problems, *damaged, [&](const Damage& part) {
+    return std::string(part.offset == 0 && lost_no_packet ? "no packet is lost"
+                                                          : "the packets in them are lost");
+  });
   add_faults(log, faults);
 }
 

@@ -11,6 +11,12 @@
 
 namespace sonard::server {
 
+/// The size and place of a part: "40 bytes at byte 200", or "the first 8 bytes".
+inline std::string place_text(const Damage& damage) {
+  return damage.offset == 0 ? fmt::format("the first {} bytes", damage.size)
+                            : fmt::format("{} bytes at byte {}", damage.size, damage.offset);
+}
+
 /// Appends a phrase for each part: its place, its size, and what is lost. After ten phrases, one more counts
 /// the rest.
 /// @param lost describes the loss of a part, for example "3 pings are lost"
@@ -19,8 +25,8 @@ void add_damage(std::vector<std::string>& problems, const std::vector<Part>& par
   constexpr std::size_t most = 10;
   for (std::size_t i = 0; i < parts.size() && i < most; ++i) {
     const Damage& damage = parts[i];
-    problems.push_back(fmt::format("damaged: {} bytes at byte {} cannot be read ({}); {}", damage.size,
-                                   damage.offset, to_string(damage.error), lost(parts[i])));
+    problems.push_back(fmt::format("damaged: {} cannot be read ({}); {}", place_text(damage),
+                                   to_string(damage.error), lost(parts[i])));
   }
   if (parts.size() > most) {
     problems.push_back(fmt::format("damaged: {} more parts cannot be read", parts.size() - most));

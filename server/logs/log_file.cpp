@@ -29,6 +29,12 @@ constexpr std::array starts{
     Start{{0x0A, 0x0D, 0x0D, 0x0A}, 4, LogKind::pcapng},
 };
 
+/// The extension before the suffix with which a recorder keeps a damaged log: ".damaged", ".damaged-2".
+std::string extension_of(const std::filesystem::path& path) {
+  const std::string last = path.extension();
+  return last.starts_with(".damaged") ? path.stem().extension().string() : last;
+}
+
 }  // namespace
 
 std::string_view name_of(LogKind kind) {
@@ -69,13 +75,15 @@ LogKind LogFile::find_kind() const {
       return start.kind;
     }
   }
-  const std::string extension = path_.extension();
+  const std::string extension = extension_of(path_);
   if (file_.bytes().empty() && extension == name_of(LogKind::dat)) {
     return LogKind::dat;  // nothing has been written yet
   }
-  // One of the first bytes may be damaged.
+  // The first bytes may be damaged. Readers of .mcap and .pcapng search for the first readable record.
   for (const Start& start : starts) {
-    if (extension == name_of(start.kind) && file_.bytes().size() >= start.count && differing(start) == 1) {
+    const bool searches = start.kind == LogKind::mcap || start.kind == LogKind::pcapng;
+    if (extension == name_of(start.kind) && file_.bytes().size() >= start.count &&
+        (searches || differing(start) == 1)) {
       return start.kind;
     }
   }

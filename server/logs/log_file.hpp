@@ -30,7 +30,8 @@ std::string_view name_of(LogKind kind);
 /// Read-only. The bytes stay in place while the object lives (MappedFile).
 class LogFile {
  public:
-  /// Detects the kind by the first bytes, whatever the file's name. If they are unknown, by its name.
+  /// Detects the kind by the first bytes, whatever the file's name. If they are unknown, by its name, because
+  /// a log may be damaged there.
   /// @throws LogError if the file cannot be read or is of no known kind
   explicit LogFile(std::filesystem::path path);
 

@@ -19,7 +19,8 @@ constexpr std::size_t most_line_bins = 65'535;  // more than any scanning head s
 mcap::Reader opened(const LogFile& file) {
   auto reader = mcap::Reader::open(file.bytes());
   if (!reader) {
-    throw file.error(to_string(reader.error()));
+    throw file.error(
+        fmt::format("is not an .mcap log, or none of its pings can be read ({})", to_string(reader.error())));
   }
   return std::move(*reader);
 }

@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint32_t most_interfaces = 256;  // a higher number in a packet is damage
+
 /// Repair of a file that was cut, in place; or the parts of a new file instead of a damaged one.
 struct Mending {
   std::uint64_t keep_size = 0;
@@ -163,7 +165,7 @@ std::optional<Mending> rebuilding_of_mcap(std::span<const std::uint8_t> file) {
 }
 
 std::optional<Mending> mending_of_mcap(std::span<const std::uint8_t> file) {
-  if (mcap::read_summary(file)) {
+  if (mcap::begins_as_mcap(file) && mcap::read_summary(file)) {
     return std::nullopt;
   }
   if (auto rebuilding = rebuilding_of_mcap(file)) {
@@ -217,7 +219,40 @@ Mending rebuilding_of_pcapng(std::span<const std::uint8_t> file, std::uint64_t f
   return mending;
 }
 
+/// A new section header and new descriptions of the lost interfaces, then all readable blocks. Interfaces are
+/// described before all packets, so the lost ones were the first.
+Mending rebuilding_of_pcapng_start(std::span<const std::uint8_t> file) {
+  std::uint32_t described = 0;
+  std::uint32_t used = 0;
+  const auto damaged = pcapng::for_each_block(file, [&](const pcapng::Block& block) {
+    if (block.type == static_cast<std::uint32_t>(pcapng::BlockType::interface_description)) {
+      ++described;
+    } else if (block.type == static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet)) {
+      const auto packet = pcapng::read_packet(block);
+      used = packet && packet->interface < most_interfaces ? std::max(used, packet->interface + 1) : used;
+    }
+  });
+  if (!damaged || used == 0) {
+    return {.damaged = true};
+  }
+  pcapng::Writer writer("sonard " SONARD_VERSION);
+  for (std::uint32_t lost = described; lost < used; ++lost) {
+    writer.add_interface("lost");
+  }
+  Mending mending{.damaged = true, .parts = undamaged_parts(*damaged, file.size())};
+  mending.parts.insert(mending.parts.begin(), RebuiltPart{.made = writer.take()});
+  add_damage(mending.losses, *damaged, [&](const Damage& part) {
+    return part.offset > 0     ? "its packets are lost"
+           : used <= described ? "no packet is lost"
+                               : "names of interfaces are lost";
+  });
+  return mending;
+}
+
 std::optional<Mending> mending_of_pcapng(std::span<const std::uint8_t> file) {
+  if (!pcapng::begins_with_section(file)) {
+    return rebuilding_of_pcapng_start(file);
+  }
   if (ends_with_a_block(file)) {
     return std::nullopt;
   }

@@ -16,7 +16,8 @@ def warn(path: Any, what: str) -> None:
 
 
 def warn_of_bytes(path: Any, offset: int, size: int, why: str, lost: str) -> None:
-    warn(path, f"{size} bytes at byte {offset} cannot be read ({why}); {lost}")
+    place = f"{size} bytes at byte {offset}" if offset else f"the first {size} bytes"
+    warn(path, f"{place} cannot be read ({why}); {lost}")
 
 
 def warn_of_end(path: Any, tail_bytes: int) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import mmap
+import re
 from datetime import timezone, tzinfo
 from os import PathLike
 from typing import Iterator, Optional, Union
@@ -39,7 +40,9 @@ _FORMS = {".mcap": mcap_log.MAGIC, ".glf": glf_log.MAGIC_OF_GLF, ".dat": glf_log
 
 
 def _form(begins: bytes, name: str) -> Optional[str]:
-    """The format by the first bytes. If one of them is damaged, or a .dat is empty, the name decides."""
+    """The format by the first bytes. If one of them is damaged, or a .dat is empty, the name decides. It also decides for an
+    .mcap with any damage there, whose reader searches for the first readable record."""
+    name = re.sub(r"\.damaged(-\d+)?$", "", name)  # as a recorder names a damaged log
     for form, magic in _FORMS.items():
         if begins.startswith(magic):
             return form
@@ -48,4 +51,6 @@ def _form(begins: bytes, name: str) -> Optional[str]:
             return form
     if begins.startswith(glf_log.TERMINATOR):
         return ".dat"  # closed without records
+    if begins and name.endswith(".mcap"):
+        return ".mcap"
     return ".dat" if not begins and name.endswith(".dat") else None

@@ -100,7 +100,7 @@ class _Reader:
     def _data_section(self) -> Iterator[tuple[int, bytes]]:
         """Records outside and inside of chunks, up to the end of the data or an unfinished last record."""
         data = self._data
-        at: Optional[int] = len(MAGIC)
+        at: Optional[int] = self._start()
         while at is not None and at < len(data):
             end = _end(data, at)
             try:
@@ -131,6 +131,19 @@ class _Reader:
                 at = end
             except _Damaged as why:
                 at = self._behind_damage(at, end, str(why))
+
+    def _start(self) -> int:
+        """The first record. Reports a damaged magic; raises ValueError if no record follows it."""
+        data, at = self._data, len(MAGIC)
+        if bytes(data[:at]) == MAGIC:
+            return at
+        if len(data) <= at or data[at] != _HEADER or not _has_form(data, at, _HEADER):
+            found = _next_readable(data, -1, None)
+            if found is None:
+                raise ValueError(f"{self._path} is not an .mcap log, or none of its pings can be read")
+            at = found
+        warn_of_bytes(self._path, 0, at, "the magic", "no ping is lost" if at < _SMALLEST_CHUNK else "pings may be lost")
+        return at
 
     def _behind_damage(self, at: int, end: Optional[int], why: str) -> Optional[int]:
         """Reports damage at `at`. Returns where to continue; None if there is no place."""

@@ -163,6 +163,20 @@ class DamagedLogs(unittest.TestCase):
     def test_a_flipped_bit_in_an_mcap_costs_its_chunk(self):
         self.expect_at_most(PINGS_IN_CHUNK, ".mcap", mcap_log(), [samples_of(number) for number in range(PINGS)])
 
+    def test_a_damaged_start_of_an_mcap_is_told_and_costs_no_ping(self):
+        whole = mcap_log()
+        first_chunk = len(MAGIC) + len(record(1, text(b"") + text(b"sonard 0.1.0")))
+        for content, size in ((b"\x89MCAP1\r\n" + whole[8:], 8), (bytes(8) + whole[8:], 8), (bytes(20) + whole[20:], first_chunk),
+                              (whole[5:], first_chunk - 5), (b"abc" + whole, 3 + first_chunk), (whole[first_chunk - 2:], 2)):
+            for suffix in (".mcap", ".mcap.damaged", ".mcap.damaged-2"):
+                pings, told = self.read(suffix, content)
+                self.assertEqual(pings, [samples_of(number) for number in range(PINGS)], size)
+                self.assertRegex(told[0], rf"damaged: the first {size} bytes cannot be read \(the magic\); no ping is lost$")
+
+    def test_a_text_with_the_name_of_an_mcap_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "log.mcap is not an .mcap log, or none of its pings can be read"):
+            self.read(".mcap", b"this is the text of somebody, not a log\n" * 100)
+
     def test_a_byte_too_many_in_a_long_mcap_costs_the_chunk_there(self):
         # The length of an index of two messages, read one byte too early, is 9735: many chunks of this log.
         whole = mcap_log(count=120)

@@ -121,7 +121,7 @@ class Info(unittest.TestCase):
         other = self.path("other.pcapng")
         with open(other, "wb") as file:
             file.write(bytes.fromhex("0a0d0d0a") + bytes(20))
-        for path, message in ((text, "is not a log"), (other, ": bad_"), (self.folder, "is not a file"),
+        for path, message in ((text, "is not a log"), (other, "none of its blocks can be read (bad_"), (self.folder, "is not a file"),
                               (self.path("none.dat"), "cannot be opened: No such file")):
             done = self.run_info(path, code=2)
             self.assertEqual(done.stdout, "")

@@ -317,6 +317,50 @@ TEST(Damage, bytes_too_many_or_missing_in_an_mcap_cost_the_chunks_there) {
   expect_at_most_when_moved(4, ".mcap", mcap_log(8, true, false), pings_written(8));
 }
 
+Bytes with_zeros_at_start(Bytes bytes, std::size_t count) {
+  std::fill_n(bytes.begin(), count, std::uint8_t{0});
+  return bytes;
+}
+
+Bytes with_flipped_bit(Bytes bytes, std::size_t at) {
+  bytes[at] ^= 4U;
+  return bytes;
+}
+
+TEST(Damage, a_damaged_start_of_an_mcap_is_told_and_costs_no_ping) {
+  constexpr std::size_t first_chunk = magic_size + 9 + 12;  // after the magic and a header that holds "test"
+  for (const bool finished : {true, false}) {
+    for (const bool compressed : {false, true}) {
+      const Bytes whole = mcap_log(6, compressed, finished);
+      // By the number of bytes that are left before the first record.
+      const std::map<std::size_t, Bytes> starts{{magic_size - 3, with_moved_bytes(whole, 0, -3)},
+                                                {magic_size, with_flipped_bit(whole, 2)},
+                                                {magic_size + 5, with_moved_bytes(whole, 0, 5)},
+                                                {first_chunk, with_zeros_at_start(whole, magic_size + 4)}};
+      for (const auto& [size, bytes] : starts) {
+        for (const char* const suffix : {".mcap", ".mcap.damaged", ".mcap.damaged-2"}) {
+          const Outcome outcome = outcome_of(suffix, bytes, pings_written(6));
+          EXPECT_EQ(outcome.lost, 0U) << size << ": " << testing::PrintToString(outcome.problems);
+          EXPECT_THAT(outcome.problems,
+                      Contains(fmt::format(
+                          "damaged: the first {} bytes cannot be read (bad_value: field magic at byte 0); "
+                          "no ping is lost",
+                          size)));
+        }
+      }
+    }
+  }
+}
+
+TEST(Damage, a_text_with_the_name_of_a_log_is_called_no_log) {
+  const std::string text = "this is the text of somebody, and not a log at all\n";
+  const Bytes bytes(text.begin(), text.end());
+  EXPECT_THAT(outcome_of(".mcap", bytes, {}).problems, ElementsAre(HasSubstr("is not an .mcap log")));
+  const test::TemporaryLog temporary(".pcapng", bytes);
+  const LogFile file(temporary.path());
+  EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }), LogError);
+}
+
 TEST(Damage, a_glf_without_blocks_after_a_place_says_how_many_bytes_are_not_read) {
   Bytes bytes = glf_log(5, 150);
   const auto end = std::ranges::search(bytes, Bytes{'P', 'K', 1, 2});
@@ -444,6 +488,22 @@ TEST(Damage, info_tells_a_packet_of_an_interface_that_is_not_there) {
   const LogSummary log = summary_of_capture(whole, whole.size() - 3 * captured_block + 8, 1);
   EXPECT_EQ(log.heads.at(0).pings(), captured_pings);
   EXPECT_THAT(log.problems, Contains(HasSubstr("1 packet names an interface")));
+}
+
+TEST(Damage, a_damaged_start_of_a_capture_is_told_and_costs_no_packet) {
+  const Bytes whole = capture("sonard 0.1.0");
+  constexpr std::size_t section = 12 + 16 + 16 + 4;  // with an option of 12 bytes, and the end of options
+  const std::map<std::size_t, Bytes> starts{{5, with_moved_bytes(whole, 0, 5)},
+                                            {section - 3, with_moved_bytes(whole, 0, -3)},
+                                            {section, with_zeros_at_start(whole, section)}};
+  for (const auto& [size, bytes] : starts) {
+    const LogSummary log = summary_of_capture(bytes);
+    ASSERT_EQ(log.heads.size(), 1U) << size;
+    EXPECT_EQ(log.heads[0].pings(), captured_pings) << size;
+    EXPECT_THAT(log.problems,
+                Contains(AllOf(HasSubstr(fmt::format("damaged: the first {} bytes cannot be read", size)),
+                               HasSubstr("no packet is lost"))));
+  }
 }
 
 TEST(Damage, info_tells_a_damaged_byte_order_magic_of_a_capture) {

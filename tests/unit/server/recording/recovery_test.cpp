@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/recording/recovery.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -238,6 +239,49 @@ TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
                            std::to_string(chunks[0].offset)),
                  HasSubstr("; " + std::to_string(2U * pings - kept) + " messages are lost")));
   EXPECT_EQ(test::contents(path.string() + ".damaged"), file);
+}
+
+TEST_F(RecoveryTest, KeepsAllMessagesOfAnMcapFileWithADamagedStart) {
+  const Bytes whole = killed<McapLog>();
+  recover_logs(folder.path());
+  const Bytes finished = test::contents(path);
+  for (const Bytes& file : {whole, finished}) {
+    Bytes damaged = file;
+    std::fill_n(damaged.begin(), 8, std::uint8_t{0x55});
+    test::write_file(path, damaged);
+    EXPECT_THAT(told(),
+                AllOf(HasSubstr("log_stem.mcap is damaged: its whole records are in a new file"),
+                      HasSubstr("the first 8 bytes cannot be read"), HasSubstr("no message is lost")));
+    EXPECT_EQ(messages_in(test::contents(path)), 2U * pings);
+    const Bytes rebuilt = test::contents(path);
+    EXPECT_EQ(Bytes(rebuilt.begin(), rebuilt.begin() + 8), Bytes(whole.begin(), whole.begin() + 8));
+  }
+  EXPECT_EQ(folder.names(),
+            (std::vector<std::string>{"log_stem.mcap", "log_stem.mcap.damaged", "log_stem.mcap.damaged-2"}));
+}
+
+// With the section, and then also with the interface that the packets name.
+TEST_F(RecoveryTest, KeepsAllPacketsOfACaptureWithADamagedStart) {
+  const Bytes whole = killed<PcapngLog>();
+  std::vector<std::size_t> ends;
+  ASSERT_TRUE(
+      pcapng::for_each_block(whole, [&](const pcapng::Block& block) { ends.push_back(block.end()); }));
+  for (const std::size_t size : {std::size_t{1}, ends[0], ends[1]}) {
+    Bytes damaged = whole;
+    std::fill_n(damaged.begin(), size, std::uint8_t{0x55});
+    test::write_file(path, damaged);
+    const std::size_t told_size = std::max(size, ends[0]);
+    EXPECT_THAT(told(),
+                AllOf(HasSubstr("is damaged: its whole records are in a new file"),
+                      HasSubstr("the first " + std::to_string(told_size) + " bytes cannot be read"),
+                      HasSubstr(size < ends[1] ? "no packet is lost" : "names of interfaces are lost")));
+    const Bytes file = test::contents(path);
+    const auto left = pcapng::recover(file);
+    ASSERT_TRUE(left) << size;
+    EXPECT_EQ(left->keep_size, file.size());
+    EXPECT_EQ(left->packets, static_cast<std::uint64_t>(pings));
+    EXPECT_EQ(told(), "") << "the new file is whole";
+  }
 }
 
 // A wrong length that points beyond the end looks like a record that was being written.
