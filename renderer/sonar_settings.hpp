@@ -257,9 +257,14 @@ struct Sampling {
   /// false: a sample is a point in range, as in a renderer without footprints; for comparison
   /// (docs/benchmark.md).
   bool footprint = true;
+  /// For masks, which must end where their bodies end. Engine `cpu`, not with `grid`: the echo of a facet (a
+  /// triangle) lies between its nearest and its furthest range in each slice. Otherwise its ends follow
+  /// straight lines across the slice, which may lead beyond its corners, and neighbouring facets make up for
+  /// that.
+  bool within_facets = false;
 
   static Sampling of_grid(int views, int columns_per_view, int rows) {
-    return {Preset::grid, views, columns_per_view, rows, true};
+    return {Preset::grid, views, columns_per_view, rows, true, false};
   }
   bool operator==(const Sampling&) const = default;
 };

@@ -17,6 +17,7 @@ constexpr float paper_silence = 1e-5F;
 
 render::SonarSettings truth_settings(render::SonarSettings settings) {
   settings.transmit = true;
+  settings.sampling.within_facets = true;
   settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
   settings.physical.pulse = render::PhysicalModel::Pulse::point;
   settings.physical.multipath.level = render::MultipathSettings::Level::off;

@@ -154,8 +154,8 @@ class PooledError {
 /// `presets`, and sets drawn around the line from `default` to beyond `fast`, in logarithms of the
 /// parameters.
 std::vector<Candidate> candidates(int drawn, unsigned seed) {
-  const SliceAccuracy exact = render::slice_accuracy(Preset::normal, render::Model::physical);
-  const SliceAccuracy coarse = render::slice_accuracy(Preset::fast, render::Model::physical);
+  const SliceAccuracy exact = render::slice_accuracy({Preset::normal}, render::Model::physical);
+  const SliceAccuracy coarse = render::slice_accuracy({Preset::fast}, render::Model::physical);
   std::vector<Candidate> all{{"default", exact}, {"fast", coarse}};
   std::mt19937 random(seed);
   for (int k = 0; k < drawn; ++k) {
@@ -227,7 +227,7 @@ struct Options {
 void run_scene(const Options& options, const std::vector<Candidate>& all, const std::string& name,
                ordered_json& rows) {
   SceneBench scene(test::make_scene(name));
-  const SliceAccuracy exact = render::slice_accuracy(Preset::reference, render::Model::physical);
+  const SliceAccuracy exact = render::slice_accuracy({Preset::reference}, render::Model::physical);
   std::vector<render::EchoImage> truths;
   double spent = 0.0;
   for (int pose = 0; pose < options.poses; ++pose) {

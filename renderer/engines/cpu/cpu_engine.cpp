@@ -89,7 +89,7 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
   const SonarSettings& settings = request.settings;
   const auto cells = slices_.sample(request.T_world_sonar, settings.aperture, settings.range,
                                     settings.range.sampled_range_m(), surface_model(settings, skip_),
-                                    slice_accuracy(settings.sampling.preset, settings.model));
+                                    slice_accuracy(settings.sampling, settings.model));
   statistics.visibility_s += watch.lap();
   statistics.skipped += slices_.skipped();
   BinningResult bins = bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,

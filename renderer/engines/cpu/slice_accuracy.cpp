@@ -3,11 +3,12 @@
 
 namespace sonard::render {
 
-SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
+SliceAccuracy slice_accuracy(const Sampling& sampling, Model model) {
   SliceAccuracy accuracy;
+  accuracy.within_facets = sampling.within_facets;
   // The paper's sigmoid amplifies small changes of incidence.
   accuracy.slices_per_beam = model == Model::paper ? 2 : 1;
-  if (preset == Sampling::Preset::fast) {
+  if (sampling.preset == Sampling::Preset::fast) {
     accuracy.most_divisions = 5;
     accuracy.most_divisions_of_lone_echoes = 25;
     accuracy.disagreement = 2.5e-2F;
@@ -18,7 +19,7 @@ SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model) {
     accuracy.mapped_lines = 4.0F;
     accuracy.facet_slopes = 0.5F;
     accuracy.facet_lines = 0.012F;
-  } else if (preset == Sampling::Preset::reference) {
+  } else if (sampling.preset == Sampling::Preset::reference) {
     accuracy.slices_per_beam = 9;
     accuracy.disagreement = 1e-4F;
     accuracy.shift_lines = 0.02F;

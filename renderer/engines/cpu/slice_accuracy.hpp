@@ -34,9 +34,10 @@ struct SliceAccuracy {
   float mapped_lines = 2.5F;   ///< see SlicePatcher::Request
   float facet_slopes = 0.17F;  ///< see SlicePatcher::Request
   float facet_lines = 0.006F;  ///< see SlicePatcher::Request
+  bool within_facets = false;  ///< see Sampling
 };
 
-/// The accuracy of a preset (docs/accuracy.md). @param preset not `grid`
-SliceAccuracy slice_accuracy(Sampling::Preset preset, Model model);
+/// The accuracy of a preset (docs/accuracy.md). @param sampling its preset is not `grid`
+SliceAccuracy slice_accuracy(const Sampling& sampling, Model model);
 
 }  // namespace sonard::render

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "renderer/engines/cpu/facet_extent.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
 #include "renderer/simd.hpp"
 
@@ -73,7 +74,14 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
   }
   const std::uint64_t without_facets = shade(request);
   for (std::size_t i = 0; i < visible_->size(); ++i) {
+    const std::size_t first = patches.size();
     add_patches(request, i, patches);
+    if (request.within_facets) {
+      const auto extent = facet_extent(*(*visible_)[i].triangle, request.slice);
+      for (std::size_t k = first; extent && k < patches.size(); ++k) {
+        keep_within(*extent, patches[k]);
+      }
+    }
   }
   return without_facets;
 }

@@ -63,7 +63,8 @@ class SlicePatcher {
     /// across the wedge until the move is at most this many lines.
     float facet_lines;
     float line_m;
-    float max_range_m;  ///< segments wholly beyond are not divided
+    float max_range_m;           ///< segments wholly beyond are not divided
+    bool within_facets = false;  ///< Sampling::within_facets
   };
 
   /// @param patches gets the new patches appended

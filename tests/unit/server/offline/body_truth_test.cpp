@@ -2,10 +2,17 @@
 // Two blocks before a wall: the body in each bin, by geometry.
 #include "server/offline/body_truth.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "renderer/scene/primitives.hpp"
 
 namespace sonard::server {
 namespace {
@@ -107,6 +114,132 @@ TEST_F(BodyTruthTest, CompressedLinesBelongToWhatLiesInThem) {
   const double port_rad = std::atan2(1.0, 4.0);
   EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, port_rad), 2);
   EXPECT_EQ(at(ids, 8.01, 0.0), 1);
+}
+
+/// A box, turned by yaw and then by pitch.
+struct Box {
+  glm::dvec3 size_m, centre_m;
+  double yaw_rad = 0.0, pitch_rad = 0.0;
+
+  render::Pose pose() const {
+    return {centre_m,
+            glm::angleAxis(yaw_rad, glm::dvec3(0, 0, 1)) * glm::angleAxis(pitch_rad, glm::dvec3(0, 1, 0))};
+  }
+  render::Body body() const {
+    render::Body body;
+    body.name = "box";
+    body.parts.push_back({std::make_shared<render::TriangleMesh>(render::make_box(size_m)), {}, {}, nullptr});
+    body.T_world_body = pose();
+    return body;
+  }
+};
+
+/// The ranges in each beam of all faces of a box that face the sonar at the origin.
+class RangesOfBox {
+ public:
+  struct Span {
+    double low_m = std::numeric_limits<double>::infinity(), high_m = 0.0;
+  };
+
+  RangesOfBox(const Box& box, int beams, double fan_rad)
+      : fan_rad_(fan_rad), spans_(static_cast<std::size_t>(beams)) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-0.5, 0.5}) {
+        add_face(box, axis, side);
+      }
+    }
+  }
+
+  const Span& operator[](int beam) const { return spans_[static_cast<std::size_t>(beam)]; }
+
+ private:
+  /// Adds points of a face, a few tenths of a millimetre apart at its edges and millimetres inside.
+  void add_face(const Box& box, int axis, double side) {
+    glm::dvec3 normal(0.0);
+    normal[axis] = side;
+    const render::Pose pose = box.pose();
+    if (glm::dot(pose.orientation * normal, pose * (normal * box.size_m)) >= 0) {
+      return;
+    }
+    const auto add = [&](double u, double v) {
+      glm::dvec3 point;
+      point[axis] = side;
+      point[(axis + 1) % 3] = u - 0.5;
+      point[(axis + 2) % 3] = v - 0.5;
+      add_point(pose * (point * box.size_m));
+    };
+    constexpr int steps = 20'000, steps_inside = 1'000;
+    for (int i = 0; i <= steps; ++i) {
+      const double at = static_cast<double>(i) / steps;
+      for (const double end : {0.0, 1.0}) {
+        add(at, end);
+        add(end, at);
+      }
+    }
+    for (int i = 0; i <= steps_inside; ++i) {
+      for (int k = 0; k <= steps_inside; ++k) {
+        add(static_cast<double>(i) / steps_inside, static_cast<double>(k) / steps_inside);
+      }
+    }
+  }
+
+  void add_point(const glm::dvec3& point) {
+    const double place = (0.5 - std::atan2(point.y, point.x) / fan_rad_) * static_cast<double>(spans_.size());
+    if (place >= 0 && place < static_cast<double>(spans_.size())) {
+      Span& span = spans_[static_cast<std::size_t>(place)];
+      span.low_m = std::min(span.low_m, glm::length(point));
+      span.high_m = std::max(span.high_m, glm::length(point));
+    }
+  }
+
+  double fan_rad_;
+  std::vector<Span> spans_;
+};
+
+// The facets of a box end in the middle of beams and slices, and their echo must not lead beyond their
+// corners.
+TEST_F(BodyTruthTest, AMaskEndsWithItsBody) {
+  constexpr double fine_step_m = 0.005;
+  constexpr double off_m = 0.002;  // of the points of RangesOfBox
+  request.settings.range = {2000, fine_step_m, 0, false};
+  const std::vector<Box> boxes{{{0.2, 0.2, 2}, {6, 1, 0}, 0.3, 0.5},
+                               {{1, 1, 1}, {5, -0.5, -0.4}, 0.7, 0.4},
+                               {{1, 1, 1}, {5, 0.3, -0.2}, 0.2, 0.1},
+                               {{3, 2, 0.1}, {5, 0.4, -1}, 0.2, 0.3}};
+  for (const Box& box : boxes) {
+    world.bodies = {box.body()};
+    const RangesOfBox ranges(box, 64, 1.0);
+    for (const auto preset : {render::Sampling::Preset::fast, render::Sampling::Preset::normal}) {
+      request.settings.sampling.preset = preset;
+      const std::vector<std::uint16_t> ids = BodyTruth(world, {}).bodies_in(request);
+      EXPECT_GT(std::ranges::count(ids, 1), 300);
+      for (int bin = 0; bin < static_cast<int>(ids.size()); ++bin) {
+        if (ids[static_cast<std::size_t>(bin)] == 1) {
+          const double low_m = bin / 64 * fine_step_m;
+          const RangesOfBox::Span& span = ranges[bin % 64];
+          EXPECT_GT(low_m + fine_step_m, span.low_m - off_m) << "beam " << bin % 64;
+          EXPECT_LT(low_m, span.high_m + off_m) << "beam " << bin % 64;
+        }
+      }
+    }
+  }
+}
+
+// A box within the fan, turned and upright: its mask has no gaps.
+TEST_F(BodyTruthTest, AMaskHasAllBinsOfItsBody) {
+  constexpr double fine_step_m = 0.005;
+  request.settings.range = {2000, fine_step_m, 0, false};
+  const Box box{{1, 1, 1}, {5, 0.3, -0.2}, 0.5, 0.0};
+  world.bodies = {box.body()};
+  const std::vector<std::uint16_t> ids = BodyTruth(world, {}).bodies_in(request);
+  const RangesOfBox ranges(box, 64, 1.0);
+  int lacking = 0;
+  for (int bin = 0; bin < static_cast<int>(ids.size()); ++bin) {
+    const double low_m = bin / 64 * fine_step_m;
+    const bool within = low_m > ranges[bin % 64].low_m && low_m + fine_step_m < ranges[bin % 64].high_m;
+    lacking += within && ids[static_cast<std::size_t>(bin)] == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(lacking, 0);
 }
 
 TEST_F(BodyTruthTest, IdsAreOfEightBitsWhereTheyFit) {
