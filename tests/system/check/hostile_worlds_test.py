@@ -97,7 +97,7 @@ class World(unittest.TestCase):
 
     def check(self, body, *wrapper):
         self.write("world.sdf", ('<sdf version="1.9"><world name="w">%s</world></sdf>' % body).encode())
-        return subprocess.run([*wrapper, PROGRAM, "check", os.path.join(self.folder, "world.yaml")], text=True,
+        return subprocess.run([*wrapper, PROGRAM, "check", "--no-network", os.path.join(self.folder, "world.yaml")], text=True,
                               capture_output=True, timeout=HANGS_S, check=False)
 
     def expect_refused(self, body, *parts):
