@@ -104,4 +104,12 @@ void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
   }
 }
 
+void PointSpread::spread_lines(std::vector<float>& lines, WorkerPool& workers) const {
+  if (uses_pulse_) {
+    EchoImage spread;
+    pulse_->response.apply({1, static_cast<int>(lines.size()), lines}, spread, workers);
+    lines = std::move(spread.intensity);
+  }
+}
+
 }  // namespace sonard::render

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "renderer/acoustics/beam_pattern.hpp"
 #include "renderer/acoustics/pulse.hpp"
@@ -32,6 +33,9 @@ class PointSpread {
 
   /// Spreads the echo in range by the length of the pulse and multiplies it by the pulse's energy.
   void spread(EchoImage& echo, WorkerPool& workers);
+  /// Spreads one value per line as spread() spreads the echo of a beam, without the pulse's energy if the
+  /// pulse is short.
+  void spread_lines(std::vector<float>& lines, WorkerPool& workers) const;
 
  private:
   struct PulseTable {

@@ -97,6 +97,8 @@ struct SonarRenderer::Impl {
   std::map<int, PointSpread> point_spreads;  // by stream
   std::map<int, Begun> begun;                // by stream
   EchoImage fine_echo;                       // memory
+  // The strongest echo of each line, before the pulse; empty without echoes of the water.
+  std::vector<float> strongest_of_surfaces, strongest_of_all;
 
   Impl(const World& world, const RendererOptions& options)
       : skip(options.skip),
@@ -163,6 +165,7 @@ struct SonarRenderer::Impl {
     image.lines = settings.range.count;
     image.steady = {};
     image.surface_share.clear();
+    strongest_of_all.clear();
     if (!settings.transmit) {
       image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
                              0.0F);
@@ -174,13 +177,17 @@ struct SonarRenderer::Impl {
       sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, stream, motion, fine_echo);
       Stopwatch watch;
       point_spread.form_beams(fine_echo, settings, image, workers, skip, statistics.skipped);
-      image.surface_share = fine_echo.surface_share;
       statistics.azimuth_pattern_s = watch.lap();
     } else {
       sample_echo(settings, settings_and_seed.seed, stream, motion, image);
     }
     Stopwatch watch;
     point_spread.spread(image, workers);
+    if (!strongest_of_all.empty()) {
+      point_spread.spread_lines(strongest_of_surfaces, workers);
+      point_spread.spread_lines(strongest_of_all, workers);
+      image.surface_share = quotients(strongest_of_surfaces, strongest_of_all);
+    }
     statistics.pulse_s = watch.lap();
   }
 
@@ -221,11 +228,13 @@ struct SonarRenderer::Impl {
     if (settings.model == Model::physical) {
       const bool water_echoes =
           settings.physical.water_clutter.density_per_m3 > 0 || has_volume_reverberation(settings);
-      image.surface_share = water_echoes ? strongest_of_lines(image) : std::vector<float>{};
+      if (water_echoes) {
+        strongest_of_surfaces = strongest_of_lines(image);
+      }
       add_water_clutter(settings, motion.T_world_sonar, seed, image);
       add_volume_reverberation(echo.open_sr, settings, image);
       if (water_echoes) {
-        divide(image.surface_share, strongest_of_lines(image));
+        strongest_of_all = strongest_of_lines(image);
       }
       apply_loss(request.line_weight, image);
     }
@@ -244,13 +253,14 @@ struct SonarRenderer::Impl {
     return strongest;
   }
 
-  /// Divides `part` by `whole`; 0 if the whole is 0.
-  static void divide(std::vector<float>& part, const std::vector<float>& whole) {
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      part[i] = whole[i] > 0 ? part[i] / whole[i] : 0.0F;
+  /// The shares of the parts; 0 if the whole is 0.
+  static std::vector<float> quotients(const std::vector<float>& parts, const std::vector<float>& wholes) {
+    std::vector<float> shares;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      shares.push_back(wholes[i] > 0 ? parts[i] / wholes[i] : 0.0F);
     }
+    return shares;
   }
-
   /// SkipRule::terrain_detail. Motion within a ping extends the range, but does not change the detail.
   void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
     Stopwatch watch;

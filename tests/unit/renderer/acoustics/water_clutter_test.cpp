@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Single objects in the water: their density and places; the first echo hides objects behind it.
 #include "renderer/acoustics/water_clutter.hpp"
-#include "tests/support/degree.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
+
+#include "renderer/pipeline/sonar_renderer.hpp"
+#include "tests/support/degree.hpp"
+#include "tests/support/engine_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -82,6 +85,27 @@ TEST(WaterClutter, AnotherSeedIsOtherWaterAndNoneIsNone) {
   EXPECT_NE(clutter_of(settings_of(0.1)).intensity, clutter_of(settings_of(0.1), {}, 2).intensity);
   EXPECT_EQ(clutter_of(settings_of(0.1)).intensity, clutter_of(settings_of(0.1)).intensity);
   EXPECT_EQ(count_of(clutter_of(settings_of(0))), 0);
+}
+
+// A faint bed does not stand out because of fish before it, wherever the pulse spreads their echo.
+TEST(WaterClutter, DoesNotMakeSurfacesStandOut) {
+  PingRequest request;
+  request.settings = settings_of(0);
+  request.settings.aperture.azimuth = Aperture::Azimuth::ideal;
+  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
+  request.settings.physical.range_cell_m = 0.2;
+  request.T_world_sonar.position_m = {0, 0, 4};
+  const World bed =
+      test::make_world({test::make_body("bed", test::make_quad({-60, -60, 0}, {120, 0, 0}, {0, 120, 0}))});
+  const auto over_floor = [&](double density_per_m3) {
+    request.settings.physical.water_clutter = {density_per_m3, -10};
+    SonarRenderer renderer(bed, {EngineKind::cpu, 1});
+    renderer.render_ping(request);
+    return renderer.last_statistics().echo_over_floor;
+  };
+  const double without = over_floor(0);
+  EXPECT_GT(without, 0);
+  EXPECT_NEAR(over_floor(0.1) / without, 1, 0.3);
 }
 
 }  // namespace
