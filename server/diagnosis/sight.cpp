@@ -147,11 +147,16 @@ bool meets(const BodyBox& box, const glm::dvec3& from, const glm::dvec3& directi
   return enters <= leaves;
 }
 
-/// True for UTM easting and northing, in either order: 100 to 900 km, and 1000 to 10 000 km.
-bool looks_like_utm(const glm::dvec3& p) {
+/// The name of geographic coordinates that a position looks like; "" if it looks like none. UTM easting and
+/// northing, in either order: 100 to 900 km, and 1000 to 10 000 km. ECEF: near the surface of the Earth.
+std::string_view coordinates_of(const glm::dvec3& p) {
   const double less = std::min(p.x, p.y);
   const double more = std::max(p.x, p.y);
-  return less > 1e5 && less < 9e5 && more > 1e6 && more < 1e7 && std::abs(p.z) < 1.2e4;
+  if (less > 1e5 && less < 9e5 && more > 1e6 && more < 1e7 && std::abs(p.z) < 1.2e4) {
+    return "UTM (easting, northing)";
+  }
+  const double from_centre_m = glm::length(p);
+  return from_centre_m > 6.34e6 && from_centre_m < 6.39e6 ? "ECEF (from the centre of the Earth)" : "";
 }
 
 /// A body at its current pose, with the sonar's position.
@@ -253,11 +258,35 @@ class LookAround {
     const glm::dvec3 turned_m = sonar_with_z_turned();
     const bool turned = is_in_the_world(turned_m) && turned_m.z <= *world_.water_surface_z_m;
     const bool by_mount = has_long_arm() && vehicle_m().z <= *world_.water_surface_z_m;
-    add("above_surface", fmt::format("The sonar is {:.1f} m above the water surface, in the air{}.", above_m,
-                                     by_mount        ? fmt::format(" ({})", mount_hint())
-                                     : !unit.empty() ? fmt::format(" (are positions in {}?)", unit)
-                                     : turned        ? " (is z down?)"
-                                                     : ""));
+    const std::string other = coordinates_hint();
+    add("above_surface",
+        fmt::format("The sonar is {:.1f} m above the water surface, in the air{}.{}", above_m,
+                    by_mount         ? fmt::format(" ({})", mount_hint())
+                    : !other.empty() ? ""
+                    : !unit.empty()  ? fmt::format(" (are positions in {}?)", unit)
+                    : turned         ? " (is z down?)"
+                                     : "",
+                    by_mount ? "" : other));
+  }
+
+  /// A hint if either the poses or the bodies of the world have geographic coordinates; else "".
+  std::string coordinates_hint() const {
+    std::string_view of_world;
+    for (const Neighbour& neighbour : neighbours_) {
+      if (neighbour.body->name != sight_.vehicle_model && of_world.empty()) {
+        of_world =
+            coordinates_of(neighbour.T_world_body * (0.5 * (neighbour.box.min_m + neighbour.box.max_m)));
+      }
+    }
+    const std::string_view of_pose = coordinates_of(vehicle_m());
+    if (of_pose.empty() == of_world.empty()) {
+      return "";
+    }
+    return fmt::format(
+        " {} looks like {}, but the {} not: subtract the position of the world's origin from "
+        "the poses, or use the same coordinates for both.",
+        of_world.empty() ? "The position" : "The world", of_world.empty() ? of_pose : of_world,
+        of_world.empty() ? "world does" : "position does");
   }
 
   /// A hint if the sonar is above all bodies and, with the opposite sign of z, would be lower but not under
@@ -283,14 +312,22 @@ class LookAround {
   }
 
   /// Detects a quaternion with w first that was read as x, y, z, w: a level vehicle then leans by 180 degrees
-  /// minus its heading. (A vehicle that heads due west looks level and is not detected.)
+  /// minus its heading. (A vehicle that heads due west looks level and is not detected.) Also detects a
+  /// vehicle frame with z down.
   void note_upside_down() {
     const glm::dquat& q = sight_.T_world_vehicle.orientation;
     const auto up_of = [](const glm::dquat& turn) { return (turn * glm::dvec3(0, 0, 1)).z; };
+    const bool overturned = up_of(q) < -0.98;
     if (up_of(q) < 0.7 && up_of(glm::dquat(q.x, q.y, q.z, q.w)) > 0.98) {
       add("quaternion_w_first",
-          "The vehicle lies on its side or upside down (is its quaternion sent with w first? With w first, "
-          "it would be level. A message names x, y, z and w; a trajectory file has w last).");
+          fmt::format(
+              "The vehicle lies on its side or upside down (is its quaternion sent with w first? With "
+              "w first, it would be level. A message names x, y, z and w; a trajectory file has w "
+              "last{}).",
+              overturned ? ". Or is z of its frame down? It must be up" : ""));
+    } else if (overturned) {
+      add("upside_down",
+          "The vehicle is upside down (is z of its frame down? x must be forward, y left and z up).");
     }
   }
 
@@ -406,15 +443,10 @@ class LookAround {
     const std::string text =
         fmt::format("Nothing is within {:.4g} m; the nearest body, '{}', is {:.4g} m away", sight_.range_m,
                     nearest.body->name, away_m);
-    const glm::dvec3 there = nearest.T_world_body * (0.5 * (nearest.box.min_m + nearest.box.max_m));
     if (has_long_arm() && is_in_the_world(p)) {
       add("nothing_near", fmt::format("{}. The vehicle is inside the world, but {}", text, mount_hint()));
-    } else if (looks_like_utm(p) != looks_like_utm(there)) {
-      add("utm",
-          fmt::format("{}. {} looks like UTM (easting, northing), but the {} not: subtract the position of "
-                      "the world's origin from the poses, or use the same coordinates for both.",
-                      text, looks_like_utm(p) ? "The position" : "The world",
-                      looks_like_utm(p) ? "world does" : "position does"));
+    } else if (const std::string other = coordinates_hint(); !other.empty()) {
+      add("geographic_coordinates", text + "." + other);
     } else if (const std::string unit = wrong_unit(); !unit.empty()) {
       add("wrong_unit", fmt::format("{}. In {}, the position would be inside the world: are positions in {}?",
                                     text, unit, unit));

@@ -242,11 +242,42 @@ TEST(LookAround, SuspectsUtmCoordinatesInALocalWorld) {
   for (const glm::dvec3& p : {glm::dvec3(569000, 7034000, -20), glm::dvec3(7034000, 569000, -20)}) {
     const auto found = look(one("bed", sheet()), {}, at(p));
     ASSERT_EQ(found.size(), 1U);
-    EXPECT_EQ(found[0].code, "utm");
+    EXPECT_EQ(found[0].code, "geographic_coordinates");
     EXPECT_NE(found[0].text.find("The position looks like UTM (easting, northing), but the world does not"),
               std::string::npos)
         << found[0].text;
   }
+}
+
+TEST(LookAround, SuspectsUtmCoordinatesAboveTheSurface) {
+  render::World world = one("bed", sheet());
+  world.water_surface_z_m = 0.0;
+  const auto found = look(world, {}, at({569000, 7034000, 0.3}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(
+      found[0].text,
+      "The sonar is 0.3 m above the water surface, in the air. The position looks like UTM (easting, "
+      "northing), but the world does not: subtract the position of the world's origin from the poses, or "
+      "use the same coordinates for both.");
+}
+
+TEST(LookAround, SuspectsEarthCentredCoordinates) {
+  // Trondheim: 63.43 degrees north, 10.40 degrees east.
+  const auto found = look(one("bed", sheet()), {}, at({2813500, 516400, 5681300}));
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].code, "geographic_coordinates");
+  EXPECT_NE(found[0].text.find("looks like ECEF"), std::string::npos) << found[0].text;
+}
+
+TEST(LookAround, SuspectsAFrameWithZDown) {
+  Sight sight = at({7, 3, -15});
+  // Rolled by 180 degrees, heading north: with w first, this is no level vehicle.
+  sight.T_world_vehicle.orientation = glm::angleAxis(std::numbers::pi / 2, glm::dvec3(0, 0, 1)) *
+                                      glm::angleAxis(std::numbers::pi, glm::dvec3(1, 0, 0));
+  const auto found = look(one("bed", sheet()), {}, sight);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].text,
+            "The vehicle is upside down (is z of its frame down? x must be forward, y left and z up).");
 }
 
 TEST(LookAround, SuspectsALocalPoseInAWorldOfUtmCoordinates) {
