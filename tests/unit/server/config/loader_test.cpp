@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <numbers>
 #include <set>
@@ -12,6 +13,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -275,22 +277,22 @@ TEST_F(Loader, offers_only_keys_that_a_head_of_this_type_may_have) {
   for (const HeadKind* const kind : head_kinds()) {
     add_names(describe_config(*kind), names);
   }
+  names.erase("type");
   std::size_t offers = 0;
   for (const HeadKind* const kind : head_kinds()) {
     const std::string head = fmt::format("{{type: {}", kind->type());
-    for (const std::string& name : names) {
-      for (const std::string& problem : complaints(fmt::format("heads: [{}, {}: 1}}]\n", head, name))) {
-        if (const std::string path = offered_in(problem); !path.empty()) {
-          const std::string inner = nested(path, "1").substr(1);
-          const bool in_head = is_known(fmt::format("heads: [{}, {}]\n", head, inner));
-          EXPECT_TRUE(in_head || is_known(fmt::format("{{heads: [{}}}], {}\n", head, inner)))
-              << kind->type() << ": " << problem;
-          ++offers;
-        }
+    const std::string all = fmt::format("heads: [{}, {}: 1}}]\n", head, fmt::join(names, ": 1, "));
+    for (const std::string& problem : complaints(all)) {
+      if (const std::string path = offered_in(problem); !path.empty()) {
+        const std::string inner = nested(path, "1").substr(1);
+        const bool in_head = is_known(fmt::format("heads: [{}, {}]\n", head, inner));
+        EXPECT_TRUE(in_head || is_known(fmt::format("{{heads: [{}}}], {}\n", head, inner)))
+            << kind->type() << ": " << problem;
+        ++offers;
       }
     }
   }
-  EXPECT_GT(offers, 50U);
+  EXPECT_GT(offers, 500U);
 }
 
 TEST_F(Loader, names_a_key_without_a_blank_after_its_colon) {
@@ -1054,9 +1056,9 @@ TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
   for (int key = 0; key < 100'000; ++key) {
     keys += fmt::format("k{}: 1\n", key);
   }
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of this process, whatever else the machine does
   const std::vector<std::string> lines = complaints(keys);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds{30});
+  EXPECT_LT((std::clock() - start) / CLOCKS_PER_SEC, 30);
   ASSERT_EQ(lines.size(), 1001U);
   EXPECT_THAT(lines.back(), HasSubstr("99000 more problems are not shown"));
 

@@ -56,6 +56,7 @@ Pings pings_written(int count) {
 }
 
 constexpr std::int64_t first_ping_ns = 1'795'184'553'000'000'000;
+constexpr std::int64_t ping_interval_ns = 100'000'000;
 
 /// A log with two images per chunk.
 Bytes mcap_log(int images, bool compressed, bool finished) {
@@ -66,7 +67,7 @@ Bytes mcap_log(int images, bool compressed, bool finished) {
     log::SonarImage image;
     image.set_head("bow");
     image.set_device_id(600);
-    image.set_transmit_time_ns(first_ping_ns + number * 100'000'000);
+    image.set_transmit_time_ns(first_ping_ns + number * ping_interval_ns);
     image.set_range_lines(20);
     image.set_beams(3);
     image.set_pixels(samples_of(number));
