@@ -257,7 +257,7 @@ void Check::report_cost(const HeadConfig& head, double ms, std::size_t triangles
   constexpr double slow_ms = 60.0;
   constexpr std::size_t many_triangles = 1'000'000;
   const std::string cost = fmt::format("a ping to {:.4g} m takes about {:.{}f} ms on this machine's CPU",
-                                       usual_settings(head).range.sampled_range_m(), ms, ms < 10.0 ? 1 : 0);
+                                       usual_settings(head).range.max_range_m(), ms, ms < 10.0 ? 1 : 0);
   report_.summary.push_back(fmt::format("cost     {}: {}", head.name, cost));
   report_.cost_ms[head.name] = ms;
   if (ms > slow_ms && triangles > many_triangles) {

@@ -81,7 +81,7 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
   return look_around(world_, boxes_, moved,
                      {.T_world_vehicle = T_world_vehicle,
                       .T_world_sonar = T_world_vehicle * settings.T_vehicle_sonar,
-                      .range_m = usual_settings(settings).range.sampled_range_m(),
+                      .range_m = usual_settings(settings).range.max_range_m(),
                       .sees_surface = seen.sees_surface,
                       .echo_over_floor = seen.echo_over_floor,
                       .vehicle_model = config_.vehicle_model,

@@ -429,7 +429,7 @@ void Head::Impl::note_water(TimePoint now) {
     // In air no pings are made that would show this.
     NewestPing here = newest.value_or(NewestPing{});
     if (!newest) {
-      here.range_m = usual_settings(config).range.sampled_range_m();
+      here.range_m = usual_settings(config).range.max_range_m();
     }
     here.T_world_mount = T_world_mount;
     const TimePoint present = services.poses.present(now);
