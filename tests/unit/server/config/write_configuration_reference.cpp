@@ -21,8 +21,9 @@ namespace sonard::server {
 namespace {
 
 constexpr std::string_view beginning =
-    "<!-- From here to the end written by write_configuration_reference, from server/config and "
-    "server/devices/*/section.cpp -->\n";
+    "<!-- From here to the end written by write_configuration_reference, from section.cpp of config and "
+    "devices "
+    "-->\n";
 
 using Keys = std::vector<KeyReference>;
 
@@ -143,11 +144,30 @@ std::string cell(const std::string& text) {
   return text.empty() ? " " : ' ' + text + ' ';
 }
 
+/// Breaks a paragraph into lines of at most 120 characters, at blanks outside of `code`.
+std::string folded(const std::string& paragraph) {
+  constexpr std::size_t longest = 120;
+  std::string text = paragraph;
+  std::size_t begin = 0, blank = 0;
+  bool code = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    code = code != (text[i] == '`');
+    if (i - begin >= longest && blank > begin) {
+      text[blank] = '\n';
+      begin = blank + 1;
+    }
+    if (text[i] == ' ' && !code) {
+      blank = i;
+    }
+  }
+  return text;
+}
+
 std::string text_of(const Table& table, std::size_t kind_count) {
   std::string text = table.paths.front().empty() ? "\n### Top level"
                                                  : fmt::format("\n### `{}`", fmt::join(table.paths, "`, `"));
   text += table.kinds.size() < kind_count ? fmt::format(" ({})\n\n", fmt::join(table.kinds, ", ")) : "\n\n";
-  text += table.introduction.empty() ? "" : table.introduction + "\n\n";
+  text += table.introduction.empty() ? "" : folded(table.introduction) + "\n\n";
   text += "| key | type | default | meaning |\n|---|---|---|---|\n";
   for (std::size_t i = 0; i < table.keys.size(); ++i) {
     const KeyReference& key = table.keys[i];
