@@ -2,6 +2,7 @@
 #include "server/demo.hpp"
 
 #include <sys/prctl.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <csignal>
@@ -9,9 +10,11 @@
 #include <deque>
 #include <fstream>
 #include <functional>
+#include <initializer_list>
 #include <istream>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -43,7 +46,24 @@ fs::path folder_of_programs() {
   return fs::canonical("/proc/self/exe").parent_path();
 }
 
-/// Folder of the configurations. @throws std::runtime_error
+/// A program or a file of the demo that is not beside sonard.
+struct MissingPart : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// @throws MissingPart if a program that the demo starts is not beside sonard
+void expect_programs() {
+  for (const char* const name : {"posecast", "sonarview"}) {
+    const fs::path program = folder_of_programs() / name;
+    std::error_code ignored;
+    if (!fs::exists(program, ignored)) {
+      throw MissingPart(
+          fmt::format("{} does not exist (expected posecast and sonarview beside sonard)", program.string()));
+    }
+  }
+}
+
+/// Folder of the configurations. @throws MissingPart
 fs::path folder_of_configurations() {
   const fs::path programs = folder_of_programs();
   for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
@@ -52,9 +72,8 @@ fs::path folder_of_configurations() {
       return fs::canonical(programs / folder);
     }
   }
-  throw std::runtime_error(
-      fmt::format("{1} is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
-                  programs.string(), list_file));
+  throw MissingPart(fmt::format("{1} is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
+                                programs.string(), list_file));
 }
 
 /// A running program and its output lines.
@@ -77,7 +96,11 @@ class Part {
 
   const std::string& name() const { return name_; }
   bool ended() const { return exit_code_.has_value(); }
-  int exit_code() const { return exit_code_.value_or(0); }
+  /// Of a program that a signal ended, 128 and the signal's number, as in a shell.
+  int exit_code() const {
+    const int status = child_.native_exit_code();
+    return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : exit_code_.value_or(0);
+  }
   std::string last_words() const { return fmt::format("  {}\n", fmt::join(tail_, "\n  ")); }
   void signal(int number) {
     if (!ended()) {
@@ -130,6 +153,20 @@ std::string filled_in(std::string text, const std::string& summary) {
     }
   }
   return text;
+}
+
+/// The demo's exit code after one of its programs has ended: the daemon's own code and the network's failures
+/// are not defects of sonard.
+int exit_code_after(const Part& fallen) {
+  const int code = fallen.exit_code();
+  if (fallen.name() == "sonard") {
+    const std::initializer_list<int> expected{exit_config, exit_network, exit_renderer, exit_output,
+                                              exit_exhausted};
+    return std::ranges::find(expected, code) != expected.end() ? code : exit_internal;
+  }
+  constexpr int no_socket = 1;  // of posecast and sonarview
+  constexpr int no_head = 3;    // of sonarview
+  return code == no_socket || code == no_head ? exit_network : exit_internal;
 }
 
 class Demo {
@@ -224,7 +261,7 @@ class Demo {
                  fallen == nullptr ? fmt::format("was not ready after {} s", longest_start.count())
                                    : "ended unexpectedly",
                  part.last_words());
-      return exit_internal;
+      return fallen == nullptr ? exit_internal : exit_code_after(part);
     }
     if (!summary_.empty()) {
       fmt::print("demo: {}\n", filled_in(entry_["report"].as<std::string>(), summary_));
@@ -277,7 +314,10 @@ std::vector<std::string> demo_names() {
   return names;
 }
 
-int run_demo(const DemoOptions& options) {
+namespace {
+
+/// @throws MissingPart
+int run_found(const DemoOptions& options) {
   const std::vector<std::string> names = demo_names();
   const std::string& name = options.name.empty() ? names.front() : options.name;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -285,6 +325,7 @@ int run_demo(const DemoOptions& options) {
                printable(fmt::format("{}", fmt::join(names, ", "))));
     return exit_config;
   }
+  expect_programs();
   std::error_code error;
   if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
     fmt::print(stderr, "demo: --out: cannot create the folder {}: {}\n", printable(options.out.string()),
@@ -293,6 +334,17 @@ int run_demo(const DemoOptions& options) {
   }
   const fs::path configurations = folder_of_configurations();
   return Demo(options, configurations, YAML::LoadFile((configurations / list_file).string())[name]).run();
+}
+
+}  // namespace
+
+int run_demo(const DemoOptions& options) {
+  try {
+    return run_found(options);
+  } catch (const MissingPart& error) {
+    fmt::print(stderr, "demo: {}\n", printable(error.what()));
+    return exit_config;
+  }
 }
 
 }  // namespace sonard::server

@@ -35,6 +35,12 @@ AS_XML = "x'&#10;FORGED&#13;&#9;&#x9b;2J&#x202e;&#x7f;"  # XML 1.0 has no ESC
 LOGS_MESSAGE = 0x80  # of an Oculus
 
 
+def write_script(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("#!/bin/sh\n" + text)
+    os.chmod(path, 0o755)
+
+
 class HostileText(DaemonCase):
     def path(self, name):
         return os.path.join(self.folder.name, name)
@@ -199,24 +205,59 @@ class HostileText(DaemonCase):
             file.write(text.replace("engine: cpu", f"engine: cpu\n{AS_YAML}: 1"))
         self.expect_clean(self.run_to_end("sonard", "render", configuration, "--trajectory", way, "--out", out, codes=(2,)))
 
-    def test_what_the_demo_passes_on(self):
-        """The demo starts programs from its own folder; here these programs print hostile text."""
+    def copied_demo(self):
+        """A copy of sonard in a folder in which the demo finds its configurations; and this folder."""
         programs = self.path("a/b/bin")
         os.makedirs(programs)
         os.symlink(os.path.join(SOURCE, "configs"), self.path("configs"))
         demo = os.path.join(programs, "the_demo")
         shutil.copy(os.path.join(daemon_test.PROGRAMS, "sonard"), demo)
+        return demo, programs
+
+    def run_demo(self, demo, *arguments):
+        done = subprocess.run([demo, "demo", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              timeout=START_S, check=False)
+        return done.returncode, done.stdout
+
+    def test_what_the_demo_passes_on(self):
+        """The demo starts programs from its own folder; here these programs print hostile text."""
+        demo, programs = self.copied_demo()
         line = HOSTILE.replace("\n", "")
         for name, last in (("sonard", "sonard ready"), ("posecast", ""), ("sonarview", f"summary rate_hz={line}")):
-            path = os.path.join(programs, name)
-            with open(path, "w", encoding="utf-8") as file:
-                file.write(f"#!/bin/sh\ncat <<'END'\n{line}\n{last}\nEND\n" + ("" if name == "sonarview" else "exec sleep 60\n"))
-            os.chmod(path, 0o755)
+            write_script(os.path.join(programs, name), f"cat <<'END'\n{line}\n{last}\nEND\n"
+                         + ("" if name == "sonarview" else "exec sleep 60\n"))
         for arguments, codes in ((["--out", self.path(HOSTILE)], (0,)), ([HOSTILE], (2, 64))):
-            done = subprocess.run([demo, "demo", *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                  timeout=START_S, check=False)
-            self.assertIn(done.returncode, codes, done.stdout)
-            self.expect_clean(done.stdout)
+            code, output = self.run_demo(demo, *arguments)
+            self.assertIn(code, codes, output)
+            self.expect_clean(output)
+
+    def test_exit_codes_of_the_demo(self):
+        """A failure that the user can mend is no defect (70) of sonard; docs/configuration.md lists the codes."""
+        demo, programs = self.copied_demo()
+        code, output = self.run_demo(demo)
+        self.assertEqual(code, 2, output)
+        self.assertIn(b"beside sonard", output)
+        for name, ends_with, expected in (
+                ("sonard", "exit 2", 2), ("sonard", "exit 3", 3), ("sonard", "exit 71", 71), ("sonard", "exit 0", 70),
+                ("sonard", "exit 70", 70), ("sonard", "kill -ILL $$", 70), ("posecast", "exit 1", 3), ("posecast", "exit 2", 70),
+                ("sonarview", "exit 3", 3), ("sonarview", "exit 2", 70)):
+            for each in ("sonard", "posecast", "sonarview"):
+                ends = f"sleep 0.1; echo the last words; {ends_with}\n" if each == name else "exec sleep 60\n"
+                ready = "echo sonard ready\n" if each == "sonard" and name != "sonard" else ""
+                write_script(os.path.join(programs, each), ready + ends)
+            with self.subTest(name=name, ends_with=ends_with):
+                code, output = self.run_demo(demo)
+                self.assertEqual(code, expected, output)
+                self.assertIn(b"the last words", output)
+
+    def test_a_demo_whose_port_is_taken(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as taken:
+            taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            taken.bind(("127.0.0.1", 4001))
+            taken.listen()
+            code, output = self.run_demo(os.path.join(daemon_test.PROGRAMS, "sonard"), "micron")
+        self.assertEqual(code, 3, output)
+        self.assertIn(b"127.0.0.1:4001", output)
 
     def test_the_name_of_a_gpu_in_the_selftest(self):
         os.environ["force_gl_renderer"] = HOSTILE  # Mesa's own switch for the name of its renderer
