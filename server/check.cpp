@@ -19,6 +19,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include "common/text/counted.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/engines/gpu/thin_things.hpp"
 #include "renderer/errors.hpp"
@@ -387,9 +388,10 @@ void Check::check_poses() {
     sources.push_back(fmt::format("gazebo {} entity '{}'", poses.gazebo->topic, poses.gazebo->vehicle.name));
   }
   if (trajectory_) {
-    sources.push_back(fmt::format(
-        "trajectory {} ({} poses, {:.1f} s)", poses.trajectory->file.string(), trajectory_->points().size(),
-        1e-9 * static_cast<double>(trajectory_->end_ns() - trajectory_->start_ns())));
+    sources.push_back(
+        fmt::format("trajectory {} ({}, {:.1f} s)", poses.trajectory->file.string(),
+                    counted(trajectory_->points().size(), "pose"),
+                    1e-9 * static_cast<double>(trajectory_->end_ns() - trajectory_->start_ns())));
   } else if (poses.trajectory) {
     problem("poses.trajectory.file", trajectory_trouble_);
   }

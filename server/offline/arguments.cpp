@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/offline/arguments.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -106,7 +107,11 @@ OfflineOptions OfflineArguments::options() const {
     if (equals == 0 || equals == std::string::npos || equals + 1 == body.size()) {
       throw CLI::ValidationError("--body", fmt::format("expected NAME=FILE, found '{}'", body));
     }
-    options.bodies.push_back({body.substr(0, equals), body.substr(equals + 1)});
+    const std::string name = body.substr(0, equals);
+    if (std::ranges::find(options.bodies, name, &OfflineOptions::BodyWay::body) != options.bodies.end()) {
+      throw CLI::ValidationError("--body", fmt::format("'{}' is given twice (expected once per body)", name));
+    }
+    options.bodies.push_back({name, body.substr(equals + 1)});
   }
   return options;
 }

@@ -2,6 +2,7 @@
 // Frames of a head along a trajectory, one after the other.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -30,6 +31,20 @@ struct CleanPicture {
   cv::Mat pixels;  ///< CV_8UC1
 };
 
+/// Place and echoes of a frame, to find the cause of a black picture; of a sweep, its first line's place and
+/// its best line's echo.
+struct FrameView {
+  std::int64_t time_ns = 0;  ///< of the trajectory
+  double range_m = 0.0;
+  bool sees_surface = false;
+  double echo_over_floor = 0.0;  ///< as in render::PingStatistics
+
+  void add(const render::PingStatistics& ping) {
+    sees_surface = sees_surface || ping.sees_surface;
+    echo_over_floor = std::max(echo_over_floor, ping.echo_over_floor);
+  }
+};
+
 /// Contents of the files of one ping of a fan, or one sweep of a scanning head.
 struct Frame {
   std::string npy;                ///< samples
@@ -38,6 +53,7 @@ struct Frame {
   std::function<cv::Mat()> draw;  ///< draws the picture; for one frame at a time
   /// Draws OfflineOptions::clean_pictures; for one frame at a time.
   std::function<std::vector<CleanPicture>()> draw_clean;
+  FrameView view;
 };
 
 /// Frames depend only on the arguments of a source and on the frames before, which the renderer must have

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "common/text/counted.hpp"
 #include "server/clock/clock.hpp"
 
 namespace sonard::server {
@@ -27,7 +28,7 @@ std::string time_text(double seconds) {
 std::string progress_text(const ProgressState& state) {
   const int done = state.found + state.made;
   const int percent = state.frames > 0 ? 100 * done / state.frames : 100;
-  std::string text = fmt::format("{} of {} frames, {} %", done, state.frames, percent);
+  std::string text = fmt::format("{} of {}, {} %", done, counted(state.frames, "frame"), percent);
   const double seconds = std::chrono::duration<double>(state.elapsed).count();
   if (state.made > 0 && seconds > 0.0) {
     const double per_second = state.made / seconds;
@@ -38,12 +39,12 @@ std::string progress_text(const ProgressState& state) {
 }
 
 std::string found_text(int frames, int found) {
-  return fmt::format("{} of {} frames exist; {} to render", found, frames, frames - found);
+  return fmt::format("{} of {} exist; {} to render", found, counted(frames, "frame"), frames - found);
 }
 
 std::string interrupted_text(const ProgressState& state) {
-  return fmt::format("interrupted: {} of {} frames exist; run the same command again to render the rest",
-                     state.found + state.made, state.frames);
+  return fmt::format("interrupted: {} of {} exist; run the same command again to render the rest",
+                     state.found + state.made, counted(state.frames, "frame"));
 }
 
 Progress::Progress(int frames, int found)

@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "common/text/counted.hpp"
 #include "common/text/printable.hpp"
 #include "protocol/glf/deflate.hpp"
 #include "protocol/glf/log_time.hpp"
@@ -36,6 +37,7 @@
 #include "server/daemon/exit_codes.hpp"
 #include "server/devices/device_kind.hpp"
 #include "server/offline/fan_frames.hpp"
+#include "server/offline/frame_findings.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/glf_file.hpp"
 #include "server/offline/jumps.hpp"
@@ -212,6 +214,7 @@ class RenderRun {
   render::SonarRenderer renderer_;
   std::unique_ptr<BodyTruth> truth_;
   std::unique_ptr<FrameSource> frames_;
+  FrameFindings findings_;
   OutputFolder folder_;
   std::mutex drawing_;
 };
@@ -269,6 +272,7 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
+      findings_(world_, config_, head_, trajectory_),
       folder_(options.out) {
   warn_of_rate(*frames_, config_.heads[head_].name);
   if (options.clean_pictures && options.truth && world_.bodies.size() > 255) {
@@ -418,12 +422,18 @@ void RenderRun::render_missing() {
     }
     Frame made = frames_->render(renderer_, frame);
     ++next;
+    if (findings_.wants(frame)) {
+      findings_.add(frames_->name(frame), made.view);
+    }
     wait_until_fewer_than(writers);
     writing.push_back(
         std::async(std::launch::async, [this, frame, made = std::move(made)] { write(frame, made); }));
   }
   wait_until_fewer_than(1);
   progress.end();
+  for (const std::string& line : findings_.lines()) {
+    spdlog::warn("{}", line);
+  }
   if (interrupted_by != 0 && progress.state().found + progress.state().made < of_shard) {
     fmt::print(stderr, "{}: {}\n", printable(folder_.path().string()), interrupted_text(progress.state()));
   }
@@ -454,7 +464,7 @@ void RenderRun::finish() {
     make_mcap();
   }
   folder_.remove_parts();
-  fmt::print("{}: {} frames\n", out, frames_->count());
+  fmt::print("{}: {}\n", out, counted(frames_->count(), "frame"));
 }
 
 void RenderRun::make_glf() const {

@@ -87,11 +87,14 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
   npy::Table samples{bins_, columns, std::vector<std::uint8_t>(at(bins, 0)), {}};
   std::vector<std::uint16_t> bodies(truth_ != nullptr ? samples.u8.size() : 0);
   auto lines = std::make_shared<std::vector<picture::SweepLine>>();
+  FrameView view{.time_ns = times_.at(first), .range_m = 0.0};
   for (int column = 0; column < columns; ++column) {
     const render::PingRequest ping = request(first + column);
     place_bodies(trajectory_, times_.at(first + column), renderer, truth_);
     picture::SweepLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
                             renderer.render_ping(ping, stream_).u8};
+    view.range_m = ping.settings.range.sampled_range_m();
+    view.add(renderer.last_statistics());
     const std::vector<std::uint16_t> nearby =
         truth_ != nullptr ? truth_->bodies_in(ping) : std::vector<std::uint16_t>{};
     for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -103,6 +106,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
     lines->push_back(std::move(line));
   }
   Frame made;
+  made.view = view;
   made.npy = npy::encode(samples);
   std::shared_ptr<const npy::Table> ids;
   if (truth_ != nullptr) {

@@ -183,6 +183,31 @@ class Files(Case):
                 self.assertFalse(numpy.load(os.path.join(out, "ping_000000_bodies.npy")).any())
                 self.assertEqual(self.sidecar(out, "ping_000000")["truth"]["bodies"], [])
 
+    def test_black_frames_are_counted_with_their_cause(self):
+        """The water surface of this world is at z = 10, and the sphere at (3, 2, 0) has a radius of 0.5 m."""
+        cases = (
+            ("in the air", "0,0,8,0,0,0,1", "0,0,13,0,0,0,1", r"3 of 5 frames: The sonar is 0\.5 m above the water surface, in the "
+             r"air.*\(first in ping_000002\)"),
+            ("UTM", "500000,5000000,0,0,0,0,1", "500001,5000000,0,0,0,0,1", r"5 of 5 frames: Nothing is within .* looks like UTM"),
+            ("w first", "0,0,0,1,0,0,0", "0.1,0,0,1,0,0,0", r"5 of 5 frames: The vehicle lies .* w first"),
+            ("inside", "3,2,0,0,0,0,1", "3.1,2,0,0,0,0,1", r"5 of 5 frames: The sonar is inside the body 'sphere'"),
+            ("good", "0,0,0,0,0,0,1", "0.1,0,0,0,0,0,1", None))
+        for name, begin, end, expected in cases:
+            with self.subTest(name):
+                way = self.write("way.csv", CSV_HEADER + f"0,{begin}\n4,{end}\n")
+                done = render(self.config(), "--trajectory", way, "--out", self.path(name), "--rate", "1", "--range", "5",
+                              "--picture-every", "0", "--no-still")
+                warnings = [line for line in done.stderr.splitlines() if "frames: " in line]
+                if expected is None:
+                    self.assertEqual(warnings, [])
+                else:
+                    self.assertRegex(warnings[0], r"\bwarning " + expected)
+
+    def test_one_frame_has_no_plural(self):
+        out = self.path("out")
+        done = render(self.config(), "--trajectory", self.way(0.3), "--out", out, "--rate", "1", "--picture-every", "0")
+        self.assertEqual(done.stdout, f"{out}: 1 frame\n")
+
     def test_log_holds_the_arrays(self):
         """Unix times in the trajectory are the times of the log."""
         start = 1_700_000_000.25
@@ -709,6 +734,8 @@ class Complaints(Case):
                     out, "--range", "190")
         self.expect(64, "--shard: expected I/N with 0 <= I <= N and N >= 1, found '4/3'", config, "--trajectory", way, "--out",
                     out, "--shard", "4/3")
+        self.expect(64, "--body: 'sphere' is given twice (expected once per body)", config, "--trajectory", way, "--out", out,
+                    "--body", f"sphere={way}", "--body", f"sphere={way}")
         self.assertEqual(render(config, "--out", out, check=False).returncode, 64)
         self.assertFalse(os.path.exists(out))
         self.expect(5, "/proc/sonard: cannot create the folder: No such file or directory", config, "--trajectory", way, "--out",

@@ -161,7 +161,7 @@ class Recording(HeadCase):
                 file.write("t,x,y,z,qx,qy,qz,qw\n0,-1,-0.5,-4,0,0,0,1\n4,-1,-0.5,-4,0,0,0,1\n")
             done = subprocess.run([self.sonard, "render", config, "--trajectory", way, "--out", out, "--range", "10", "--step",
                                    "9", "--size", "64"], capture_output=True, text=True, timeout=120)
-            self.assertEqual((done.returncode, done.stdout), (0, f"{out}: 1 frames\n"), done.stderr)
+            self.assertEqual((done.returncode, done.stdout), (0, f"{out}: 1 frame\n"), done.stderr)
         samples = numpy.load(os.path.join(out, "scan_000000.npy"))
         with open(os.path.join(out, "scan_000000.json"), encoding="utf-8") as file:
             sidecar = json.load(file)
