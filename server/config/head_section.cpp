@@ -432,18 +432,25 @@ std::string outside_of_absorption_range(double carrier_hz, const render::Water& 
 
 }  // namespace
 
+void warn_of_absorption(YamlSection& section, const WaterConfig& water, double carrier_hz,
+                        std::string_view remedy) {
+  const std::string outside = outside_of_absorption_range(
+      carrier_hz, {water.temperature_c, water.salinity_ppt, water.depth_m, water.ph});
+  if (!outside.empty()) {
+    section.warn_of("water",
+                    fmt::format("the formula of the absorption is not valid here: {}. Its error may exceed "
+                                "10 % (to set the absorption, use {})",
+                                outside, remedy));
+  }
+}
+
 void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head) {
   const WaterConfig& w = context.water;
   const render::Water water{w.temperature_c, w.salinity_ppt, w.depth_m, w.ph};
   double absorption = context.absorption_db_per_m;
   if (absorption < 0.0) {
     absorption = render::francois_garrison_absorption_db_per_m(carrier_hz, water);
-    if (const std::string outside = outside_of_absorption_range(carrier_hz, water); !outside.empty()) {
-      section.warn_of("water",
-                      fmt::format("the formula of the absorption is not valid here: {}. Its error may exceed "
-                                  "10 % (to set the absorption, use water.absorption_db_per_km)",
-                                  outside));
-    }
+    warn_of_absorption(section, w, carrier_hz, "water.absorption_db_per_km");
   }
   head.acoustics.physical.absorption_db_per_m = absorption;
   head.acoustics.physical.multipath.wavelength_m = render::sound_speed_mps(water) / carrier_hz;

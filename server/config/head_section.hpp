@@ -40,6 +40,10 @@ void read_single_beam(YamlSection& section, render::Aperture& aperture);
 void read_receive_array(YamlSection& section, render::Aperture& aperture);
 /// Absorption at the frequency of the head. Call it before read_acoustics().
 void apply_water(YamlSection& section, const HeadContext& context, double carrier_hz, HeadConfig& head);
+/// Warns if the formula of the absorption is not valid at a frequency.
+/// @param remedy the key that sets the absorption at this frequency
+void warn_of_absorption(YamlSection& section, const WaterConfig& water, double carrier_hz,
+                        std::string_view remedy);
 
 /// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down), each
 /// with its meaning.

@@ -101,7 +101,15 @@ void read_aperture(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics
   section.default_is("range_cell_mm", "set by `model`");
 }
 
-void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics) {
+constexpr double absorption_of_water = -1.0;
+
+/// @param absorption_db_per_km may be absorption_of_water
+void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics,
+                         double& absorption_db_per_km) {
+  section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
+                         {{"of_water", absorption_of_water}},
+                         "one-way absorption; `of_water`: from `water.absorption_db_per_km`, computed at the "
+                         "high frequency unless it is a number");
   read_aperture(section, mode, acoustics);
   section.angle("vertical_beamwidth_deg", acoustics.vertical_beamwidth_rad, Range::above(0.0, 170.0),
                 "-3 dB full width of the vertical beam");
@@ -111,7 +119,8 @@ void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAco
   section.default_is("receive_beamwidth_deg", "set by `model`");
 }
 
-void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig& config) {
+void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig& config,
+                           double& high_absorption_db_per_km) {
   section.introduce(
       "These keys apply to the low frequency. They also apply to the high frequency unless `high_frequency` "
       "has the key.");
@@ -135,8 +144,9 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
       "length");
   section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
                  "dB per percent of gain; 50 percent is 0 dB");
-  section.section("high_frequency", "values that differ at the high frequency",
-                  [&](YamlSection& inner) { read_high_frequency(inner, model.modes[1], config.modes[1]); });
+  section.section("high_frequency", "values that differ at the high frequency", [&](YamlSection& inner) {
+    read_high_frequency(inner, model.modes[1], config.modes[1], high_absorption_db_per_km);
+  });
 }
 
 render::Water water_of(const WaterConfig& water) {
@@ -178,8 +188,16 @@ OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, 
   section.section("firmware", "behaviour of the firmware",
                   [&](YamlSection& inner) { read_firmware(inner, config.device); });
   config.device.plan.pressure_bar = oculus::pressure_bar(context.water.depth_m, config.device.plan);
-  section.section("acoustics", "formation of the image",
-                  [&](YamlSection& inner) { read_oculus_acoustics(inner, head, config); });
+  double high_absorption_db_per_km = absorption_of_water;
+  section.section("acoustics", "formation of the image", [&](YamlSection& inner) {
+    read_oculus_acoustics(inner, head, config, high_absorption_db_per_km);
+  });
+  if (high_absorption_db_per_km >= 0.0) {
+    config.modes[1].absorption_db_per_m = high_absorption_db_per_km / 1000.0;
+  } else if (context.absorption_db_per_m < 0.0) {
+    warn_of_absorption(section, context.water, config.device.plan.model.modes[1].frequency_hz,
+                       "heads[].acoustics.high_frequency.absorption_db_per_km");
+  }
   return config;
 }
 

@@ -218,9 +218,87 @@ TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
   EXPECT_THAT(complaints(minimal_config + "temperature_c: 10\n"),
               ElementsAre(StartsWith("config.yaml:11:1: temperature_c: unknown key here, did you mean "
                                      "'water.temperature_c'? (expected one of log,")));
+  EXPECT_THAT(
+      complaints(minimal_config + "    acoustics: {speckle: off}\n"),
+      ElementsAre(StartsWith("config.yaml:11:17: heads[0].acoustics.speckle: unknown key here, did you "
+                             "mean 'acoustics.paper.speckle' or 'acoustics.physical.speckle'? (")));
   // A key that several sections have is named without a section.
   EXPECT_THAT(complaints(minimal_config + "bind: 127.0.0.1\n"),
               ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
+}
+
+TEST_F(Loader, names_the_key_of_a_word_in_the_place_of_a_mapping) {
+  EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {multipath: off}}\n"),
+              ElementsAre("config.yaml:11:39: heads[0].acoustics.physical.multipath: is 'off' (expected a "
+                          "mapping such as {level: off})"));
+  EXPECT_THAT(complaints(minimal_config + "skip: 7\n"),
+              ElementsAre("config.yaml:11:7: skip: is '7' (expected a mapping, key: value)"));
+}
+
+TEST_F(Loader, shows_the_mappings_of_a_key_with_dots) {
+  EXPECT_THAT(
+      complaints(minimal_config + "    acoustics.physical.multipath.level: off\n"),
+      ElementsAre(StartsWith("config.yaml:11:5: heads[0].acoustics.physical.multipath.level: unknown key: a "
+                             "name with dots stands for nested mappings, acoustics: {physical: {multipath: "
+                             "{level: off}}} (expected one of type, ")));
+  EXPECT_THAT(complaints(minimal_config + "water.currents: {x: 1}\n"),
+              ElementsAre(HasSubstr("nested mappings, water: {currents: ...} (")));
+  for (const char* const no_path : {".a", "a.", "a..b", "\"a. b\""}) {
+    EXPECT_THAT(complaints(minimal_config + no_path + ": 1\n"),
+                ElementsAre(testing::Not(HasSubstr("nested"))))
+        << no_path;
+  }
+}
+
+TEST_F(Loader, names_a_key_without_a_colon_on_its_line) {
+  const auto at = [](const char* place, const char* key, const char* value) {
+    return ElementsAre(StartsWith(fmt::format(
+        "config.yaml:{0}: a colon is missing after '{1}' (expected {1}: {2})", place, key, value)));
+  };
+  for (const char* const line :
+       {"salinity_ppt 35", "salinity_ppt = 35", "salinity_ppt=35", "salinity_ppt  35  # s"}) {
+    EXPECT_THAT(complaints(std::string("water:\n  ") + line + "\n  depth_m: 28\n" + minimal_config),
+                at("2:3", "salinity_ppt", "35"))
+        << line;
+    EXPECT_THAT(complaints(std::string("water:\n  depth_m: 28\n  ") + line + "\n" + minimal_config),
+                at("3:3", "salinity_ppt", "35"))
+        << line;
+    EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m: 28\n  " + line + "\n"),
+                ElementsAre(AllOf(StartsWith("config.yaml:13:3: "),
+                                  HasSubstr("a colon is missing after 'salinity_ppt' (expected "
+                                            "salinity_ppt: 35)"))))
+        << line;
+  }
+  EXPECT_THAT(
+      complaints(minimal_config + "    mount:\n      rpy_deg [0, 0, 3]\n      position_m: [0, 0, 0]\n"),
+      at("12:7", "rpy_deg", "[0, 0, 3]"));
+  EXPECT_THAT(complaints(minimal_config + "  - name side\n    type: micron\n"), at("11:5", "name", "side"));
+  EXPECT_THAT(complaints(minimal_config + "water:\n  salinity_ppt 35\n"),
+              ElementsAre("config.yaml:12:3: water: a colon is missing after 'salinity_ppt' (expected "
+                          "salinity_ppt: 35)"));
+  EXPECT_THAT(complaints(minimal_config + "water: {salinity_ppt 35, depth_m: 28}\n"),
+              ElementsAre("config.yaml:11:9: water: a colon is missing after 'salinity_ppt' (expected "
+                          "salinity_ppt: 35)"));
+}
+
+TEST_F(Loader, names_a_quote_in_the_middle_of_a_text) {
+  EXPECT_THAT(
+      complaints(minimal_config + "  - name: 'gemini's'\n    type: micron\n"),
+      ElementsAre("config.yaml:11:18: this quote ends the text that begins in column 11 (expected two "
+                  "single quotes, '', for a quote in the text)"));
+  EXPECT_THAT(
+      complaints(minimal_config + "recording: {directory: \"the \"logs\"\"}\n"),
+      ElementsAre("config.yaml:11:29: this quote ends the text that begins in column 24 (expected \\\" "
+                  "for a quote in the text)"));
+  EXPECT_THAT(complaints(minimal_config + "recording: {directory: 'the captain''s'}\n"), IsEmpty());
+}
+
+TEST_F(Loader, says_that_no_tilde_is_expanded) {
+  EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"),
+              ElementsAre(StartsWith("config.yaml:11:24: recording.directory: '~/logs' begins with ~, which "
+                                     "sonard does not expand (expected an absolute path")));
+  std::filesystem::create_directory(folder_ / "~");
+  EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"), IsEmpty());
 }
 
 TEST_F(Loader, names_the_kind_of_head_that_has_an_unknown_key) {
@@ -568,18 +646,29 @@ TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
                 "\n    network: {address: 127.0.0.2, netmask: 255.0.0.0}\n")
         .warning_lines();
   };
-  // An m1200d uses 1.2 MHz, above the limit of 1 MHz of Francois and Garrison. An m750d uses 750 kHz.
+  // The limit of Francois and Garrison is 1 MHz. An m750d uses 750 kHz and 1.2 MHz, an m1200d 1.2 and 2.1
+  // MHz.
+  const auto high = [](const char* what) {
+    return AllOf(HasSubstr(fmt::format("not valid here: {}. Its error", what)),
+                 HasSubstr("use heads[].acoustics.high_frequency.absorption_db_per_km)"));
+  };
+  const auto of_1200_khz = high("1200 kHz is not within 0.2 to 1000 kHz");
   EXPECT_THAT(warnings("m1200d", "{}"),
               ElementsAre(AllOf(HasSubstr("water: the formula of the absorption is not valid here: 1200 kHz "
                                           "is not within 0.2 to 1000 kHz. Its error may"),
-                                HasSubstr("(to set the absorption, use water.absorption_db_per_km)"))));
-  EXPECT_THAT(warnings("m750d", "{}"), IsEmpty());
+                                HasSubstr("(to set the absorption, use water.absorption_db_per_km)")),
+                          high("2099 kHz is not within 0.2 to 1000 kHz")));
+  EXPECT_THAT(warnings("m750d", "{}"), ElementsAre(of_1200_khz));
+  EXPECT_THAT(warnings("m750d", "{absorption_db_per_km: 300}"), IsEmpty());
   EXPECT_THAT(warnings("m750d", "{salinity_ppt: 0}"),
-              ElementsAre(HasSubstr("not valid here: 0 ppt are not within 30 to 35 ppt.")));
-  EXPECT_THAT(warnings("m1200d", "{temperature_c: 35}"),
-              ElementsAre(HasSubstr(
-                  "here: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
-                  "degrees.")));
+              ElementsAre(HasSubstr("not valid here: 0 ppt are not within 30 to 35 ppt."),
+                          high("1200 kHz is not within 0.2 to 1000 kHz, 0 ppt are not within 30 to 35 ppt")));
+  EXPECT_THAT(
+      warnings("m1200d", "{temperature_c: 35}"),
+      ElementsAre(
+          HasSubstr("here: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
+                    "degrees."),
+          high("2099 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 degrees")));
 }
 
 TEST_F(Loader, refuses_masks_with_holes) {

@@ -36,7 +36,7 @@ class OculusSection : public ConfigFolder {
 
 TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
   const LoadedConfig loaded = load(document(with_network()));
-  EXPECT_THAT(loaded.warning_lines(), IsEmpty());
+  EXPECT_THAT(loaded.warning_lines(), ElementsAre(HasSubstr("1200 kHz is not within 0.2 to 1000 kHz")));
   const HeadConfig& head = loaded.config.heads.at(0);
   EXPECT_EQ(head.kind, &oculus_kind());
   const OculusConfig& config = oculus_config(head);
@@ -103,6 +103,15 @@ TEST_F(OculusSection, reads_what_is_written) {
   EXPECT_NEAR(config.modes[1].receive_beamwidth_rad, 0.3 * degree, 1e-12);
   EXPECT_NEAR(config.modes[1].range_cell_m, 2e-3, 1e-12);
   EXPECT_EQ(config.gain_db_per_percent, 0.5);
+}
+
+TEST_F(OculusSection, the_high_frequency_may_have_an_absorption_of_its_own) {
+  const LoadedConfig loaded =
+      load(document(with_network("acoustics: {high_frequency: {absorption_db_per_km: 480}}")));
+  EXPECT_THAT(loaded.warning_lines(), IsEmpty()) << "the formula is valid at 750 kHz";
+  const OculusConfig& config = oculus_config(loaded.config.heads.at(0));
+  EXPECT_NEAR(config.modes[1].absorption_db_per_m, 0.48, 1e-12);
+  EXPECT_NEAR(config.modes[0].absorption_db_per_m, 0.222, 0.003);  // Francois and Garrison, by hand
 }
 
 TEST_F(OculusSection, an_absorption_that_is_set_holds_at_both_frequencies) {
