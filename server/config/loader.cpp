@@ -581,7 +581,7 @@ std::string head_type_of(const std::string& key, const std::vector<HeadConfig>& 
 
 void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds,
                    const std::vector<HeadConfig>& heads) {
-  if (findings.unknown_keys.empty()) {
+  if (findings.unknown_keys.empty() && findings.words_for_mappings.empty()) {
     return;
   }
   std::vector<KindKeys> known;
@@ -593,6 +593,10 @@ void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kind
     key.head_type = head_type_of(findings.problems[key.problem].key, heads);
   }
   name_sections(findings.problems, findings.unknown_keys, known);
+  for (WordForMapping& word : findings.words_for_mappings) {
+    word.head_type = head_type_of(findings.problems[word.problem].key, heads);
+  }
+  name_keys(findings.problems, findings.words_for_mappings, known);
 }
 
 }  // namespace

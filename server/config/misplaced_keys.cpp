@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/misplaced_keys.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <unordered_map>
 
 #include <fmt/format.h>
+
+#include "server/config/yaml_trouble.hpp"
 
 namespace sonard::server {
 namespace {
@@ -64,7 +68,68 @@ std::vector<std::string_view> kinds_with(const std::string& name, const std::str
   return kinds;
 }
 
+/// The places in the section that holds the key: "acoustics.physical.speckle" and "acoustics.paper.speckle"
+/// for "acoustics.speckle".
+std::vector<std::string> paths_inside(const std::string& here, const std::set<std::string>& paths) {
+  const std::size_t dot = here.rfind('.');
+  std::vector<std::string> inside;
+  if (dot != std::string::npos) {
+    std::ranges::copy_if(paths, std::back_inserter(inside), [&](const std::string& path) {
+      return path.starts_with(std::string_view(here).substr(0, dot + 1));
+    });
+  }
+  return inside;
+}
+
+/// The mapping at a path from the head or the root on; null if there is none. Indexes of lists are ignored.
+const KeyReference* mapping_at(const std::vector<KeyReference>& keys, std::string_view path) {
+  const std::size_t dot = path.find('.');
+  const std::string_view name = path.substr(0, dot);
+  const auto found = std::ranges::find(keys, name.substr(0, name.find('[')), &KeyReference::name);
+  if (found == keys.end()) {
+    return nullptr;
+  }
+  return dot == std::string_view::npos ? &*found : mapping_at(found->keys, path.substr(dot + 1));
+}
+
+/// The only key of a mapping that can have this word as its value; empty if there is none, or several.
+std::string key_with_value(const KeyReference& mapping, std::string_view word) {
+  const std::string quoted = fmt::format("\"{}\"", word);
+  const bool is_boolean = word == "true" || word == "false";
+  std::string only;
+  for (const KeyReference& key : mapping.keys) {
+    const bool fits = key.schema.find(quoted) != std::string::npos ||
+                      (is_boolean && key.schema.find("\"boolean\"") != std::string::npos);
+    if (fits && !only.empty()) {
+      return {};
+    }
+    only = fits ? key.name : only;
+  }
+  return only;
+}
+
 }  // namespace
+
+void name_keys(std::vector<ConfigProblem>& problems, std::span<const WordForMapping> words,
+               std::span<const KindKeys> known) {
+  for (const WordForMapping& given : words) {
+    ConfigProblem& problem = problems[given.problem];
+    const auto kind = std::ranges::find_if(
+        known, [&](const KindKeys& keys) { return given.head_type.empty() || keys.type == given.head_type; });
+    const KeyReference* const mapping = kind == known.end() ? nullptr : mapping_at(kind->keys, problem.key);
+    if (mapping == nullptr) {
+      continue;
+    }
+    const std::string first = given.word.substr(0, given.word.find_first_of(" ="));
+    const std::string colon = missing_colon(given.word);
+    if (!colon.empty() &&
+        std::ranges::find(mapping->keys, first, &KeyReference::name) != mapping->keys.end()) {
+      problem.message = colon;
+    } else if (const std::string key = key_with_value(*mapping, given.word); !key.empty()) {
+      problem.message = fmt::format("is '{0}' (expected a mapping such as {{{1}: {0}}})", given.word, key);
+    }
+  }
+}
 
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
                    std::span<const KindKeys> known) {
@@ -82,6 +147,10 @@ void name_sections(std::vector<ConfigProblem>& problems, std::span<const Unknown
     const std::set<std::string>& paths = key.has_value ? all.of_value : all.of_key;
     if (paths.size() == 1 && !all.of_key.contains(here)) {
       problem.message.insert(complaint.size(), fmt::format(" here, did you mean '{}'?", *paths.begin()));
+    } else if (const auto inside = paths_inside(here, paths);
+               !all.of_key.contains(here) && (inside.size() == 1 || inside.size() == 2)) {
+      problem.message.insert(complaint.size(),
+                             fmt::format(" here, did you mean '{}'?", fmt::join(inside, "' or '")));
     } else if (const auto kinds = kinds_with(key.name, here, known, indexes);
                !key.head_type.empty() && !kinds.empty()) {
       problem.message.insert(complaint.size(), fmt::format(" of a {}, it is a key of {}", key.head_type,

@@ -19,6 +19,13 @@ struct UnknownKey {
   std::string head_type{};  ///< of the head that holds it; empty outside of heads
 };
 
+/// A word or number in the place of a mapping, and the problem that reports it.
+struct WordForMapping {
+  std::size_t problem = 0;  ///< index
+  std::string word;         ///< "off"
+  std::string head_type{};  ///< as in UnknownKey
+};
+
 /// The keys of a file whose heads are all of one kind.
 struct KindKeys {
   std::string type;  ///< of the heads, as in the configuration
@@ -29,8 +36,14 @@ struct KindKeys {
 /// section: "unknown key here, did you mean 'acoustics.physical.multipath.level'? (...)". In a head, only
 /// keys that a head of its type may have are named; a key that another kind has at this place is said to be a
 /// key of that kind.
+/// If exactly two places in the section that holds the key are possible, both are named.
 /// @param known one for each kind of head
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
                    std::span<const KindKeys> known);
+
+/// Adds to the message of each word for a mapping the only key of the mapping that has this value: "is 'off'
+/// (expected a mapping such as {level: off})". The missing colon of a key of this mapping is named too.
+void name_keys(std::vector<ConfigProblem>& problems, std::span<const WordForMapping> words,
+               std::span<const KindKeys> known);
 
 }  // namespace sonard::server

@@ -6,8 +6,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <numbers>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -22,6 +24,22 @@ constexpr std::size_t most_problems = 1000;     // per file: more than there are
 constexpr std::size_t longest_known_key = 100;  // thrice the longest known key
 
 constexpr std::string_view plain_tag = "?";  // yaml-cpp's tag of scalars without quotes
+
+/// "a: {b: off}" for the key "a.b" with this value; empty if the key is no path.
+std::string nested_mappings(std::string_view path, const YAML::Node& value) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789.";
+  if (path.size() > longest_known_key || path.find('.') == std::string_view::npos || path.starts_with('.') ||
+      path.ends_with('.') || path.find("..") != std::string_view::npos ||
+      path.find_first_not_of(letters) != std::string_view::npos) {
+    return {};
+  }
+  std::string text;
+  for (const char c : path) {
+    text += c == '.' ? std::string(": {") : std::string(1, c);
+  }
+  text += ": " + (value.IsScalar() && value.Scalar().size() <= longest_known_key ? value.Scalar() : "...");
+  return text + std::string(static_cast<std::size_t>(std::ranges::count(path, '.')), '}');
+}
 
 /// The unit that the ending of a key means; empty if it has no unit.
 std::string_view unit_of(std::string_view key) {
@@ -204,9 +222,14 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
     : findings_(findings), path_(std::move(path)), at_(place_of(node, key_at)) {
   if (!node.IsMap()) {
     const std::string one_word = node.IsScalar() ? missing_blank(node.Scalar()) : std::string();
+    const std::size_t problems_before = findings_.problems.size();
     problem(
         at_, path_,
         one_word.empty() ? fmt::format("is {} (expected a mapping, key: value)", describe(node)) : one_word);
+    if (node.IsScalar() && one_word.empty() && node.Scalar().size() <= longest_known_key &&
+        findings_.problems.size() > problems_before) {
+      findings_.words_for_mappings.push_back({problems_before, node.Scalar()});
+    }
     is_map_ = false;
     return;
   }
@@ -217,7 +240,9 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
       continue;
     }
     const std::string& name = pair.first.Scalar();
-    if (const std::string one_word = missing_blank(name); !one_word.empty() && pair.second.IsNull()) {
+    std::string one_word = missing_blank(name);
+    one_word = one_word.empty() ? missing_colon(name) : one_word;
+    if (!one_word.empty() && pair.second.IsNull()) {
       problem(name_at, path_, one_word);
       continue;
     }
@@ -454,6 +479,12 @@ void YamlSection::path(std::string_view key, std::filesystem::path& out, const s
   document(key, "path", R"("type": "string")", "", meaning);
   if (const std::optional<std::string> value = plain_text(key, "a text")) {
     out = folder / *value;
+    std::error_code ignored;
+    if ((*value == "~" || value->starts_with("~/")) && !std::filesystem::exists(folder / "~", ignored)) {
+      report(key, fmt::format("{} begins with ~, which sonard does not expand (expected an absolute path, or "
+                              "one relative to the folder of the configuration)",
+                              in_quotes(*value)));
+    }
   }
 }
 
@@ -587,9 +618,13 @@ void YamlSection::report_unknown(const Entry& entry) {
       return;
     }
   }
+  const std::string nested = nested_mappings(entry.name, entry.value);
   const bool too_long = entry.name.size() > longest_known_key;
   const std::string_view meant = too_long ? std::string_view{} : closest(entry.name, known_);
   std::string message = "unknown key";
+  if (!nested.empty()) {
+    message += fmt::format(": a name with dots stands for nested mappings, {}", nested);
+  }
   if (!meant.empty()) {
     message += fmt::format(", did you mean '{}'?", meant);
   }
@@ -599,7 +634,7 @@ void YamlSection::report_unknown(const Entry& entry) {
   }
   message +=
       names.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(names, ", "));
-  if (meant.empty()) {
+  if (meant.empty() && nested.empty()) {
     findings_.unknown_keys.push_back({findings_.problems.size(), entry.name, entry.value.IsScalar()});
   }
   problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));

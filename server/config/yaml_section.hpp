@@ -32,8 +32,9 @@ struct YamlFindings {
   std::set<std::string, std::less<>> keys_with_problems;  ///< keys of `problems`
   std::size_t problems_left_out = 0;                      ///< beyond the maximum
   std::vector<UnknownKey> unknown_keys;                   ///< without a similar key in their section
-  std::vector<ConfigWarning> warnings;                    ///< each once
-  KeyPositions positions;                                 ///< of the value of every key that was read
+  std::vector<WordForMapping> words_for_mappings;
+  std::vector<ConfigWarning> warnings;  ///< each once
+  KeyPositions positions;               ///< of the value of every key that was read
   bool describing = false;  ///< no file is read: every section is entered to collect its keys (KeyReference)
 };
 

@@ -88,6 +88,15 @@ std::optional<ConfigProblem> key_without_blank(std::string_view line, int number
   return std::nullopt;
 }
 
+/// The problem of a key at the begin of this line that no colon follows.
+std::optional<ConfigProblem> key_without_colon(std::string_view line, int number) {
+  const std::size_t word = std::min(line.find_first_not_of(" -"), line.size());
+  if (std::string why = missing_colon(line.substr(word)); !why.empty()) {
+    return ConfigProblem{{number, column(word)}, "", std::move(why)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint) {
@@ -95,7 +104,7 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     return *unclosed;
   }
   Indents indents;
-  std::optional<ConfigProblem> without_blank;
+  std::optional<ConfigProblem> bad_key;
   for (int number = 1; number <= at.line && !text.empty(); ++number) {
     const std::string_view whole = next_line(text);
     const std::size_t first = std::min(whole.find_first_not_of(" \t"), whole.size());
@@ -108,12 +117,14 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     if (indent == line.size() || line[indent] == '#') {
       continue;
     }
-    if (auto found = key_without_blank(line, number); found || number < at.line) {
-      without_blank = std::move(found);  // the parser rejects the next line
+    auto found = key_without_blank(line, number);
+    found = found ? std::move(found) : key_without_colon(line, number);
+    if (found || number < at.line) {
+      bad_key = std::move(found);  // the parser rejects the next line
     }
     if (number == at.line) {
-      if (without_blank) {
-        return *without_blank;
+      if (bad_key) {
+        return *bad_key;
       }
       if (const std::string_view word = word_with_ipv6(line); !word.empty()) {
         return {{number, column(static_cast<std::size_t>(word.data() - whole.data()))},
@@ -131,7 +142,24 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
     }
     indents.add(line);
   }
-  return {at, "", fmt::format("{} (expected valid YAML)", complaint)};
+  return bad_key ? *bad_key : ConfigProblem{at, "", fmt::format("{} (expected valid YAML)", complaint)};
+}
+
+std::string missing_colon(std::string_view text) {
+  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789";
+  const std::size_t end = std::min(text.find_first_not_of(letters), text.size());
+  const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
+  const bool has_sign = text.substr(next).starts_with('=');
+  const std::size_t begin = std::min(text.find_first_not_of(" =", next), text.size());
+  const std::string_view value = text.substr(begin);
+  const bool one_value = has_sign || value.find(' ') == std::string_view::npos || value.starts_with('[') ||
+                         value.starts_with('{') || value.starts_with('"') || value.starts_with('\'');
+  if (end == 0 || next == text.size() || (next == end && !has_sign) || value.empty() || !one_value ||
+      std::isdigit(static_cast<unsigned char>(text[0])) != 0 || text.ends_with(':') ||
+      (text.find(": ") != std::string_view::npos && text.find(": ") < text.find_first_of("[{\"'"))) {
+    return {};
+  }
+  return fmt::format("a colon is missing after '{0}' (expected {0}: {1})", text.substr(0, end), value);
 }
 
 std::string missing_blank(std::string_view text) {

@@ -10,12 +10,15 @@
 namespace sonard::server {
 
 /// The problem in a text that the YAML parser rejected at `at` with the message `complaint`. Names tabs,
-/// indents, IPv6 addresses, keys without a blank after their ':', and unclosed quotes and brackets, at their
-/// own places; otherwise passes on the parser's message.
+/// indents, IPv6 addresses, keys without a colon or without a blank after it, and unclosed quotes and
+/// brackets, at their own places; otherwise passes on the parser's message.
 ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::string& complaint);
 
 /// Why "world:empty" is one word and no key with a value; empty if the text is not of this form.
 std::string missing_blank(std::string_view text);
+
+/// Why "level off" or "level = off" is no key with a value; empty if the text is not of this form.
+std::string missing_colon(std::string_view text);
 
 /// "20,5" as "20.5"; empty if the text is no number with a decimal comma.
 std::string with_decimal_point(std::string_view text);

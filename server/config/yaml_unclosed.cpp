@@ -79,6 +79,13 @@ std::optional<ConfigProblem> Scanner::take_quoted(char quote) {
         here(), "",
         fmt::format("the quote that begins here is not closed (expected another {} at its end)", quote)};
   }
+  if (quoted.find('\n') == npos && more_follows(end)) {
+    return ConfigProblem{
+        {line_, static_cast<int>(end - line_begin_) + 1},
+        "",
+        fmt::format("this quote ends the text that begins in column {} (expected {} for a quote in the text)",
+                    here().column, quote == '"' ? "\\\"" : "two single quotes, '',")};
+  }
   line_ += static_cast<int>(std::ranges::count(quoted, '\n'));
   if (const std::size_t last = quoted.rfind('\n'); last != npos) {
     line_begin_ = at_ + last + 1;
