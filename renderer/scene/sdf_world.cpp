@@ -614,7 +614,12 @@ World load_world(const fs::path& sdf_file, const std::vector<fs::path>& model_fo
   const fs::path file = fs::canonical(sdf_file, error);
   if (error || !fs::is_regular_file(file, error)) {
     require_reachable(sdf_file);
-    throw WorldError(fmt::format("{}: world file not found", sdf_file.string()));
+    if (!error && fs::is_directory(file, error)) {
+      throw WorldError(fmt::format("{}: is a folder (expected an SDF file)", sdf_file.string()));
+    }
+    const fs::path full = fs::absolute(sdf_file, error).lexically_normal();
+    throw WorldError(fmt::format("{}: world file not found{}", sdf_file.string(),
+                                 error || full == sdf_file ? "" : ", looked for " + full.string()));
   }
   return WorldBuilder(file, model_folders, missing, origin, max_triangles).build();
 }

@@ -408,7 +408,9 @@ TEST(BadWorldFile, IsALoopOfLinks) {
 TEST(BadWorldFile, IsNamed) {
   const test::TempFolder folder;
   EXPECT_EQ(error_of_world("/nowhere/w.sdf"), "/nowhere/w.sdf: world file not found");
-  EXPECT_THAT(error_of_world(folder.path()), HasSubstr("world file not found"));
+  EXPECT_THAT(error_of_world(folder.path()), testing::EndsWith(": is a folder (expected an SDF file)"));
+  EXPECT_EQ(error_of_world("nowhere/../w.sdf"), "nowhere/../w.sdf: world file not found, looked for " +
+                                                    (std::filesystem::current_path() / "w.sdf").string());
   EXPECT_THAT(error_of_world(folder.write("empty.sdf", "")), HasSubstr("empty.sdf:1: not well-formed XML"));
   EXPECT_THAT(error_of_world(folder.write("bare.sdf", "<?xml version=\"1.0\"?>\n")),
               HasSubstr("bare.sdf: has no element"));
