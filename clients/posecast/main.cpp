@@ -16,6 +16,7 @@
 #include "clients/posecast/caster.hpp"
 #include "clients/posecast/pose_link.hpp"
 #include "common/command_line/help_formatter.hpp"
+#include "common/text/counted.hpp"
 #include "common/text/printable.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "sonard_build_info.hpp"
@@ -150,8 +151,8 @@ int cast(const Arguments& arguments) {
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
   if (!arguments.quiet) {
-    fmt::print("posecast: {} poses in {:.2f} s to {}, {} refused, {} skipped\n", counters.sent, took_s,
-               printable(link->description()), counters.refused, counters.skipped);
+    fmt::print("posecast: {} in {:.2f} s to {}, {} refused, {} skipped\n", counted(counters.sent, "pose"),
+               took_s, printable(link->description()), counters.refused, counters.skipped);
   }
   // The last datagram has no refusal: there was no time for it to arrive.
   if (failure.empty() && counters.refused > 0 && counters.refused + 1 >= counters.sent) {

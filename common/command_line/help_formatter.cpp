@@ -11,6 +11,11 @@ std::string value_text(const std::string& type) {
   constexpr std::size_t longest_limit = 6;  // longer limits, like 1e+06 or 2^53, do not help a reader
   static const std::regex range(R"(in \[(\S+) - (\S+)\])");
   std::smatch found;
+  // Range | IsMember
+  static const std::regex range_or_words(R"(in \[(\S+) - (\S+)\].* OR .*\{(.*)\})");
+  if (std::regex_search(type, found, range_or_words)) {
+    return fmt::format("{}..{} or {}", found[1].str(), found[2].str(), found[3].str());
+  }
   if (const std::size_t brace = type.find('{'); brace != std::string::npos) {
     return type.substr(brace, type.find('}') - brace + 1);
   }

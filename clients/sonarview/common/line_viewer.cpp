@@ -28,6 +28,13 @@ double seconds(nanoseconds time) {
 
 }  // namespace
 
+std::string foreign_bytes_text(std::uint64_t bytes, std::string_view head) {
+  return fmt::format(
+      "{} bytes arrived that are not of {} (is another kind of device there? Check address, port and baud "
+      "rate)",
+      bytes, head);
+}
+
 LineViewer::LineViewer(const RunOptions& options) : options_(options), started_(now()) {
   if (!options_.out.empty()) {
     writer_.emplace(options_.out);

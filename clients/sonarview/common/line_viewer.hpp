@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "clients/sonarview/common/exit_status.hpp"
 #include "clients/sonarview/common/image_writer.hpp"
@@ -28,6 +29,10 @@ struct RunCounters {
   std::uint64_t images_written = 0;
   std::uint64_t images_skipped = 0;
 };
+
+/// Why bytes arrive but no ping: "120 bytes arrived that are not of an Example 100 (...)".
+/// @param head with its article: "an Example 100"
+std::string foreign_bytes_text(std::uint64_t bytes, std::string_view head);
 
 /// Opens the line, reopens a lost line, prints progress, and finishes the pictures. It ends at a limit or a
 /// signal. All runs on one thread, except that pictures are drawn on the writer's thread.

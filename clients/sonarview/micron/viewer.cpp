@@ -187,7 +187,9 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 
 std::string Viewer::no_head_text(double wait_s) const {
   const auto& others = host_.other_heads();
-  const std::string advice = others.empty()
+  const std::uint64_t foreign = host_.statistics().dropped_bytes;
+  const std::string advice = others.empty() && foreign > 0 ? foreign_bytes_text(foreign, "a Micron")
+                             : others.empty()
                                  ? "check its power, line, baud rate and node"
                                  : fmt::format("only node {} sent frames (to view one, use --node {})",
                                                fmt::join(others, ", node "), *others.begin());

@@ -178,7 +178,11 @@ std::string Viewer::not_open_advice() const {
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {
-  return fmt::format("no ping for {:.1f} s: check that the head has a pose", wait_s);
+  const oculus::HostStatistics& host = host_.statistics();
+  return fmt::format("no ping for {:.1f} s: {}", wait_s,
+                     host.messages == 0 && host.dropped_bytes > 0
+                         ? foreign_bytes_text(host.dropped_bytes, "an Oculus")
+                         : "check that the head has a pose");
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {

@@ -177,7 +177,9 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
-  return fmt::format("{} is open, but no head answered within {:.1f} s", options_.line.text(), wait_s);
+  const std::uint64_t foreign = host_.statistics().dropped_bytes;
+  return fmt::format("{} is open, but no head answered within {:.1f} s{}", options_.line.text(), wait_s,
+                     foreign > 0 ? ": " + foreign_bytes_text(foreign, "a Ping360") : "");
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {

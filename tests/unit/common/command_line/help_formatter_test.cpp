@@ -26,6 +26,10 @@ std::string help() {
   sub->add_option("--rate", rate_hz, "C")->check(CLI::Range(1e-3, 1e7))->capture_default_str();
   CLI::Option* const out = sub->add_option("--out", file, "D");
   sub->add_option("--port", port, "E")->check(CLI::Range(1, 65535))->needs(out);
+  static int samples = 0;
+  sub->add_option("--samples", samples, "I")
+      ->check(CLI::Range(200, 1200) | CLI::IsMember({0}))
+      ->capture_default_str();
   sub->add_option("--seconds", seconds, "F")->check(CLI::Range(0.0, 60.0));
   sub->add_option("--id", ids, "H")->delimiter(',')->capture_default_str();
   sub->add_flag("--loop", loop, "G");
@@ -43,7 +47,7 @@ TEST(HelpFormatter, PrintsChoicesRangesAndDefaults) {
   const std::string text = help();
   for (const char* const wanted :
        {"--axes {enu_flu,ned_frd} [enu_flu]", "--bits {8,16} [8]", "--rate NUMBER [50]", "--port 1..65535",
-        "--seconds 0..60", "--id NUMBER [0]"}) {
+        "--seconds 0..60", "--samples 200..1200 or 0 [0]", "--id NUMBER [0]"}) {
     EXPECT_NE(text.find(wanted), std::string::npos) << wanted << "\n" << text;
   }
 }
