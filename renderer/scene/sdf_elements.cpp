@@ -92,8 +92,9 @@ std::vector<std::string> unknown_elements(const SdfElement& sdf) {
   find_unknown(sdf, found);
   std::vector<std::string> lines;
   for (const auto& [kind, unknown] : found) {
-    lines.push_back(fmt::format("{}: unknown element <{}> in <{}>: it is left out{}", unknown.place,
+    lines.push_back(fmt::format("{}: unknown element <{}> in <{}>: it is left out{}{}", unknown.place,
                                 kind.second, kind.first,
+                                kind.second == "material" ? "; for a sonar, write <sonard:material>" : "",
                                 unknown.count > 1 ? fmt::format(" ({} times in all)", unknown.count) : ""));
   }
   return lines;

@@ -142,6 +142,29 @@ std::string advice_for(const ForeignName& name, bool is_attribute) {
              : fmt::format("prefix and name are not sonard's; write {}", meant);
 }
 
+bool may_have_material(const SdfElement& element) {
+  return std::ranges::find(material_parents, element.name) != material_parents.end();
+}
+
+constexpr std::size_t longest_name = 100;
+
+/// True for <material>mud</material> in a visual; in others, unknown_elements() names it. Gazebo's own
+/// <material> has children and no text; names of its former scripts have a slash, as in Gazebo/Grey.
+bool is_material_without_prefix(const SdfElement& element) {
+  return element.name == "material" && element.parent != nullptr && element.parent->name == "visual" &&
+         element.children.empty() && !element.text.empty() && element.text.size() <= longest_name &&
+         element.text.find('/') == std::string::npos;
+}
+
+/// The error of an attribute that gives a material, as in <visual acoustics:material="mud">; empty for
+/// others.
+std::string advice_for_material_attribute(const SdfElement& element, std::string_view local) {
+  return may_have_material(element) && lower_case(local) == "material"
+             ? fmt::format("a material is an element; write <{0}>...</{0}> into <{1}>", material_element,
+                           element.name)
+             : "";
+}
+
 struct LookAlike {
   std::string line;  ///< about the first one
   std::size_t count = 0;
@@ -154,9 +177,18 @@ class LookAlikes {
     if (const auto name = foreign_name(element.name)) {
       add(element, fmt::format("<{}>", element.name), advice_for(*name, false));
     }
+    if (is_material_without_prefix(element)) {
+      add(element, "<material> with a text in <visual>",
+          fmt::format("Gazebo's <material> has no text; write <{0}>{1}</{0}> for a sonar", material_element,
+                      element.text));
+    }
     for (const auto& [key, value] : element.attributes) {
       const auto name = foreign_name(key);
-      if (name && (element.name == "sensor" || name->looks_like_sonard())) {
+      const std::string material =
+          advice_for_material_attribute(element, name ? name->local : std::string_view(key));
+      if (!material.empty()) {
+        add(element, fmt::format("attribute {} of <{}>", key, element.name), material);
+      } else if (name && (element.name == "sensor" || name->looks_like_sonard())) {
         add(element, fmt::format("attribute {} of <{}>", key, element.name), advice_for(*name, true));
       }
     }

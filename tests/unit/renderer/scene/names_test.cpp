@@ -274,6 +274,44 @@ TEST(Prefix, IsNamedInAPlugin) {
                                   "<sonard:material> into one of: visual, collision, link, model")));
 }
 
+TEST(Prefix, IsMissedOfAMaterial) {
+  const World world = load_text(
+      "<model name=\"m\"><material>mud</material><link name=\"l\"><material>mud</material>"
+      "<collision name=\"c\"><geometry><box/></geometry><material>mud</material></collision>"
+      "<visual name=\"v\" acoustics:material=\"mud\" "
+      "sonar:material=\"mud\"><geometry><box/></geometry><material>rock</material>"
+      "</visual></link></model>");
+  const auto unknown_in = [](const std::string& parent) {
+    return testing::EndsWith("unknown element <material> in <" + parent +
+                             ">: it is left out; for a sonar, write <sonard:material>");
+  };
+  EXPECT_THAT(world.warnings,
+              testing::UnorderedElementsAre(
+                  unknown_in("model"), unknown_in("link"), unknown_in("collision"),
+                  testing::EndsWith("<material> with a text in <visual> is left out: Gazebo's <material> has "
+                                    "no text; write <sonard:material>rock</sonard:material> for a sonar"),
+                  testing::EndsWith("attribute acoustics:material of <visual> is left out: a material is an "
+                                    "element; write <sonard:material>...</sonard:material> into <visual>"),
+                  testing::EndsWith("attribute sonar:material of <visual> is left out: a material is an "
+                                    "element; write <sonard:material>...</sonard:material> into <visual>")));
+}
+
+// http://sdformat.org/spec?elem=material: its children are elements; a script of Gazebo classic has a slash.
+TEST(Prefix, IsNotMissedOfAMaterialOfGazebo) {
+  for (const char* const material :
+       {"<material><ambient>1 0 0 1</ambient><diffuse>1 0 0 1</diffuse></material>",
+        "<material><script><uri>file://media</uri><name>Gazebo/Grey</name></script></material>",
+        "<material><pbr><metal><albedo_map>a.png</albedo_map></metal></pbr></material>", "<material/>",
+        "<material>Gazebo/Grey</material>", "<material> </material>"}) {
+    EXPECT_THAT(
+        load_text("<model name=\"m\"><link name=\"l\"><visual name=\"v\"><geometry><box/></geometry>" +
+                  std::string(material) + "</visual></link></model>")
+            .warnings,
+        IsEmpty())
+        << material;
+  }
+}
+
 TEST(Prefix, OfAnotherProgramIsItsOwnBusiness) {
   const World world = load_text("<model name=\"m\"><link name=\"l\">" + small_box +
                                 "<gz:system_priority>5</gz:system_priority><drake:joint/></link></model>");
