@@ -314,6 +314,7 @@ DaemonStatus Daemon::status() const {
                              inputs_->statistics(i).in_all(status.at), source.counters(),
                              look_at_stream(*inputs_, i, status.at)});
   }
+  status.ping_clock = inputs_->ping_clock();
   const TimePoint present = poses_.present(status.at);
   if (const std::optional<PoseEstimate> vehicle = poses_.at(present)) {
     status.T_world_vehicle = vehicle->T_world_vehicle;

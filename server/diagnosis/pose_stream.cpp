@@ -15,6 +15,7 @@ namespace {
 constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate,
 constexpr std::uint64_t few_poses = 5;           // and so are these
 constexpr double long_run_s = 2.0;               // over this time
+constexpr double least_time_rate = 0.001;        // stamps that advance more slowly bring no ping
 constexpr std::chrono::minutes worth_saying{1};  // a clock that went back once is reported for so long
 
 struct Unit {
@@ -74,13 +75,16 @@ std::optional<Finding> look_at_advance(const PoseStatistics::Summary& summary, c
 /// Finds stamps that do not advance with the poses.
 std::optional<Finding> look_at_standstill(const StampWatch& stamps, const StampField& field,
                                           PingClock clock) {
+  const bool stops = clock != PingClock::wall;
+  const char* const consequence = stops ? ", so the heads do not ping (poses.clock)" : "";
   switch (stamps.looks()) {
     case StampWatch::Looks::good:
       break;
     case StampWatch::Looks::stand_still:
       return Finding{"stamps_stand_still",
-                     fmt::format("The stamps do not change while the vehicle moves: is {} missing? {}",
-                                 field.name, advice(field))};
+                     fmt::format("The stamps do not change while the vehicle moves{}: is {} missing? {}",
+                                 consequence, field.name, advice(field)),
+                     stops};
     case StampWatch::Looks::in_steps: {
       const double step_s = 1e-9 * static_cast<double>(stamps.last_step().count());
       return Finding{
@@ -89,15 +93,11 @@ std::optional<Finding> look_at_standstill(const StampWatch& stamps, const StampF
                       field.name, step_s > 0.5 ? "in whole seconds" : "rounded", advice(field))};
     }
     case StampWatch::Looks::never_moved:
-      if (clock == PingClock::wall) {
-        return Finding{"stamps_stand_still",
-                       fmt::format("The stamps have not changed since the first pose: is {} missing? {}",
-                                   field.name, advice(field))};
-      }
-      return Finding{no_ping_by_stamps,
-                     fmt::format("The stamps have not changed since the first pose, so the heads do not ping "
-                                 "(poses.clock): is the simulation paused, or is {} missing? {}",
-                                 field.name, advice(field))};
+      return Finding{
+          stops ? "stamps_never_moved" : "stamps_stand_still",
+          fmt::format("The stamps have not changed since the first pose{}: is {}{} missing? {}", consequence,
+                      stops ? "the simulation paused, or is " : "", field.name, advice(field)),
+          stops};
   }
   return std::nullopt;
 }
@@ -118,13 +118,16 @@ std::optional<Finding> look_at_restarts(const PoseStatistics::Summary& summary, 
 std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const StampField& field,
                                       PingClock clock, TimePoint now) {
   const PoseStatistics::Summary summary = statistics.in_all(now);
+  const bool too_slow = clock != PingClock::wall && summary.time_rate.value_or(1.0) < least_time_rate;
   if (auto found = look_at_unit(summary, field)) {
+    found->stops_pings = too_slow;
     return found;
   }
   if (auto found = look_at_standstill(statistics.stamps(), field, clock)) {
     return found;
   }
   if (auto found = look_at_advance(summary, field)) {
+    found->stops_pings = too_slow;
     return found;
   }
   return look_at_restarts(summary, field);

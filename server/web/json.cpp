@@ -165,6 +165,15 @@ json recording_json(const std::optional<RecordingStatus>& recording) {
           {"logs_failed", counters.logs_failed}};
 }
 
+// Empty if the pose of the vehicle is known, and a stamp lets pings begin if they wait for one.
+std::string trouble_with_pose(const DaemonStatus& status) {
+  if (!status.T_world_vehicle) {
+    return status.stale_pose ? stale_text(*status.stale_pose) : "the vehicle has no pose";
+  }
+  const bool has_stamp = status.ping_clock == PingClock::wall || age_of_poses(status);
+  return has_stamp ? "" : "no pose has arrived, and pings follow the stamps of poses (poses.clock)";
+}
+
 }  // namespace
 
 json vector_json(const glm::dvec3& v) {
@@ -209,16 +218,14 @@ std::optional<std::chrono::nanoseconds> age_of_poses(const DaemonStatus& status)
 
 std::vector<std::string> why_not_ready(const DaemonStatus& status) {
   std::vector<std::string> reasons;
-  if (!status.T_world_vehicle) {
-    const std::string trouble =
-        status.stale_pose ? stale_text(*status.stale_pose) : "the vehicle has no pose";
+  if (const std::string trouble = trouble_with_pose(status); !trouble.empty()) {
     reasons.push_back(status.inputs.empty()
                           ? trouble
                           : fmt::format("{}: send poses to {}", trouble, status.inputs.front().input));
   }
   for (const PoseInputStatus& input : status.inputs) {
     for (const Finding& finding : input.findings) {
-      if (finding.code == no_ping_by_stamps) {
+      if (finding.stops_pings) {
         reasons.push_back(fmt::format("{}: {}", input.input, finding.text));
       }
     }

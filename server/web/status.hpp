@@ -9,6 +9,7 @@
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/pose.hpp"
 #include "server/clock/clock.hpp"
+#include "server/config/config.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/diagnosis/finding.hpp"
 #include "server/pose/pose_history.hpp"
@@ -46,6 +47,7 @@ struct DaemonStatus {
   std::string engine;  ///< currently in use, one line
   std::vector<HeadStatus> heads;
   std::vector<PoseInputStatus> inputs;
+  PingClock ping_clock = PingClock::wall;
   std::optional<render::Pose> T_world_vehicle;
   std::optional<StalePose> stale_pose;  ///< why there is no T_world_vehicle, if poses have arrived
   std::vector<PosedBody> bodies;

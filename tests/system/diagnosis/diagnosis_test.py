@@ -19,6 +19,7 @@ import sys
 import threading
 import time
 import unittest
+import urllib.error
 import urllib.request
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -114,6 +115,15 @@ class Diagnosis(OwnMachine):
     def status(self):
         with urllib.request.urlopen(f"http://{PAGE}/api/status", timeout=PATIENCE_S) as answer:
             return json.load(answer)
+
+    def reasons(self):
+        """Why the daemon is not ready; empty if it is."""
+        try:
+            with urllib.request.urlopen(f"http://{PAGE}/ready", timeout=PATIENCE_S) as answer:
+                return json.load(answer)["reasons"]
+        except urllib.error.HTTPError as error:
+            self.assertEqual(error.code, 503)
+            return json.load(error)["reasons"]
 
     def wait_for_finding(self, findings_of, says):
         """Waits until the status has the finding; otherwise fails and prints the findings."""
@@ -264,7 +274,7 @@ class Diagnosis(OwnMachine):
         self.wait_for_finding(self.inputs_findings, says)
 
     STANDING = {  # what is made of the seconds since the first pose
-        "left out": (lambda since_s: 0, "The stamps do not change while the vehicle moves: is time_ns missing\\?"),
+        "left out": (lambda since_s: 0, "The stamps do not change while the vehicle moves(, so the heads do not ping .*)?: is time_ns missing\\?"),
         "all alike": (lambda since_s: 1732800000123456789, "The stamps do not change while the vehicle moves"),
         "whole seconds": (lambda since_s: int(1732800000 + since_s) * 10**9,
                           "The stamps change only every (1|0\\.9\\d?) s while the vehicle moves: is time_ns in whole"),
@@ -279,8 +289,16 @@ class Diagnosis(OwnMachine):
                     daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}")
                     daemon.wait_for_line("warning pose stream udp .*" + says, PATIENCE_S)
                     self.wait_for_finding(self.inputs_findings, says)
+                    self.assertEqual(self.reasons() == [], clock == "wall" or name == "whole seconds")
                     daemon.kill()
                 publisher.close()
+
+    def test_an_initial_pose_makes_no_ping_that_waits_for_stamps(self):
+        initial = "udp: {bind: 127.0.0.1:14600}, initial: {position_m: [30, 0, -5]}, clock: "
+        for clock, ready in (("wall", True), ("source", False), ("lock_step", False)):
+            daemon = self.start(poses=initial + clock)
+            self.assertEqual(self.reasons() == [], ready, clock)
+            daemon.kill()
 
     def test_a_paused_simulation_is_not_taken_for_stamps_that_are_left_out(self):
         publisher = self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: round(since_s * 1e9))

@@ -81,6 +81,7 @@ TEST(PoseStream, StampsThatAreLeftOutOrAlikeAreOneFinding) {
       expect_one({.stamp = stamp, .speed_mps = speed_mps}, "is time_ns missing?");
     }
     expect_one({.stamp = stamp, .speed_mps = 0.0, .clock = PingClock::source}, "the heads do not ping");
+    expect_one({.stamp = stamp, .clock = PingClock::lock_step}, "so the heads do not ping (poses.clock)");
   }
 }
 
@@ -117,6 +118,30 @@ TEST(PoseStream, StampsThatAreRoundedCountedOrBackwardsAreOneFinding) {
   expect_one({.stamp = [](std::int64_t since_ns) { return since_ns / 50'000'000; }}, "do they count poses?");
   expect_one({.stamp = [](std::int64_t since_ns) { return unix_s * 1'000'000 - since_ns; }},
              "Stamps run backwards by 1 s per second");
+}
+
+// By the wall clock heads ping whatever the stamps are.
+TEST(PoseStream, StampsThatDoNotAdvanceStopThePingsThatWaitForThem) {
+  const std::vector<Stream> stopped{
+      {.stamp = left_out, .speed_mps = 0.0},
+      {.stamp = alike},
+      {.stamp = in_unit(1'000'000)},
+      {.stamp = [](std::int64_t since_ns) { return since_ns / 50'000'000; }},
+      {.stamp = [](std::int64_t since_ns) { return unix_s * 1'000'000 - since_ns; }},
+  };
+  for (Stream stream : stopped) {
+    for (const PingClock clock : {PingClock::wall, PingClock::source, PingClock::lock_step}) {
+      stream.clock = clock;
+      const std::vector<Finding> findings = findings_of(stream);
+      ASSERT_EQ(findings.size(), 1U);
+      EXPECT_EQ(findings[0].stops_pings, clock != PingClock::wall) << findings[0].text;
+    }
+  }
+  const std::vector<Finding> rounded = findings_of(
+      {.stamp = [](std::int64_t since_ns) { return (unix_s + since_ns / 1'000'000'000) * 1'000'000'000; },
+       .clock = PingClock::source});
+  ASSERT_EQ(rounded.size(), 1U);
+  EXPECT_FALSE(rounded[0].stops_pings) << "a ping comes with each second";
 }
 
 TEST(PoseStream, AClockThatWentBackIsNamedWithItsField) {

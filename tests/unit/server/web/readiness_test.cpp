@@ -71,9 +71,21 @@ TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
   DaemonStatus status = ready_status();
   status.inputs[0].findings = {{"several_publishers", "2 publishers send poses at the same time."}};
   EXPECT_THAT(why_not_ready(status), IsEmpty()) << "pings are made all the same";
-  status.inputs[0].findings.push_back({no_ping_by_stamps, "The stamps have not changed."});
+  status.inputs[0].findings.push_back({"stamps_never_moved", "The stamps have not changed.", true});
   EXPECT_THAT(why_not_ready(status),
               ElementsAre("pose stream udp 127.0.0.1:14600: The stamps have not changed."));
+}
+
+TEST(Readiness, NeedsAPoseOfAPublisherIfPingsWaitForStamps) {
+  for (const PingClock clock : {PingClock::source, PingClock::lock_step}) {
+    DaemonStatus status = ready_status();  // the pose is poses.initial
+    status.ping_clock = clock;
+    EXPECT_THAT(why_not_ready(status),
+                ElementsAre("no pose has arrived, and pings follow the stamps of poses (poses.clock): send "
+                            "poses to pose stream udp 127.0.0.1:14600"));
+    status.inputs[0].poses.age = std::chrono::seconds{0};
+    EXPECT_THAT(why_not_ready(status), IsEmpty());
+  }
 }
 
 }  // namespace
