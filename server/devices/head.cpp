@@ -243,7 +243,7 @@ HeadStatus Head::Impl::status() const {
 }
 
 std::vector<Finding> Head::Impl::findings() const {
-  std::vector<Finding> all = diagnosis.findings();
+  std::vector<Finding> all = diagnosis.findings(services.clock.now());
   for (const Ipv4 address : own_addresses.gone()) {
     all.push_back(
         {"address_gone", fmt::format("The address {} is gone from this machine, so no client reaches the "
@@ -446,7 +446,16 @@ void Head::Impl::feed(TimePoint now) {
 
 // For pings by the clock of the pose source. True if a ping begins with the next step.
 bool Head::Impl::grant(TimePoint now) {
-  return services.poses.ping_clock() != PingClock::wall && rendering.begin_ping(now, next_ping);
+  if (services.poses.ping_clock() == PingClock::wall) {
+    return false;
+  }
+  if (rendering.begin_ping(now, next_ping)) {
+    return true;
+  }
+  if (next_ping && next_ping->from <= now && !services.poses.newest()) {
+    diagnosis.no_pose(now);
+  }
+  return false;
 }
 
 void Head::Impl::schedule(TimePoint now) {

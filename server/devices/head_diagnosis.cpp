@@ -22,6 +22,10 @@ constexpr std::chrono::seconds while_blind{1};
 constexpr std::chrono::seconds longest_turn{60};  // of a scanning head
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
+// Codes, which the page also knows.
+constexpr const char* no_pose_code = "no_pose";
+constexpr const char* stale_pose_code = "stale_pose";
+
 }  // namespace
 
 bool LastTurn::note(TimePoint now, double bearing_rad, bool seen) {
@@ -76,9 +80,30 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
 void HeadDiagnosis::no_pose(TimePoint time) {
   sees_surface_.reset();
   stands_out_.reset();
-  const std::optional<StalePose> stale = services_.poses.stale_at(time);
-  found({{"no_pose", stale ? fmt::format("The head does not ping: {}.", stale_text(*stale))
-                           : "No pose of the vehicle has arrived, so the head does not ping."}});
+  if (const std::optional<StalePose> stale = services_.poses.stale_at(time)) {
+    found({{stale_pose_code, fmt::format("The head does not ping: {}.", stale_text(*stale))}});
+  } else if (services_.poses.at(time)) {
+    found({{no_pose_code,
+            "No pose of the vehicle has arrived, so the head does not ping: pings follow the stamps of poses "
+            "(poses.clock), and poses.initial has no stamp."}});
+  } else {
+    found({{no_pose_code, "No pose of the vehicle has arrived, so the head does not ping."}});
+  }
+}
+
+bool HeadDiagnosis::has_pose(TimePoint now) const {
+  const PoseHistory& poses = services_.poses;
+  return poses.at(poses.present(now)) && (poses.ping_clock() == PingClock::wall || poses.newest());
+}
+
+std::vector<Finding> HeadDiagnosis::findings(TimePoint now) const {
+  std::vector<Finding> current = findings_;
+  if (has_pose(now)) {
+    std::erase_if(current, [](const Finding& finding) {
+      return finding.code == no_pose_code || finding.code == stale_pose_code;
+    });
+  }
+  return current;
 }
 
 void HeadDiagnosis::found(std::vector<Finding> findings) {

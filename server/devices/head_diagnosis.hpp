@@ -46,13 +46,15 @@ class HeadDiagnosis {
   /// @param echo_over_floor PingStatistics::echo_over_floor
   void look(TimePoint now, TimePoint time, const NewestPing& ping, const std::vector<PosedBody>& bodies,
             bool sees_surface, double echo_over_floor);
-  /// Called if a ping was not made because no pose is known.
+  /// Called if a ping was not made, or waits, because no pose is known.
   /// @param time of the ping, on the clock of PoseHistory
   void no_pose(TimePoint time);
 
-  const std::vector<Finding>& findings() const { return findings_; }
+  /// The current findings; without those of no_pose() if a pose has arrived since.
+  std::vector<Finding> findings(TimePoint now) const;
 
  private:
+  bool has_pose(TimePoint now) const;
   void found(std::vector<Finding> findings);
 
   const HeadConfig& config_;

@@ -133,12 +133,16 @@ export class Head {
   }
 
   /** Says what the first picture waits for. */
-  updateEmpty({ clients = [], serves = [], pings_without_pose: withoutPose }, poses) {
+  updateEmpty({ clients = [], serves = [], findings = [] }, poses) {
     const inputs = poses.inputs.map((input) => input.input).join(", ");
+    const send = `Send poses to ${inputs || "a configured input (poses)"}.`;
+    const finding = (code) => findings.find((found) => found.code === code);
     if (!clients.length) {
       setText(this.empty, `No client has connected. Start your driver or sonarview. This sonar listens on ${serves.join(", ")}.`);
-    } else if (!poses.vehicle && withoutPose > 0) {
-      setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. Send poses to ${inputs || "a configured input (poses)"}.`);
+    } else if (finding("no_pose")) {
+      setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. ${send}`);
+    } else if (finding("stale_pose")) {
+      setText(this.empty, `${finding("stale_pose").text} ${send}`);
     } else {
       setText(this.empty, "A client is connected. Its next ping starts the picture.");
     }

@@ -102,10 +102,13 @@ class Diagnosis(OwnMachine):
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", self.config(**config)], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", PATIENCE_S)
+        self.start_client()
+        return daemon
+
+    def start_client(self):
         client = Program([os.path.join(PROGRAMS, "sonarview"), "--continuous", "100", "--range", "20", "--ping-wait", "0",
                           "--client-address", "127.0.0.1"], "sonarview")
         self.addCleanup(client.kill)
-        return daemon
 
     def publish(self, pose, **options):
         publisher = Publisher(pose, **options)
@@ -227,6 +230,38 @@ class Diagnosis(OwnMachine):
     def test_no_pose_is_said(self):
         daemon = self.start()
         daemon.wait_for_line("head=bow: No pose of the vehicle has arrived", PATIENCE_S)
+
+    def test_no_pose_is_said_if_pings_wait_for_stamps(self):
+        says = "^No pose of the vehicle has arrived, so the head does not ping"
+        for initial in ("", ", initial: {position_m: [30, 0, -5]}"):
+            for clock in ("source", "lock_step"):
+                daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}{initial}")
+                daemon.wait_for_line("warning head=bow: " + says[1:], PATIENCE_S)
+                self.wait_for_finding(self.heads_findings, says)
+                publisher = self.publish(GOOD)
+                daemon.wait_for_line("head=bow: problem resolved", PATIENCE_S)
+                end = time.monotonic() + PATIENCE_S  # the page keeps a status for a moment
+                while self.heads_findings(self.status()) and time.monotonic() < end:
+                    time.sleep(0.1)
+                self.assertEqual(self.heads_findings(self.status()), [])
+                publisher.close()
+                daemon.kill()
+
+    def test_a_pose_that_went_stale_before_the_first_ping_is_not_a_missing_one(self):
+        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run",
+                          self.config("udp: {bind: 127.0.0.1:14600}, stale: silence")], "sonard")
+        self.addCleanup(daemon.kill)
+        daemon.wait_for_line("sonard ready", PATIENCE_S)
+        publisher = self.publish(GOOD)
+        time.sleep(0.5)
+        publisher.close()
+        time.sleep(1)
+        self.start_client()
+        self.wait_for_finding(self.heads_findings, "The head does not ping: the pose is stale")
+        self.assertEqual([finding["code"] for finding in self.heads_findings(self.status())], ["stale_pose"])
+
+    def heads_findings(self, status):
+        return status["heads"][0]["findings"]
 
     def inputs_findings(self, status):
         return status["poses"]["inputs"][0]["findings"]

@@ -109,7 +109,6 @@ export class MockDaemon {
     this.idle = false;  // no ping is sent; the first viewer that asks gets the last ping
     this.last = null;  // frame of the first head that an idle daemon sends
     this.clients = [{ address: "127.0.0.1:52901", idle_s: 0.2, messages: 1234 }];  // of the first head
-    this.withoutPose = 0;
     this.vehicle = MOUNT;
   }
 
@@ -234,7 +233,7 @@ export class MockDaemon {
       version: "1.9.0", configuration: "configs/two-heads.yaml", uptime_s: (Date.now() - this.began) / 1000, engine: "cpu, 8 threads",
       world: { name: "mock world", water_surface_z_m: 0 },
       heads: [
-        this.head("bow", "multibeam", { findings: this.findings, clients: this.clients, pings_without_pose: this.withoutPose }),
+        this.head("bow", "multibeam", { findings: this.findings, clients: this.clients }),
         this.head("stern", "scanner", { scanning: true, serves: ["tcp 127.0.0.1:4001"], link_faults: "2 % loss, 10 ms delay", range_m: LINE_RANGE_M,
           aperture: { azimuth_rad: 0.05, elevation_rad: 0.6 }, bearing_rad: -bearing_rad, clients: [] }),
       ],

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
 import { framesAdvance, framesOf, head, open, PHONE, readsTarget, savesPng, startBrowser, state, until } from "./browser.js";
-import { MockDaemon, MOUNT, TARGETS } from "./mock_daemon.js";
+import { MockDaemon, TARGETS } from "./mock_daemon.js";
 
 const [folder] = process.argv.slice(2);
 const QUIET_MS = 1500;
@@ -88,16 +88,19 @@ test("a viewer that comes late sees the last ping, and how old it is", async () 
   assert.ok(await head(page, 0).locator(".empty").isHidden());
 });
 
-test("an empty picture says what it waits for: a client, a pose, or the next ping", async () => {
+test("an empty picture says what it waits for: a client, a pose, a newer pose, or the next ping", async () => {
   mock.becomeIdle();
   const says = (text) => until(text, async () => (await head(page, 0).locator(".empty").textContent()).includes(text));
   const clients = mock.clients;
   mock.clients = [];
   await openPage();
   await says("No client has connected. Start your driver or sonarview. This sonar listens on udp 127.0.0.2:52900.");
-  Object.assign(mock, { clients, withoutPose: 3, vehicle: null });
+  const stale = "The head does not ping: the pose is stale: the newest one is 6.8 s old.";
+  Object.assign(mock, { clients, findings: [{ code: "no_pose", text: "No pose of the vehicle has arrived." }] });
   await says("A client requests pings, but no pose of the vehicle has arrived. Send poses to pose stream udp 127.0.0.1:14600.");
-  mock.vehicle = MOUNT;
+  mock.findings = [{ code: "stale_pose", text: stale }];
+  await says(`${stale} Send poses to pose stream udp 127.0.0.1:14600.`);
+  mock.findings = [{ code: "above_surface", text: "The sonar is 1 m above the water surface." }];
   await says("A client is connected. Its next ping starts the picture.");
   assert.ok(await head(page, 0).locator(".empty").isVisible());
 });

@@ -17,6 +17,7 @@
 
 #include "server/devices/gemini/config.hpp"
 #include "server/devices/gemini/kind.hpp"
+#include "server/devices/head_status.hpp"
 #include "server/devices/ping_viewer.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
@@ -302,6 +303,47 @@ TEST_F(GeminiHeadTest, WithoutAPoseItAnswersButDoesNotPing) {
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_TRUE(of_type(0x41).empty());
   EXPECT_EQ(renderer->pings, 0);
+}
+
+std::vector<std::string> codes_of(const std::vector<Finding>& findings) {
+  std::vector<std::string> codes;
+  for (const Finding& finding : findings) {
+    codes.push_back(finding.code);
+  }
+  return codes;
+}
+
+// By the clock of the source a pose of the configuration brings no stamp, so pings wait.
+TEST_F(GeminiHeadTest, WithoutAStampItSaysThatItWaitsForAPose) {
+  for (const PingClock by : {PingClock::source, PingClock::lock_step}) {
+    pose_config.clock = by;
+    gemini_config.device.waits_for_permission = true;
+    start();
+    EXPECT_TRUE(head->status().findings.empty()) << "no client requests pings";
+    command(ping_config);
+    ASSERT_TRUE(run_until([&] { return !head->status().findings.empty(); }));
+    EXPECT_EQ(codes_of(head->status().findings), std::vector<std::string>{"no_pose"});
+    pose::PoseSample sample;
+    sample.time_ns = 1;
+    poses->insert(sample, clock.now());
+    EXPECT_TRUE(head->status().findings.empty());
+    head->stop();
+    service->stop();
+    head.reset();
+  }
+}
+
+TEST_F(GeminiHeadTest, AStalePoseIsNotAMissingOne) {
+  pose_config.stale_policy = StalePolicy::silence;
+  start();
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  poses->insert(sample, clock.now() - std::chrono::seconds{7});
+  command(ping_config);
+  ASSERT_TRUE(run_until([&] { return !head->status().findings.empty(); }));
+  const std::vector<Finding> findings = head->status().findings;
+  EXPECT_EQ(codes_of(findings), std::vector<std::string>{"stale_pose"});
+  EXPECT_NE(findings[0].text.find("the newest one is 7.0 s old"), std::string::npos) << findings[0].text;
 }
 
 // If rendering is further ahead than a ping period, the next ping is due at once after one that failed.
