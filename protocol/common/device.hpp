@@ -101,6 +101,8 @@ struct Actions {
   std::optional<PingJob> render;
   std::optional<PingRecord> record;  ///< set when a ping goes onto the wire
   std::vector<Notice> notices;
+  /// Set if a client's command was for another head: what it asked for, in whole sentences.
+  std::optional<std::string> misaddressed;
 
   /// Number of the outstanding job, if its image is no longer needed. The job must still be answered, by
   /// PingNotRendered without rendering if possible.

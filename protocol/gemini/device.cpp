@@ -138,6 +138,10 @@ class Device::Impl {
   std::uint64_t clock_us(TimePoint now) const;
 
   const DeviceCounters& counters() const { return counters_; }
+  std::string wrong_id_warning() const {
+    return "{} commands were for another sonar ID: the last one for " + std::to_string(last_wrong_id_) +
+           ", but this head has " + std::to_string(config_.sonar_id) + " (sonar_id)";
+  }
   Ipv4 topside() const { return topside_; }
   DeviceAddresses addresses() const { return addresses_; }
   void move_to(Ipv4 alternate, Ipv4 netmask) {
@@ -218,6 +222,7 @@ class Device::Impl {
   Ipv4 reply_from_ = 0;       ///< source address of pings
   Peer asker_;                ///< sender of the command in progress
   TimePoint last_command_{};
+  std::uint16_t last_wrong_id_ = 0;  ///< of the newest command for another head
 
   FlashStore flash_;
   Pinger pinger_;
@@ -241,6 +246,10 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
   }
   if (header->sonar_id != config_.sonar_id && !(header->sonar_id == 0 && config_.accept_id_zero)) {
     ++counters_.wrong_id;
+    last_wrong_id_ = header->sonar_id;
+    actions_.misaddressed = "A client sends commands for sonar ID " + std::to_string(last_wrong_id_) +
+                            ", but this head has sonar ID " + std::to_string(config_.sonar_id) +
+                            ". Set sonar_id to the ID of the client's sonar.";
     return;
   }
   const auto command = decode_command(bytes);
@@ -510,7 +519,7 @@ std::vector<Counter> Device::counts() const {
           {"heads_resent", count.heads_resent},
           {"retries_dropped", count.retries_dropped},
           {"commands", count.commands},
-          {"wrong_id", count.wrong_id, Shown::warns, "{} commands were for another sonar ID"},
+          {"wrong_id", count.wrong_id, Shown::warns, impl_->wrong_id_warning()},
           {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
           {"unknown_type", count.unknown_type},
           {"unsupported_data", count.unsupported_data, Shown::warns,

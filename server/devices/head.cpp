@@ -358,6 +358,9 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
   for (const Notice& notice : actions.notices) {
     log.notice(notice);
   }
+  if (actions.misaddressed) {
+    diagnosis.misaddressed(now, std::move(*actions.misaddressed));
+  }
   if (actions.record) {
     done_or_lost([&] { record(now, std::move(*actions.record)); });
   }

@@ -25,6 +25,8 @@ constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 // Codes, which the page also knows.
 constexpr const char* no_pose_code = "no_pose";
 constexpr const char* stale_pose_code = "stale_pose";
+constexpr const char* misaddressed_code = "misaddressed";
+constexpr std::chrono::minutes worth_saying{1};  // a command for another head
 
 }  // namespace
 
@@ -102,6 +104,9 @@ std::vector<Finding> HeadDiagnosis::findings(TimePoint now) const {
     std::erase_if(current, [](const Finding& finding) {
       return finding.code == no_pose_code || finding.code == stale_pose_code;
     });
+  }
+  if (misaddressed_ && now - misaddressed_->at < worth_saying) {
+    current.push_back({misaddressed_code, misaddressed_->what});
   }
   return current;
 }

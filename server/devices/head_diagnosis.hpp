@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/clock/clock.hpp"
@@ -50,6 +51,10 @@ class HeadDiagnosis {
   /// @param time of the ping, on the clock of PoseHistory
   void no_pose(TimePoint time);
 
+  /// Called if a client's command was for another head.
+  /// @param what Actions::misaddressed
+  void misaddressed(TimePoint now, std::string what) { misaddressed_ = Misaddressed{now, std::move(what)}; }
+
   /// The current findings; without those of no_pose() if a pose has arrived since.
   std::vector<Finding> findings(TimePoint now) const;
 
@@ -57,10 +62,16 @@ class HeadDiagnosis {
   bool has_pose(TimePoint now) const;
   void found(std::vector<Finding> findings);
 
+  struct Misaddressed {
+    TimePoint at{};
+    std::string what;
+  };
+
   const HeadConfig& config_;
   HeadServices services_;
   std::vector<Finding> findings_;
-  std::vector<BodyBox> boxes_;  ///< of the world, once they are needed
+  std::optional<Misaddressed> misaddressed_;  ///< the newest command for another head
+  std::vector<BodyBox> boxes_;                ///< of the world, once they are needed
   std::optional<bool> sees_surface_, stands_out_;
   TimePoint looked_at_{};
   LastTurn surface_seen_{false};

@@ -143,6 +143,8 @@ export class Head {
       setText(this.empty, `A client requests pings, but no pose of the vehicle has arrived. ${send}`);
     } else if (finding("stale_pose")) {
       setText(this.empty, `${finding("stale_pose").text} ${send}`);
+    } else if (finding("misaddressed")) {
+      setText(this.empty, finding("misaddressed").text);
     } else {
       setText(this.empty, "A client is connected. Its next ping starts the picture.");
     }

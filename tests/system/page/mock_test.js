@@ -100,6 +100,9 @@ test("an empty picture says what it waits for: a client, a pose, a newer pose, o
   await says("A client requests pings, but no pose of the vehicle has arrived. Send poses to pose stream udp 127.0.0.1:14600.");
   mock.findings = [{ code: "stale_pose", text: stale }];
   await says(`${stale} Send poses to pose stream udp 127.0.0.1:14600.`);
+  const other = "A client sends commands for sonar ID 514, but this head has sonar ID 513.";
+  mock.findings = [{ code: "misaddressed", text: other }];
+  await says(other);
   mock.findings = [{ code: "above_surface", text: "The sonar is 1 m above the water surface." }];
   await says("A client is connected. Its next ping starts the picture.");
   assert.ok(await head(page, 0).locator(".empty").isVisible());

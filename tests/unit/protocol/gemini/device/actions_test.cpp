@@ -236,7 +236,8 @@ TEST(Counts, AreThoseOfTheHead) {
   EXPECT_EQ(counter(bench.device, "tails_resent").value().shown, Counter::Shown::often);
   EXPECT_EQ(counter(bench.device, "wrong_id").value().value, 2U);
   EXPECT_EQ(counter(bench.device, "wrong_id").value().shown, Counter::Shown::warns);
-  EXPECT_EQ(counter(bench.device, "wrong_id").value().warning, "{} commands were for another sonar ID");
+  EXPECT_EQ(counter(bench.device, "wrong_id").value().warning,
+            "{} commands were for another sonar ID: the last one for 0, but this head has 601 (sonar_id)");
 }
 
 TEST(Counts, ComeInOneOrderWithOneWarningForEachThatWarns) {

@@ -346,6 +346,19 @@ TEST_F(GeminiHeadTest, AStalePoseIsNotAMissingOne) {
   EXPECT_NE(findings[0].text.find("the newest one is 7.0 s old"), std::string::npos) << findings[0].text;
 }
 
+TEST_F(GeminiHeadTest, NamesBothIdsOfCommandsForAnotherHead) {
+  start();
+  Bytes other = status_request;
+  other[2] = 0x5a;  // 602
+  command(other);
+  ASSERT_TRUE(run_until([&] { return !head->status().findings.empty(); }));
+  EXPECT_EQ(codes_of(head->status().findings), std::vector<std::string>{"misaddressed"});
+  EXPECT_EQ(
+      head->status().findings[0].text,
+      "A client sends commands for sonar ID 602, but this head has sonar ID 601. Set sonar_id to the ID "
+      "of the client's sonar.");
+}
+
 // If rendering is further ahead than a ping period, the next ping is due at once after one that failed.
 TEST_F(GeminiHeadTest, RenderingAheadItKeepsTryingWithoutAPose) {
   pose_config.T_world_vehicle_initial.reset();
