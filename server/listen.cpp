@@ -74,7 +74,7 @@ std::string likely_cause(const PoseSource& source) {
   if (counters.connections > 0) {
     return "a publisher connected but sent no complete message";
   }
-  return "nothing arrived: " + source.silence_hint();
+  return source.silence_hint();
 }
 
 /// Prints each head's view from a received pose, and findings about it.

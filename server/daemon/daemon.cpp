@@ -367,7 +367,7 @@ void Daemon::look_at_streams() {
     for (const Finding& finding : look_at_stream(*inputs_, i, clock_.now())) {
       const std::string what = fmt::format("{} {}", i, finding.code);
       told.insert(what);
-      if (!told_.contains(what)) {
+      if (!told_.contains(what) && finding.code != unreadable_code) {
         spdlog::warn("{}: {}", inputs_->source(i).description(), finding.text);
       }
     }

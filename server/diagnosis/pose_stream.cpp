@@ -149,6 +149,9 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
       findings.push_back(std::move(*found));
     }
   }
+  if (std::string unreadable = inputs.source(index).unreadable(now); !unreadable.empty()) {
+    findings.push_back({unreadable_code, std::move(unreadable)});
+  }
   if (std::string remark = inputs.source(index).remark(); !remark.empty()) {
     findings.push_back({"depth_alone", std::move(remark)});
   }

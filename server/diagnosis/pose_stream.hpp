@@ -16,7 +16,11 @@ namespace sonard::server {
 std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const StampField& field,
                                       PingClock clock, TimePoint now);
 
-/// Finds faults of the stamps, and several publishers at once. Belongs to the I/O thread.
+/// Code of the finding about messages that could not be read; their source has logged them.
+inline constexpr const char* unreadable_code = "unreadable_messages";
+
+/// Finds faults of the stamps, several publishers at once, and messages that give no pose. Belongs to the I/O
+/// thread.
 /// @param index of the input
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now);
 

@@ -16,6 +16,7 @@
 #include "server/net/addresses.hpp"
 #include "server/pose/entity_poses.hpp"
 #include "server/pose/gazebo_network.hpp"
+#include "server/pose/unreadable_messages.hpp"
 #include "server/program_log/library_lines.hpp"
 #include "server/program_log/reasons.hpp"
 #ifdef SONARD_GAZEBO_GZ
@@ -113,6 +114,10 @@ struct GazeboPoseSource::Impl : std::enable_shared_from_this<GazeboPoseSource::I
   void take(const Message& message);
   void deliver(const pose::PoseSample& sample, TimePoint arrival);
   void complain(const std::string& problem);
+  void drop(const std::string& problem, TimePoint arrival) {
+    unreadable.note(arrival, "", problem);
+    complain(problem);
+  }
 
   asio::io_context& io;
   GazeboPoseInput input;
@@ -121,6 +126,7 @@ struct GazeboPoseSource::Impl : std::enable_shared_from_this<GazeboPoseSource::I
   EntityMap entities;
   PoseSourceCounters counters;
   Reasons complaints;
+  UnreadableMessages unreadable;
   std::mutex mutex;
   int waiting = 0;
   std::uint64_t crowded = 0;
@@ -160,7 +166,7 @@ void GazeboPoseSource::Impl::take(const Message& message) {
   const auto parsed = parse(message);
   if (!parsed) {
     ++counters.malformed;
-    complain(parsed.error());
+    drop(parsed.error(), message.arrival);
     return;
   }
   const auto mapped = entities.map(*parsed);
@@ -170,7 +176,7 @@ void GazeboPoseSource::Impl::take(const Message& message) {
   }
   if (!mapped) {
     ++counters.bad_value;
-    complain(mapped.error());
+    drop(mapped.error(), message.arrival);
     return;
   }
   deliver(*mapped, message.arrival);
@@ -244,12 +250,17 @@ std::vector<std::string> GazeboPoseSource::entities() const {
   return impl_->entities.seen();
 }
 
+std::string GazeboPoseSource::unreadable(TimePoint now) const {
+  return impl_->unreadable.text(now);
+}
+
 std::string GazeboPoseSource::silence_hint() const {
   const std::string reach = is_loopback(impl_->input.address)
                                 ? "does it run on this machine (another one needs poses.gazebo.address)"
                                 : "does multicast reach it";
-  return "is the simulator running, are topic and partition the same as in the simulator, and " + reach +
-         " (docs/simulators/gazebo.md)?";
+  return "nothing arrived: is the simulator running, are topic and partition the same as in the simulator, "
+         "and " +
+         reach + " (docs/simulators/gazebo.md)?";
 }
 
 const PoseSourceCounters& GazeboPoseSource::counters() const {

@@ -23,6 +23,7 @@ class GazeboPoseSource final : public PoseSource {
   const PoseSourceCounters& counters() const override;
   std::vector<std::string> entities() const override;
   StampField stamp_field() const override { return {"header.stamp", "seconds and nanoseconds", 1e-9}; }
+  std::string unreadable(TimePoint now) const override;
   std::string silence_hint() const override;
 
   static constexpr int max_waiting = 16;

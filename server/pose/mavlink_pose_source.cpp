@@ -13,6 +13,7 @@
 #include "server/net/addresses.hpp"
 #include "server/pose/mavlink_poses.hpp"
 #include "server/pose/udp_listener.hpp"
+#include "server/pose/unreadable_messages.hpp"
 
 namespace sonard::server {
 
@@ -71,7 +72,10 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   void tell_what_is_missing(TimePoint arrival);
   /// Why received GLOBAL_POSITION_INT messages give no pose; empty if no reason is known.
   std::string what_is_missing() const;
-  void tell_of_broken_frames(std::uint64_t before);
+  void tell_of_broken_frames(std::uint64_t before, TimePoint arrival);
+  void note_unreadable(TimePoint arrival, std::string problem) {
+    unreadable.note(arrival, endpoint_text(listener.peer()), std::move(problem));
+  }
 
   MavlinkPoseInput input;
   UdpListener listener;
@@ -88,6 +92,7 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   std::optional<TimePoint> first_received;
   bool missing_said = false;
   PoseSourceCounters counters;
+  UnreadableMessages unreadable;
 };
 
 void MavlinkPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint arrival) {
@@ -99,7 +104,7 @@ void MavlinkPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimeP
       return;
     }
   }
-  tell_of_broken_frames(broken_before);
+  tell_of_broken_frames(broken_before, arrival);
 }
 
 void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arrival) {
@@ -109,11 +114,15 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
   const auto message = mavlink::decode(frame);
   if (!message) {
     ++counters.malformed;
+    note_unreadable(arrival, "a MAVLink message cannot be decoded");
     return;
   }
   ++counter_of(*message, received);
   const std::optional<pose::PoseSample> sample = poses.take(*message, arrival);
-  counters.bad_value = poses.counters().bad_value;
+  const std::uint64_t bad_before = std::exchange(counters.bad_value, poses.counters().bad_value);
+  if (counters.bad_value != bad_before) {
+    note_unreadable(arrival, poses.newest_problem());
+  }
   if (sample) {
     ++counters.samples;
     publisher = listener.peer();
@@ -194,11 +203,12 @@ void MavlinkPoseSource::Impl::tell_what_is_missing(TimePoint arrival) {
       lacks.empty() ? "" : ": ", lacks);
 }
 
-void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before) {
+void MavlinkPoseSource::Impl::tell_of_broken_frames(std::uint64_t before, TimePoint arrival) {
   if (frames.stray_bytes == before) {
     return;
   }
   ++counters.malformed;
+  note_unreadable(arrival, "it contains bytes that are not a valid MAVLink frame");
   if (std::has_single_bit(++broken_datagrams)) {
     spdlog::warn(
         "{}: datagram from {} contains {} bytes that are not a valid frame (bad checksums {} so far)",
@@ -265,6 +275,10 @@ std::string MavlinkPoseSource::remark() const {
                "so it stays at poses.mavlink.origin. Set its origin in the ground station, or send poses "
                "with a position."
              : "";
+}
+
+std::string MavlinkPoseSource::unreadable(TimePoint now) const {
+  return impl_->unreadable.text(now);
 }
 
 std::string MavlinkPoseSource::silence_hint() const {

@@ -23,6 +23,7 @@ class MavlinkPoseSource final : public PoseSource {
   std::string received() const override;
   StampField stamp_field() const override;
   std::string remark() const override;
+  std::string unreadable(TimePoint now) const override;
   std::string silence_hint() const override;
   /// The listening address, after start().
   Endpoint local_endpoint() const;

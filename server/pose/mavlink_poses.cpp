@@ -378,6 +378,7 @@ std::optional<pose::PoseSample> MavlinkPoses::sample(std::int64_t time_ns,
 }
 
 void MavlinkPoses::complain(const std::string& problem) {
+  newest_problem_ = problem;
   if (const std::uint64_t count = complaints_.count(problem); std::has_single_bit(count)) {
     spdlog::warn("pose mavlink: message dropped: {} ({} so far)", problem, count);
   }

@@ -57,6 +57,8 @@ class MavlinkPoses {
   std::optional<pose::PoseSample> take(const mavlink::Message& message, TimePoint arrival);
 
   const MavlinkPoseCounters& counters() const { return counters_; }
+  /// Why the newest message with a bad value was dropped; empty if there was none.
+  const std::string& newest_problem() const { return newest_problem_; }
   /// True if the newest position has only a depth, because the vehicle has no fix.
   bool knows_depth_alone() const { return depth_alone_; }
   /// True if the newest GLOBAL_POSITION_INT, used or not, has only a depth.
@@ -112,6 +114,7 @@ class MavlinkPoses {
   void complain(const std::string& problem);
 
   Reasons complaints_;
+  std::string newest_problem_;
   MavlinkMessages wanted_;
   pose::Transform T_world_local_;
   bool world_is_there_;  ///< the world is near latitude 0, longitude 0

@@ -74,9 +74,12 @@ class PoseSource {
   virtual StampField stamp_field() const { return {}; }
   /// Problems with the newest pose, in whole sentences; empty if there are no known ones.
   virtual std::string remark() const { return {}; }
-  /// Advice if nothing at all has arrived, in one line.
+  /// Messages that could not be read, with the first reason, in one sentence; empty if none came lately.
+  virtual std::string unreadable(TimePoint /*now*/) const { return {}; }
+  /// Why no pose has arrived, in one line: "nothing arrived: is the publisher running, ..."
   virtual std::string silence_hint() const {
-    return "is the publisher running, does it send to this address and port, and does a firewall block it?";
+    return "nothing arrived: is the publisher running, does it send to this address and port, and does a "
+           "firewall block it?";
   }
 };
 

@@ -13,6 +13,7 @@
 
 #include "server/net/tcp_listener.hpp"
 #include "server/net/udp_endpoint.hpp"
+#include "server/pose/unreadable_messages.hpp"
 #include "server/program_log/peer_log.hpp"
 #include "server/program_log/reasons.hpp"
 
@@ -47,6 +48,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   std::optional<Endpoint> publisher;  // of the newest pose
   std::set<std::shared_ptr<Session>> sessions;
   PoseSourceCounters counters;
+  UnreadableMessages unreadable;
   PeerLog log;
 };
 
@@ -123,7 +125,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       const std::ptrdiff_t frame_bytes = pose::next_frame(rest);
       if (frame_bytes < 0) {
         ++source_->counters.malformed;
-        close_faulty("a message length is invalid, or above 65507 bytes");
+        close_unreadable("a message length is invalid, or above 65507 bytes", rest);
         break;
       }
       if (frame_bytes == 0) {
@@ -132,15 +134,15 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       const auto frame = rest.first(static_cast<std::size_t>(frame_bytes));
       rest = rest.subspan(frame.size());
       finished_a_message = true;
-      take_message(pose::frame_message(frame), arrival);
+      take_message(frame, arrival);
     }
     filled_ = rest.size();
     std::copy(rest.begin(), rest.end(), buffer_.begin());  // copies to the front, so overlap is safe
     return finished_a_message;
   }
 
-  void take_message(std::span<const std::uint8_t> message, TimePoint arrival) {
-    const auto sample = pose::decode(message);
+  void take_message(std::span<const std::uint8_t> frame, TimePoint arrival) {
+    const auto sample = pose::decode(pose::frame_message(frame));
     if (sample) {
       newest_message_ = arrival;
       ++source_->counters.samples;
@@ -150,11 +152,12 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     }
     if (sample.error().kind == pose::PoseError::Kind::malformed) {
       ++source_->counters.malformed;
-      close_faulty(to_string(sample.error()));
+      close_unreadable(to_string(sample.error()), frame);
       return;
     }
     ++source_->counters.bad_value;
     const std::string problem = to_string(sample.error());
+    source_->unreadable.note(arrival, endpoint_text(peer_), problem);
     if (const std::uint64_t count = complaints_.count(problem); std::has_single_bit(count)) {
       spdlog::warn("{}: message from {} dropped: {} ({} so far)", source_->listener->description(),
                    endpoint_text(peer_), problem, count);
@@ -176,7 +179,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
       // A wait that had expired before the timer was set again also comes here; the expiry shows it.
       const bool due = !error && self->timer_.expiry() <= std::chrono::steady_clock::now();
       if (due && self->unfinished_ && self->socket_.is_open()) {
-        self->close_faulty("a message is incomplete");
+        self->close_unreadable("a message is incomplete", {self->buffer_.data(), self->filled_});
       }
     });
   }
@@ -185,6 +188,13 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     unfinished_ = false;
     error_code ignored;
     timer_.cancel(ignored);
+  }
+
+  /// @param bytes of the message, from its length on
+  void close_unreadable(const std::string& reason, std::span<const std::uint8_t> bytes) {
+    const std::string problem = reason + mavlink_hint(bytes);
+    source_->unreadable.note(source_->clock.now(), endpoint_text(peer_), problem);
+    close_faulty(problem);
   }
 
   void close_faulty(const std::string& reason) {
@@ -273,6 +283,10 @@ const PoseSourceCounters& TcpPoseSource::counters() const {
 
 std::string TcpPoseSource::received() const {
   return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
+}
+
+std::string TcpPoseSource::unreadable(TimePoint now) const {
+  return impl_->unreadable.text(now);
 }
 
 Endpoint TcpPoseSource::local_endpoint() const {

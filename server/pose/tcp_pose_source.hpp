@@ -29,6 +29,7 @@ class TcpPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::string received() const override;
+  std::string unreadable(TimePoint now) const override;
   /// The listening address, after start().
   Endpoint local_endpoint() const;
   /// Number of connected publishers.

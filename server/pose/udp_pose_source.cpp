@@ -9,6 +9,7 @@
 
 #include "server/net/addresses.hpp"
 #include "server/pose/udp_listener.hpp"
+#include "server/pose/unreadable_messages.hpp"
 #include "server/program_log/reasons.hpp"
 
 namespace sonard::server {
@@ -25,6 +26,7 @@ struct UdpPoseSource::Impl : std::enable_shared_from_this<UdpPoseSource::Impl> {
   std::optional<Endpoint> publisher;  // of the newest pose
   PoseSourceCounters counters;
   Reasons complaints;
+  UnreadableMessages unreadable;
 };
 
 void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint arrival) {
@@ -32,7 +34,9 @@ void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint
   if (!sample) {
     const bool malformed = sample.error().kind == pose::PoseError::Kind::malformed;
     ++(malformed ? counters.malformed : counters.bad_value);
-    complain(to_string(sample.error()));
+    const std::string problem = to_string(sample.error()) + mavlink_hint(datagram);
+    unreadable.note(arrival, endpoint_text(listener.peer()), problem);
+    complain(problem);
     return;
   }
   ++counters.samples;
@@ -79,6 +83,10 @@ const PoseSourceCounters& UdpPoseSource::counters() const {
 
 std::string UdpPoseSource::received() const {
   return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
+}
+
+std::string UdpPoseSource::unreadable(TimePoint now) const {
+  return impl_->unreadable.text(now);
 }
 
 Endpoint UdpPoseSource::local_endpoint() const {

@@ -88,6 +88,26 @@ TEST_F(MavlinkPoseSourceTest, TakesTheDepthOfAVehicleWithoutAPlaceAndAsksForNoOr
   EXPECT_THAT(source->remark(), HasSubstr("has a depth but no position"));
 }
 
+TEST_F(MavlinkPoseSourceTest, AnAttitudeAloneIsNotNothing) {
+  const auto source = started();
+  EXPECT_THAT(source->silence_hint(), testing::StartsWith("nothing arrived: is the publisher running"));
+  send(*source, test::attitude_frame(1000, 0, 0, 0, {1}));
+  ASSERT_TRUE(run_until([&] {
+    return source->silence_hint() ==
+           "messages of the vehicle arrive, but no positions with attitudes: "
+           "request them (docs/simulators/ardusub.md)";
+  }));
+  EXPECT_EQ(source->unreadable(clock_.now()), "") << "an attitude alone is no fault";
+}
+
+TEST_F(MavlinkPoseSourceTest, TellsOfMessagesThatCannotBeRead) {
+  const auto source = started();
+  send(*source, {'h', 'i'});
+  ASSERT_TRUE(run_until([&] { return source->counters().malformed == 1; }));
+  EXPECT_THAT(source->unreadable(clock_.now()), testing::AllOf(HasSubstr("1 message from 127.0.0.1:"),
+                                                               HasSubstr("not a valid MAVLink frame.")));
+}
+
 TEST_F(MavlinkPoseSourceTest, ListensOnlyToWhomItIsAllowed) {
   const auto source = started({{localhost, 32}});
   send(*source, test::odometry_frame(1, 1, 1, 1), 0x7F000009);

@@ -9,6 +9,7 @@
 #include <boost/asio/write.hpp>
 
 #include "server/net/addresses.hpp"
+#include "tests/support/mavlink_bytes.hpp"
 #include "tests/unit/server/pose/source_fixture.hpp"
 
 namespace sonard::server {
@@ -189,6 +190,16 @@ TEST_F(TcpPoseSourceTest, ClosesAPeerThatLeavesAMessageUnfinished) {
   EXPECT_TRUE(closed_by_source(slow));
   EXPECT_EQ(source->client_count(), 1U) << "silence between messages is no fault";
   EXPECT_EQ(delivered_.size(), 1U);
+}
+
+// A heartbeat of MAVLink 2 begins like a message of 1277 bytes.
+TEST_F(TcpPoseSourceTest, KnowsMavlinkAndNamesItsKey) {
+  const auto source = started({{localhost, 0}, loopback, 8}, milliseconds{50});
+  tcp::socket vehicle = connect(*source);
+  send(vehicle, test::heartbeat_frame());
+  ASSERT_TRUE(closed_by_source(vehicle));
+  EXPECT_THAT(source->unreadable(clock_.now()),
+              testing::HasSubstr("looks like MAVLink: configure poses.mavlink"));
 }
 
 TEST_F(TcpPoseSourceTest, RefusesOneTooMany) {

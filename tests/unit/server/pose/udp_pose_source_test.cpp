@@ -8,6 +8,7 @@
 #include <boost/asio/ip/udp.hpp>
 
 #include "server/net/addresses.hpp"
+#include "tests/support/mavlink_bytes.hpp"
 #include "tests/unit/server/pose/source_fixture.hpp"
 
 namespace sonard::server {
@@ -16,6 +17,7 @@ namespace {
 using boost::asio::ip::address_v4;
 using boost::asio::ip::udp;
 using std::chrono::milliseconds;
+using test::operator+;
 using testing::HasSubstr;
 
 class UdpPoseSourceTest : public SourceTest {
@@ -59,6 +61,33 @@ TEST_F(UdpPoseSourceTest, DropsAndCountsWhatIsNoPose) {
   EXPECT_EQ(delivered_.size(), 1U);
   EXPECT_EQ(source->counters().malformed, 1U);
   EXPECT_EQ(source->counters().bad_value, 2U);
+}
+
+TEST_F(UdpPoseSourceTest, TellsOfMessagesThatCannotBeRead) {
+  const auto source = started();
+  EXPECT_EQ(source->unreadable(clock_.now()), "");
+  udp::socket socket{io_, {address_v4{localhost}, 0}};
+  const auto send = [&](const std::vector<std::uint8_t>& datagram) {
+    socket.send_to(boost::asio::buffer(datagram), {address_v4{localhost}, source->local_endpoint().port});
+  };
+  send({'h', 'e', 'l', 'l', 'o'});
+  send(pose::encode(nan_sample()));
+  send(pose::encode(sample(1)));
+  ASSERT_TRUE(run_until_delivered(1));
+  EXPECT_EQ(source->unreadable(clock_.now()),
+            "2 messages from 127.0.0.1:" + std::to_string(socket.local_endpoint().port()) +
+                " could not be read: message: is not a PoseUpdate (pose.proto).");
+  EXPECT_EQ(source->unreadable(clock_.now() + std::chrono::minutes{2}), "") << "it is over";
+}
+
+TEST_F(UdpPoseSourceTest, KnowsMavlinkAndNamesItsKey) {
+  for (const test::Bytes& frames :
+       {test::heartbeat_frame(), test::attitude_frame(1000, 0, 0, 0, {1}) + test::heartbeat_frame()}) {
+    const auto source = started();
+    send(*source, frames);
+    ASSERT_TRUE(run_until([&] { return !source->unreadable(clock_.now()).empty(); }));
+    EXPECT_THAT(source->unreadable(clock_.now()), HasSubstr("looks like MAVLink: configure poses.mavlink"));
+  }
 }
 
 TEST_F(UdpPoseSourceTest, TakesTheLongestDatagram) {
