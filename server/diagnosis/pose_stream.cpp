@@ -133,6 +133,20 @@ std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const St
   return look_at_restarts(summary, field);
 }
 
+std::optional<Finding> look_at_rate(const PoseStatistics& statistics, PingClock clock, TimePoint now) {
+  const bool by_stamps = clock != PingClock::wall;
+  const std::optional<double> rate_hz = statistics.slow_rate_hz(by_stamps, now);
+  if (!rate_hz) {
+    return std::nullopt;
+  }
+  return Finding{
+      "poses_rare",
+      fmt::format("Poses arrive at only {:.2g} Hz{}. Publish at 10 Hz or more, as is usual.", *rate_hz,
+                  by_stamps ? " by their stamps, and sonard makes no ping in gaps beyond "
+                              "poses.extrapolation_limit_ms"
+                            : ", so the vehicle moves in jumps")};
+}
+
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   std::vector<Finding> findings;
   const std::vector<std::string> publishers = inputs.publishers(index, now);
@@ -147,6 +161,8 @@ std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index,
     if (auto found =
             look_at_stamps(statistics, inputs.source(index).stamp_field(), inputs.ping_clock(), now)) {
       findings.push_back(std::move(*found));
+    } else if (auto rare = look_at_rate(statistics, inputs.ping_clock(), now)) {
+      findings.push_back(std::move(*rare));
     }
   }
   if (std::string unreadable = inputs.source(index).unreadable(now); !unreadable.empty()) {

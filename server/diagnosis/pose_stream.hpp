@@ -16,6 +16,10 @@ namespace sonard::server {
 std::optional<Finding> look_at_stamps(const PoseStatistics& statistics, const StampField& field,
                                       PingClock clock, TimePoint now);
 
+/// Finds poses that arrive too rarely for an image that moves smoothly. Pings that follow the stamps of poses
+/// need stamps that are close together, however late they arrive.
+std::optional<Finding> look_at_rate(const PoseStatistics& statistics, PingClock clock, TimePoint now);
+
 /// Code of the finding about messages that could not be read; their source has logged them.
 inline constexpr const char* unreadable_code = "unreadable_messages";
 

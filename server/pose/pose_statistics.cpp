@@ -28,7 +28,25 @@ std::string milliseconds(std::chrono::nanoseconds time) {
   return fmt::format("{:.0f}", 1e3 * seconds(time));
 }
 
+constexpr std::uint64_t enough_slow_steps = 3;  // fewer may be a pause, or a busy machine
+
 }  // namespace
+
+void PoseStatistics::SlowSteps::note(std::chrono::nanoseconds step) {
+  const bool slow = step > slow_step;
+  count = slow ? count + 1 : 0;
+  sum = slow ? sum + step : std::chrono::nanoseconds{0};
+}
+
+std::optional<double> PoseStatistics::slow_rate_hz(bool by_stamps, TimePoint now) const {
+  const SlowSteps& steps = by_stamps ? slow_stamps_ : slow_arrivals_;
+  if (steps.count < enough_slow_steps) {
+    return std::nullopt;
+  }
+  const double mean_s = seconds(steps.sum) / static_cast<double>(steps.count);
+  const bool stopped = !by_stamps && seconds(now - newest_arrival_) > 3.0 * mean_s;
+  return stopped ? std::nullopt : std::optional{1.0 / mean_s};
+}
 
 void PoseStatistics::observe(const pose::PoseSample& sample, TimePoint arrival) {
   for (Period* period : {&recent_, &all_}) {
@@ -39,6 +57,10 @@ void PoseStatistics::observe(const pose::PoseSample& sample, TimePoint arrival) 
     if (newest_) {
       observe_step(*period, sample, arrival);
     }
+  }
+  if (newest_) {
+    slow_arrivals_.note(arrival - newest_arrival_);
+    slow_stamps_.note(std::chrono::nanoseconds{sample.time_ns - newest_->time_ns});
   }
   stamps_.observe(sample, arrival);
   newest_ = sample;

@@ -48,7 +48,22 @@ class PoseStatistics {
   const std::optional<pose::PoseSample>& newest() const { return newest_; }
   const StampWatch& stamps() const { return stamps_; }
 
+  /// Steps above this are slow: publishers usually send 10 poses per second or more.
+  static constexpr std::chrono::milliseconds slow_step{200};
+  /// Rate of a publisher whose newest steps were all slow, in poses per second; nullopt: it is not slow, or
+  /// it has stopped.
+  /// @param by_stamps true: per second of its stamps; false: per second of arrivals
+  std::optional<double> slow_rate_hz(bool by_stamps, TimePoint now) const;
+
  private:
+  /// The newest consecutive slow steps.
+  struct SlowSteps {
+    std::uint64_t count = 0;
+    std::chrono::nanoseconds sum{0};
+
+    void note(std::chrono::nanoseconds step);
+  };
+
   struct Period {
     std::optional<TimePoint> begin;  // nullopt: before the first pose
     std::uint64_t poses = 0;
@@ -69,6 +84,7 @@ class PoseStatistics {
   TimePoint newest_arrival_{};
   Period recent_, all_;
   StampWatch stamps_;
+  SlowSteps slow_arrivals_, slow_stamps_;
 };
 
 /// "poses=500 rate_hz=50.0 time_rate=1.00 age_ms=12 longest_gap_ms=34 gaps=0 jumps=0 clock_restarts=0";

@@ -54,11 +54,12 @@ def wrong_poses():
 
 
 class Publisher:
-    """Sends a pose 20 times per second that moves at a constant speed. Stamps are from its own clock, or `stamp` computes
+    """Sends a pose every `period_s` that moves at a constant speed. Stamps are from its own clock, or `stamp` computes
     them from the seconds since the start."""
 
-    def __init__(self, pose, ticks_per_s=1e9, speed_mps=0.0, stamp=None):
+    def __init__(self, pose, ticks_per_s=1e9, speed_mps=0.0, stamp=None, period_s=0.05):
         self.pose = pose
+        self.period_s = period_s
         self.ticks_per_s = ticks_per_s
         self.speed_mps = speed_mps
         self.stamp = stamp
@@ -72,7 +73,7 @@ class Publisher:
         self._thread.start()
 
     def _run(self):
-        while not self._end.wait(0.05):
+        while not self._end.wait(self.period_s):
             since_s = time.monotonic() - self._begin
             own_ns = round((time.monotonic() - self.back_s) * self.ticks_per_s)
             update = POSE_PB2.PoseUpdate(time_ns=own_ns if self.stamp is None else self.stamp(since_s))
@@ -307,6 +308,21 @@ class Diagnosis(OwnMachine):
         self.assertRegex(self.check("--listen", "3", self.config()), "wrong\\?   " + says)
         self.start()
         self.wait_for_finding(self.inputs_findings, says)
+
+    def test_poses_at_one_hertz_are_too_rare(self):
+        daemon = self.start()
+        self.publish(GOOD, period_s=1.0)
+        says = "Poses arrive at only (1|0\\.9\\d?) Hz, so the vehicle moves in jumps[.] Publish at 10 Hz or more"
+        daemon.wait_for_line("warning pose stream udp .*" + says, PATIENCE_S)
+        self.wait_for_finding(self.inputs_findings, says)
+        daemon.kill()
+        self.assertRegex(self.check("--listen", "6", self.config()), "wrong\\?   " + says)
+
+    def test_messages_that_cannot_be_read_are_named_though_there_is_an_initial_pose(self):
+        self.start(poses="udp: {bind: 127.0.0.1:14600}, initial: {position_m: [30, 0, -5]}")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"hello", POSES)
+            self.wait_for_finding(self.inputs_findings, "^1 message from 127[.0-9:]* could not be read: message: is not a PoseUpdate")
 
     STANDING = {  # what is made of the seconds since the first pose
         "left out": (lambda since_s: 0, "The stamps do not change while the vehicle moves(, so the heads do not ping .*)?: is time_ns missing\\?"),

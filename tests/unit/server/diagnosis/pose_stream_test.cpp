@@ -144,6 +144,39 @@ TEST(PoseStream, StampsThatDoNotAdvanceStopThePingsThatWaitForThem) {
   EXPECT_FALSE(rounded[0].stops_pings) << "a ping comes with each second";
 }
 
+/// The finding about the rate after ten poses, one each period, whose stamps advance by `stamp_step`.
+std::optional<Finding> rate_finding(milliseconds period, milliseconds stamp_step, PingClock clock,
+                                    milliseconds silence = milliseconds{0}) {
+  PoseStatistics statistics(milliseconds{500});
+  TimePoint arrival = std::chrono::hours{5};
+  for (int i = 0; i < 10; ++i) {
+    pose::PoseSample sample;
+    sample.time_ns = i * std::chrono::nanoseconds{stamp_step}.count();
+    statistics.observe(sample, arrival += period);
+  }
+  return look_at_rate(statistics, clock, arrival + silence);
+}
+
+TEST(PoseStream, PosesAtOneHertzAreTooRare) {
+  const milliseconds second{1000}, good{50};
+  const auto rare = rate_finding(second, second, PingClock::wall);
+  ASSERT_TRUE(rare);
+  EXPECT_THAT(rare->text,
+              AllOf(HasSubstr("Poses arrive at only 1 Hz,"), HasSubstr("Publish at 10 Hz or more")));
+  EXPECT_FALSE(rate_finding(good, good, PingClock::wall));
+  EXPECT_FALSE(rate_finding(milliseconds{100}, milliseconds{100}, PingClock::wall));
+  EXPECT_FALSE(rate_finding(second, second, PingClock::wall, milliseconds{10'000})) << "it has stopped";
+}
+
+TEST(PoseStream, ASlowSimulationIsNoRarePublisher) {
+  const milliseconds second{1000}, good{50};
+  EXPECT_FALSE(rate_finding(second, good, PingClock::source));
+  EXPECT_FALSE(rate_finding(second, good, PingClock::lock_step));
+  const auto rare = rate_finding(good, second, PingClock::lock_step);
+  ASSERT_TRUE(rare);
+  EXPECT_THAT(rare->text, HasSubstr("Poses arrive at only 1 Hz by their stamps"));
+}
+
 TEST(PoseStream, AClockThatWentBackIsNamedWithItsField) {
   const std::vector<Finding> findings = findings_of({.stamp = [](std::int64_t since_ns) {
     return since_ns < 3'000'000'000 ? since_ns : since_ns - 3'000'000'000;
