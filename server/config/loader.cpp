@@ -296,8 +296,8 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
       "set, only one may send poses of the vehicle at a time.");
   section.section(
       "initial",
-      "pose until the first pose arrives. Without it, the heads answer clients but do not ping before the "
-      "first pose",
+      "pose until the first pose arrives. Without it, and always with `clock: source` or `lock_step`, the "
+      "heads answer clients but do not ping before the first pose",
       [&](YamlSection& inner) {
         inner.require("position_m", "a list of three numbers");
         read_pose(
