@@ -8,6 +8,7 @@
 import math
 import os
 import re
+import statistics
 import struct
 import time
 
@@ -354,10 +355,11 @@ class Sphere(HeadCase):
                 client.write(messages.fire(rate=code, flags=0x09, range_m=2.0, speed=1500.0, version=2, extension=0))
                 starts = [client.ping().start_s for _ in range(5 if hertz < 10 else 20)]
                 client.close()
-                rate = (len(starts) - 1) / (starts[-1] - starts[0])
-                self.assertLess(rate, 1.1 * hertz)
+                # The median: a busy machine makes single pings late.
+                interval_s = statistics.median(b - a for a, b in zip(starts, starts[1:]))
+                self.assertGreater(interval_s, 0.9 / hertz)
                 if hertz <= 5:
-                    self.assertGreater(rate, 0.9 * hertz)
+                    self.assertLess(interval_s, 1.1 / hertz)
 
     def test_standby_is_kept_by_a_client_that_has_never_pinged(self):
         client = self.client()

@@ -701,7 +701,7 @@ class FullDisk(RecordingTest):
         self.assertIn("No space left on device", daemon.output())
         without_room = self.pings_per_s(viewer, 2)
         print(f"pings per second: {with_room:.1f} with room, {without_room:.1f} without")
-        self.assertGreater(without_room, 0.9 * with_room)
+        self.assertGreater(without_room, 0.5 * with_room)  # other jobs change both; waiting for the disk would end the pings
         daemon.wait_for_line("has no space for new logs", 60)
         self.assertEqual(daemon.output().count("has no space for new logs"), 1, "it is said once")
         viewer.signal(signal.SIGINT)
