@@ -107,7 +107,8 @@ void PointSpread::spread(EchoImage& echo, WorkerPool& workers) {
 void PointSpread::spread_lines(std::vector<float>& lines, WorkerPool& workers) const {
   if (uses_pulse_) {
     EchoImage spread;
-    pulse_->response.apply({1, static_cast<int>(lines.size()), lines}, spread, workers);
+    const auto count = static_cast<int>(lines.size());
+    pulse_->response.apply({1, count, std::move(lines)}, spread, workers);
     lines = std::move(spread.intensity);
   }
 }

@@ -186,7 +186,8 @@ struct SonarRenderer::Impl {
     if (!strongest_of_all.empty()) {
       point_spread.spread_lines(strongest_of_surfaces, workers);
       point_spread.spread_lines(strongest_of_all, workers);
-      image.surface_share = quotients(strongest_of_surfaces, strongest_of_all);
+      divide(strongest_of_surfaces, strongest_of_all);
+      image.surface_share = strongest_of_surfaces;
     }
     statistics.pulse_s = watch.lap();
   }
@@ -253,13 +254,11 @@ struct SonarRenderer::Impl {
     return strongest;
   }
 
-  /// The shares of the parts; 0 if the whole is 0.
-  static std::vector<float> quotients(const std::vector<float>& parts, const std::vector<float>& wholes) {
-    std::vector<float> shares;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      shares.push_back(wholes[i] > 0 ? parts[i] / wholes[i] : 0.0F);
+  /// Divides `part` by `whole`; 0 if the whole is 0.
+  static void divide(std::vector<float>& part, const std::vector<float>& whole) {
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      part[i] = whole[i] > 0 ? part[i] / whole[i] : 0.0F;
     }
-    return shares;
   }
   /// SkipRule::terrain_detail. Motion within a ping extends the range, but does not change the detail.
   void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
