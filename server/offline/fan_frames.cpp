@@ -86,7 +86,7 @@ Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   auto samples = std::make_shared<const npy::Table>(
       npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
   Frame made;
-  made.view = {.time_ns = times_.at(frame), .range_m = ping.settings.range.sampled_range_m()};
+  made.view = {.time_ns = times_.at(frame), .range_m = ping.settings.range.max_range_m()};
   made.view.add(renderer.last_statistics());
   made.npy = npy::encode(*samples);
   cv::Mat ids;

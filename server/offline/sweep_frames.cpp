@@ -93,7 +93,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
     place_bodies(trajectory_, times_.at(first + column), renderer, truth_);
     picture::SweepLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
                             renderer.render_ping(ping, stream_).u8};
-    view.range_m = ping.settings.range.sampled_range_m();
+    view.range_m = ping.settings.range.max_range_m();
     view.add(renderer.last_statistics());
     const std::vector<std::uint16_t> nearby =
         truth_ != nullptr ? truth_->bodies_in(ping) : std::vector<std::uint16_t>{};
