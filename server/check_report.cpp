@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/text/counted.hpp"
 #include "common/text/printable.hpp"
 
 namespace sonard::server {
@@ -70,8 +71,7 @@ void print_report(const std::filesystem::path& file, const CheckReport& report) 
   if (report.problems.empty()) {
     fmt::print("{}: good\n", printable(file.string()));
   } else {
-    fmt::print("{}: {} problem{}\n", printable(file.string()), report.problems.size(),
-               report.problems.size() == 1 ? "" : "s");
+    fmt::print("{}: {}\n", printable(file.string()), counted(report.problems.size(), "problem"));
   }
 }
 

@@ -16,6 +16,8 @@
 namespace sonard::server {
 namespace {
 
+constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789";  // of keys
+
 constexpr std::size_t most_quoted = 80;
 
 std::string_view next_line(std::string_view& text) {
@@ -146,7 +148,6 @@ ConfigProblem yaml_trouble(std::string_view text, SourcePosition at, const std::
 }
 
 std::string missing_colon(std::string_view text) {
-  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789";
   const std::size_t end = std::min(text.find_first_not_of(letters), text.size());
   const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
   const bool has_sign = text.substr(next).starts_with('=');
@@ -163,7 +164,6 @@ std::string missing_colon(std::string_view text) {
 }
 
 std::string missing_blank(std::string_view text) {
-  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyz_0123456789";
   const std::size_t end = std::min(text.find_first_not_of(letters), text.size());
   const std::string_view value = text.substr(std::min(end + 1, text.size()));
   if (end == 0 || !text.substr(end).starts_with(':') ||

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text/counted.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -107,9 +109,9 @@ std::optional<Finding> look_at_restarts(const PoseStatistics::Summary& summary, 
     return std::nullopt;
   }
   return Finding{"clock_backwards",
-                 fmt::format("The publisher's clock went back {} time{}: a simulation was restarted, or the "
+                 fmt::format("The publisher's clock went back {}: a simulation was restarted, or the "
                              "stamps ({}) come from several clocks.",
-                             summary.clock_restarts, summary.clock_restarts == 1 ? "" : "s", field.name)};
+                             counted(summary.clock_restarts, "time"), field.name)};
 }
 
 }  // namespace

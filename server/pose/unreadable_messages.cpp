@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "common/text/counted.hpp"
 #include "protocol/mavlink/frames.hpp"
 
 namespace sonard::server {
@@ -23,7 +24,7 @@ std::string UnreadableMessages::text(TimePoint now) const {
   if (count_ == 0 || now - newest_ >= worth_saying) {
     return {};
   }
-  return fmt::format("{} message{}{}{} could not be read: {}.", count_, count_ == 1 ? "" : "s",
+  return fmt::format("{}{}{} could not be read: {}.", counted(count_, "message"),
                      sender_.empty() ? "" : " from ", sender_, problem_);
 }
 
