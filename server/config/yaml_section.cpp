@@ -222,13 +222,11 @@ YamlSection::YamlSection(YamlFindings& findings, const YAML::Node& node, std::st
     : findings_(findings), path_(std::move(path)), at_(place_of(node, key_at)) {
   if (!node.IsMap()) {
     const std::string one_word = node.IsScalar() ? missing_blank(node.Scalar()) : std::string();
-    const std::size_t problems_before = findings_.problems.size();
-    problem(
+    const std::optional<std::size_t> added = problem(
         at_, path_,
         one_word.empty() ? fmt::format("is {} (expected a mapping, key: value)", describe(node)) : one_word);
-    if (node.IsScalar() && one_word.empty() && node.Scalar().size() <= longest_known_key &&
-        findings_.problems.size() > problems_before) {
-      findings_.words_for_mappings.push_back({problems_before, node.Scalar()});
+    if (added && node.IsScalar() && one_word.empty() && node.Scalar().size() <= longest_known_key) {
+      findings_.words_for_mappings.push_back({*added, node.Scalar()});
     }
     is_map_ = false;
     return;
@@ -583,16 +581,18 @@ const YamlSection::Entry* YamlSection::peek(std::string_view key) const {
   return found == entry_of_.end() ? nullptr : &entries_[found->second];
 }
 
-void YamlSection::problem(const SourcePosition& at, std::string path, std::string message, bool of_network) {
+std::optional<std::size_t> YamlSection::problem(const SourcePosition& at, std::string path,
+                                                std::string message, bool of_network) {
   // Further problems of a rejected value are not reported.
   if (!findings_.keys_with_problems.insert(path).second) {
-    return;
+    return std::nullopt;
   }
   if (findings_.problems.size() >= most_problems) {
     ++findings_.problems_left_out;
-    return;
+    return std::nullopt;
   }
   findings_.problems.push_back({at, std::move(path), std::move(message), of_network});
+  return findings_.problems.size() - 1;
 }
 
 void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {
@@ -634,10 +634,11 @@ void YamlSection::report_unknown(const Entry& entry) {
   }
   message +=
       names.empty() ? " (expected no keys)" : fmt::format(" (expected one of {})", fmt::join(names, ", "));
-  if (meant.empty() && nested.empty()) {
-    findings_.unknown_keys.push_back({findings_.problems.size(), entry.name, entry.value.IsScalar()});
+  const std::optional<std::size_t> added =
+      problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));
+  if (added && meant.empty() && nested.empty()) {
+    findings_.unknown_keys.push_back({*added, entry.name, entry.value.IsScalar()});
   }
-  problem(entry.key_at, path_of(too_long ? in_quotes(entry.name) : entry.name), std::move(message));
 }
 
 std::optional<double> YamlSection::number_of(const YAML::Node& node, const SourcePosition& at,

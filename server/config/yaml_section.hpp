@@ -219,7 +219,9 @@ class YamlSection {
   const Entry* peek(std::string_view key) const;
   /// The place of a key's value; without a value, of the section.
   SourcePosition place_of_key(std::string_view key) const;
-  void problem(const SourcePosition& at, std::string path, std::string message, bool of_network = false);
+  /// The index of the added problem; nothing if `path` has a problem already or the file has too many.
+  std::optional<std::size_t> problem(const SourcePosition& at, std::string path, std::string message,
+                                     bool of_network = false);
   void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
   void report_unknown(const Entry& entry);
   std::optional<double> number_of(const YAML::Node& node, const SourcePosition& at, const std::string& path,

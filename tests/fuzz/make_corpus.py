@@ -491,6 +491,7 @@ def configurations():
         yield path.stem, path.read_bytes()
     for name in ("demo", "demo-micron", "demo-ping360", "two-vehicles-a"):
         yield name.replace("-", "_"), (CONFIGURATIONS / f"{name}.yaml").read_bytes()
+    yield "unknown_key_twice", (EXAMPLES / "configs/broken/unknown_key.yaml").read_bytes() + b"soil: 1\nsoil: 2\n"
 
 
 def sdf_worlds():

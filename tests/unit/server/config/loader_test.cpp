@@ -466,6 +466,9 @@ TEST_F(Loader, refuses_duplicate_keys_at_every_depth) {
                   "line 10)"));
   EXPECT_THAT(complaints(minimal_config + "world: {file: b.sdf}\n"),
               ElementsAre("config.yaml:11:1: world: duplicate key (expected once; first given on line 1)"));
+  // An unknown key has one problem, also when it is the last of the file and given twice.
+  EXPECT_THAT(complaints(minimal_config + "wibble: 1\nwibble: 2\n"),
+              ElementsAre("config.yaml:12:1: wibble: duplicate key (expected once; first given on line 11)"));
 }
 
 TEST_F(Loader, refuses_wrong_types) {
