@@ -2,36 +2,12 @@
 #include "renderer/engines/cpu/facet_arrays.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "renderer/engines/cpu/facet_law.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
-
-namespace {
-
-/// exp(x) for x from -80 to 0, accurate to 2e-7; a call of std::exp() would prevent vectorisation.
-inline float exp_of_negative(float x) {
-  const float y = x * 1.44269504F;
-  const auto whole = static_cast<std::int32_t>(y - 0.5F);
-  const float z = (y - static_cast<float>(whole)) * 0.69314718F;  // from -ln 2 / 2 to ln 2 / 2
-  const float series =
-      1 + z * (1 + z * (0.5F + z * (1.0F / 6 + z * (1.0F / 24 + z * (1.0F / 120 + z * (1.0F / 720))))));
-  return series * std::bit_cast<float>((whole + 127) << 23);
-}
-
-/// Backscatter::facets() as a function of the squared cosine, without branches. A negligible response is
-/// 1e-25, also for NaN.
-inline float facets(float c2, float strength, float variance) {
-  constexpr float grazing = 1e-4F, as_good_as_none = 80.0F;
-  const float k2 = c2 > grazing ? (c2 < 1 ? c2 : 1.0F) : grazing;
-  const float exponent = (1 - k2) / (2 * variance * k2);
-  return strength / (variance * k2 * k2 * std::sqrt(k2)) *
-         exp_of_negative(exponent < as_good_as_none ? -exponent : -as_good_as_none);
-}
-
-}  // namespace
 
 void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std::vector<PartSurface>& parts,
                           bool everywhere) {
@@ -107,20 +83,22 @@ void FacetArrays::respond(const VisibleArrays& visible, const NormalArrays& norm
   const float* __restrict t_h = normals.h_per_t.data(), * __restrict t_s = normals.s_per_t.data(), * __restrict t_z = normals.z_per_t.data();
   const float* __restrict strength = strength_.data();
   const float* __restrict variance = variance_.data();
+  const float* __restrict responds = responds_.data();
   float* __restrict mean = mean_.data();
   float* __restrict moment = moment_.data();
   float* __restrict gradient = gradient_.data();
   // Gauss and Legendre's three points across, Simpson's along.
+  constexpr std::size_t block = 16;
   constexpr float place = 0.38729833F, beside = 5.0F / 18, at_middle = 8.0F / 18;
   const float x = place * width_rad;
-  for (std::size_t i = 0; i < visible.count; ++i) {
+  const auto respond_to = [&](std::size_t i) __attribute__((always_inline)) {
     const auto sample = [&](float off, float t) __attribute__((always_inline)) {
       const float n_h = at_h[i] + x_h[i] * off + t_h[i] * t;
       const float n_s = at_s[i] + x_s[i] * off + t_s[i] * t;
       const float n_z = at_z[i] + x_z[i] * off + t_z[i] * t;
       const float product = n_h + n_s * off + n_z * t;
       const float c2 = product * product / ((n_h * n_h + n_s * n_s + n_z * n_z) * (1 + off * off + t * t));
-      return facets(c2, strength[i], variance[i]);
+      return facet_law(c2, strength[i], variance[i]);
     };
     const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
     const float port1 = sample(x, t1), port_m = sample(x, tm), port2 = sample(x, t2);
@@ -132,6 +110,20 @@ void FacetArrays::respond(const VisibleArrays& visible, const NormalArrays& norm
     moment[i] = beside * place * (1.0F / 6) *
                 ((port1 - starboard1) + 4 * (port_m - starboard_m) + (port2 - starboard2));
     gradient[i] = mean2 - mean1;
+  };
+  // Facets respond in runs of neighbours. The others are left out by whole blocks.
+  for (std::size_t first = 0; first < visible.count; first += block) {
+    const std::size_t end = std::min(first + block, visible.count);
+    float any = 0.0F;
+    for (std::size_t i = first; i < end; ++i) {
+      any += responds[i];
+    }
+    if (any == 0.0F) {
+      continue;
+    }
+    for (std::size_t i = first; i < end; ++i) {
+      respond_to(i);
+    }
   }
 }
 

@@ -32,6 +32,8 @@ class FacetArrays {
   const float* slopes_per_t() const { return slopes_per_t_.data(); }
   /// Turn of that direction across the wedge, radians.
   float turn_across_rad(std::size_t i) const { return slopes_across_[i] * std::sqrt(variance_[i]); }
+  /// The same turn in rms slopes m.
+  float slopes_across(std::size_t i) const { return slopes_across_[i]; }
   /// True if the echo changes too much across the wedge for three samples.
   bool is_wide(std::size_t i) const { return slopes_across_[i] > most_across; }
 

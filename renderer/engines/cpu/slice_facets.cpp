@@ -2,29 +2,78 @@
 #include "renderer/engines/cpu/slice_facets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
+#include "renderer/engines/cpu/facet_law.hpp"
+#include "renderer/simd.hpp"
+
 namespace sonard::render {
 
-FacetSight::FacetSight(const Backscatter& backscatter, const NormalRun& normals, float width_rad,
-                       float middle_t)
-    : backscatter_(backscatter), normals_(normals), width_rad_(width_rad) {
-  const glm::vec3 d = glm::normalize(glm::vec3(1, 0, middle_t)), n = normals_.at + middle_t * normals_.per_t;
-  const float per_n = 1 / glm::length(n);
-  const glm::vec3 n_unit = n * per_n;
-  const glm::vec3 n_turn = (normals_.per_x - n_unit * glm::dot(n_unit, normals_.per_x)) * per_n;
-  const glm::vec3 d_turn(0, d.x, 0);  // across d
-  const float turn = glm::length(glm::dot(d, n) > 0 ? d_turn - n_turn : d_turn + n_turn);
-  slopes_across_ = width_rad_ * turn / std::sqrt(backscatter_.slope_variance);
+namespace {
+
+constexpr std::size_t lanes = 16;  // samples are computed so many at a time
+constexpr float most_strides = 32.0F;
+constexpr std::size_t most_places = 3 * 32;  // per part
+constexpr std::size_t most_samples = most_places * FacetSight::most_parts;
+
+/// Places across a part, from its middle and in widths of the part, and their shares of the mean.
+struct Quadrature {
+  std::size_t count = 0;
+  std::array<float, most_places> place, weight;
+
+  /// @param slopes turn of the echo's direction across the part, in rms slopes m
+  explicit Quadrature(float slopes) {
+    constexpr float even = 0.05F, nearly_even = 0.5F, per_stride = 2.5F;
+    // Gauss-Legendre: one point, two points, or three per stride; over a stride the bell is smooth.
+    if (slopes < even) {
+      add(0.0F, 1.0F);
+    } else if (slopes < nearly_even) {
+      constexpr float off = 0.28867513F;
+      add(-off, 0.5F);
+      add(off, 0.5F);
+    } else {
+      constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
+      const float strides = std::clamp(std::ceil(slopes / per_stride), 1.0F, most_strides);
+      for (float k = 0.5F; k < strides; ++k) {
+        const float middle = k / strides - 0.5F;
+        add(middle - off / strides, beside / strides);
+        add(middle, at_middle / strides);
+        add(middle + off / strides, beside / strides);
+      }
+    }
+  }
+
+ private:
+  void add(float at, float share) {
+    place[count] = at;
+    weight[count++] = share;
+  }
+};
+
+struct FacetsAt {
+  const NormalRun& normals;
+  float strength, variance;
+};
+
+/// The response at azimuths x of the slice, and at t.
+/// @param count a multiple of `lanes`
+SONARD_SIMD_CLONES
+void respond_at(const FacetsAt& facets, float t, const float* __restrict x, std::size_t count,
+                float* __restrict response) {
+  const glm::vec3 n = facets.normals.at + t * facets.normals.per_t, per_x = facets.normals.per_x;
+  const float strength = facets.strength, variance = facets.variance;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float h = n.x + x[i] * per_x.x, s = n.y + x[i] * per_x.y, z = n.z + x[i] * per_x.z;
+    const float product = h + x[i] * s + t * z;
+    const float c2 = product * product / ((h * h + s * s + z * z) * (1 + x[i] * x[i] + t * t));
+    response[i] = facet_law(c2, strength, variance);
+  }
 }
 
-float FacetSight::cosine(float x, float t) const {
-  const glm::vec3 n = normals_.at + x * normals_.per_x + t * normals_.per_t;
-  const glm::vec3 d(1, x, t);
-  return std::min(std::abs(glm::dot(n, d)) / std::sqrt(glm::dot(n, n) * glm::dot(d, d)), 1.0F);
-}
+}  // namespace
 
 /// On p = h (1, x, t) the surface is perpendicular to its normal: (ln h)' = -n_s / (n . q). The range is h
 /// times the length of q.
@@ -36,44 +85,42 @@ float FacetSight::range_slope(float t, float place) const {
   return std::clamp(slope, -steepest, steepest) + x / glm::dot(q, q);
 }
 
-FacetResponse FacetSight::response(float t, const WedgePart& wedge) const {
-  constexpr float even = 0.05F, nearly_even = 0.5F, per_stride = 2.5F;  // in rms slopes
-  constexpr float most_strides = 32.0F;
-  const float middle = 0.5F * (wedge.from + wedge.to), width = wedge.to - wedge.from;
-  const float slopes = slopes_across_ * width;
-  if (slopes < even) {
-    return {backscatter_.facets(cosine(middle * width_rad_, t)), 0.0F};
+void FacetSight::respond(const VisibleSegment& segment, std::span<SegmentFacets> facets) const {
+  const auto parts = static_cast<float>(facets.size());
+  const Quadrature across(slopes_across_ / parts);
+  alignas(64) std::array<float, most_samples> x;
+  std::size_t samples = 0;
+  for (std::size_t part = 0; part < facets.size(); ++part) {
+    const float middle = (static_cast<float>(part) + 0.5F) / parts - 0.5F;
+    for (std::size_t k = 0; k < across.count; ++k) {
+      x[samples++] = (middle + across.place[k] / parts) * width_rad_;
+    }
   }
-  FacetResponse sum;
-  const auto sample = [&](float place, float weight) {
-    const float echo = weight * backscatter_.facets(cosine((middle + place) * width_rad_, t));
-    sum.mean += echo;
-    sum.moment += echo * place;
-  };
-  // Gauss-Legendre: two points, or three per stride; over a stride the bell is smooth.
-  if (slopes < nearly_even) {
-    constexpr float off = 0.28867513F;
-    sample(-off * width, 0.5F);
-    sample(off * width, 0.5F);
-    return sum;
+  while (samples % lanes != 0) {
+    x[samples++] = 0.0F;
   }
-  constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
-  const float strides = std::clamp(std::ceil(slopes / per_stride), 1.0F, most_strides);
-  for (float k = 0.5F; k < strides; ++k) {
-    const float place = width * (k / strides - 0.5F), step = width / strides;
-    sample(place - off * step, beside / strides);
-    sample(place, at_middle / strides);
-    sample(place + off * step, beside / strides);
+  const FacetsAt at{normals_, backscatter_.facet_strength,
+                    std::min(backscatter_.slope_variance, Backscatter::widest_variance)};
+  const std::array<float, 3> t{segment.low, 0.5F * (segment.low + segment.high), segment.high};
+  constexpr std::array<float, 3> mean_share{1.0F / 6, 4.0F / 6, 1.0F / 6}, gradient_share{-1.0F, 0.0F, 1.0F};
+  std::ranges::fill(facets, SegmentFacets{});
+  alignas(64) std::array<float, most_samples> response;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    respond_at(at, t[i], x.data(), samples, response.data());
+    const float* of_part = response.data();
+    for (SegmentFacets& sum : facets) {
+      float mean = 0.0F, moment = 0.0F;
+      for (std::size_t k = 0; k < across.count; ++k) {
+        const float echo = across.weight[k] * of_part[k];
+        mean += echo;
+        moment += echo * across.place[k];
+      }
+      sum.mean += mean_share[i] * mean;
+      sum.moment += mean_share[i] / parts * moment;
+      sum.gradient += gradient_share[i] * mean;
+      of_part += across.count;
+    }
   }
-  return sum;
-}
-
-SegmentFacets facets_of_segment(const FacetSight& sight, const VisibleSegment& segment,
-                                const WedgePart& wedge) {
-  const FacetResponse low = sight.response(segment.low, wedge), high = sight.response(segment.high, wedge);
-  const FacetResponse middle = sight.response(0.5F * (segment.low + segment.high), wedge);
-  return {(low.mean + 4 * middle.mean + high.mean) * (1.0F / 6),
-          (low.moment + 4 * middle.moment + high.moment) * (1.0F / 6), high.mean - low.mean};
 }
 
 }  // namespace sonard::render

@@ -16,10 +16,10 @@ namespace sonard::render {
 namespace {
 
 constexpr int pattern_steps = 1024;
-constexpr int most_divisions = 16;          // of a segment at once
-constexpr int most_rounds = 6;              // near a foot point, parts are divided again
-constexpr float most_gradient = 1.1F;       // of a segment; 1 if the range turns round at one end
-constexpr float most_side_by_side = 16.0F;  // patches of a segment
+constexpr int most_divisions = 16;     // of a segment at once
+constexpr int most_rounds = 6;         // near a foot point, parts are divided again
+constexpr float most_gradient = 1.1F;  // of a segment; 1 if the range turns round at one end
+constexpr auto most_side_by_side = static_cast<float>(FacetSight::most_parts);  // patches of a segment
 constexpr float anything = std::numeric_limits<float>::infinity();
 
 /// Largest height of a segment that spreads over many range bins, re the fan's half height.
@@ -91,32 +91,29 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
 void SlicePatcher::see_normals(const Request& request) {
   runs_.clear();
   original_.clear();
-  shaded_.clear();
-  for (std::size_t i = 0; request.vertex_normals != nullptr && i < visible_->size(); ++i) {
-    const VisibleSegment& segment = (*visible_)[i];
-    const PartSurface& part = request.parts[segment.part];
-    if (part.vertex_normals && !part.mesh->normals.empty() && !is_mapped(request, segment)) {
-      shaded_.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  if (shaded_.empty() && !request.any_facets) {
+  if (request.vertex_normals == nullptr && !request.any_facets) {
     return;
   }
-  for (std::size_t i = 0; i < visible_->size(); ++i) {
-    const VisibleSegment& segment = (*visible_)[i];
-    runs_.push_back({{segment.normal_h, segment.normal_s, segment.normal_z}});
-    original_.push_back(static_cast<std::uint32_t>(i));
-  }
-  for (std::size_t k = 0; k < shaded_.size(); ++k) {
-    const VisibleSegment& segment = (*visible_)[shaded_[k]];
+  bool any_shaded = false;
+  for (const VisibleSegment& segment : *visible_) {
+    NormalRun run{{segment.normal_h, segment.normal_s, segment.normal_z}};
     const PartSurface& part = request.parts[segment.part];
-    NormalRun run = request.vertex_normals->run(*segment.triangle, request.slice);
-    if (!part.refraction_in_part.straight()) {
-      refract(part, segment, request.slice, 0.5F * (segment.low + segment.high), run);
+    const bool is_shaded = request.vertex_normals != nullptr && part.vertex_normals &&
+                           !part.mesh->normals.empty() && !is_mapped(request, segment);
+    if (is_shaded) {
+      NormalRun smooth = request.vertex_normals->run(*segment.triangle, request.slice);
+      if (!part.refraction_in_part.straight()) {
+        refract(part, segment, request.slice, 0.5F * (segment.low + segment.high), smooth);
+      }
+      run = smooth.is_finite() ? smooth : run;
+      any_shaded = true;
     }
-    if (run.is_finite()) {
-      runs_[shaded_[k]] = run;
-    }
+    original_.push_back(static_cast<std::uint32_t>(runs_.size()));
+    runs_.push_back(run);
+  }
+  if (!any_shaded && !request.any_facets) {
+    runs_.clear();
+    original_.clear();
   }
 }
 
@@ -154,16 +151,17 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
     return;
   }
   patches.pop_back();
-  for (float k = 0.0F; k < count; ++k) {
-    const WedgePart part{k / count - 0.5F, (k + 1) / count - 0.5F};
-    const SegmentFacets facets = facets_of_segment(sight, (*visible_)[i], part);
+  std::array<SegmentFacets, FacetSight::most_parts> of_parts;
+  const std::span parts = std::span(of_parts).first(static_cast<std::size_t>(count));
+  sight.respond((*visible_)[i], parts);
+  float place = 0.5F / count - 0.5F;  // middle of the part
+  for (const SegmentFacets& facets : parts) {
     const float response = response_without_facets_[i] + facets.mean;
     const float centroid_offset = response > 0 ? facets.moment / response : 0.0F;
     EchoPatch patch = whole;
     patch.weight /= count;
     patch.echo = response * patch.weight;
     const auto put = [&](float end_t, float& range_m, float& smear_m) {
-      const float place = 0.5F * (part.from + part.to);
       // The range at the azimuth of the slice instead of the mean over the wedge.
       const float n = seen_.normal_h[i] + seen_.normal_z[i] * end_t;
       range_m /= 1 + sagitta_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
@@ -177,6 +175,7 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
     put(seen_.low[i], patch.range_a_m, patch.smear_a_m);
     put(seen_.high[i], patch.range_b_m, patch.smear_b_m);
     patches.push_back(patch);
+    place += 1 / count;
   }
 }
 
@@ -544,7 +543,7 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
   }
   SegmentFacets facets{facets_.mean(i), facets_.moment(i), facets_.gradient(i)};
   if (facets_.is_wide(i)) {
-    facets = facets_of_segment(sight_of(request, i), segment);
+    sight_of(request, i).respond(segment, {&facets, 1});
   }
   response_without_facets_[i] = response_[i];
   response_[i] += facets.mean;
@@ -559,7 +558,7 @@ bool SlicePatcher::add_facets(const Request& request, std::size_t i) {
 FacetSight SlicePatcher::sight_of(const Request& request, std::size_t i) const {
   const VisibleSegment& segment = (*visible_)[i];
   return {request.parts[segment.part].backscatter, runs_[original_[i]], request.slice.width_rad,
-          0.5F * (segment.low + segment.high)};
+          facets_.slopes_across(i)};
 }
 
 /// Weights each segment with the mean of the pattern over its echo, and adds the pattern's gradient. The mean

@@ -98,8 +98,7 @@ class SlicePatcher {
   /// Normals of each segment of the request; empty if all are shaded by their planes and have no facets.
   std::vector<NormalRun> runs_;
   std::vector<std::uint32_t> original_, divided_original_;  ///< per segment: its index in `runs_`
-  std::vector<std::uint32_t> shaded_;  ///< segments of the request that vertex normals shade
-  NormalArrays normals_;               ///< `runs_` per segment, if not empty
+  NormalArrays normals_;                                    ///< `runs_` per segment, if not empty
   FacetArrays facets_;
   VisibleArrays seen_;
   VisibleEnds ends_;
