@@ -11,6 +11,7 @@
 
 #include "renderer/acoustics/point_spread.hpp"
 #include "renderer/acoustics/receiver.hpp"
+#include "renderer/acoustics/surface_share.hpp"
 #include "renderer/acoustics/transmission_loss.hpp"
 #include "renderer/acoustics/volume_reverberation.hpp"
 #include "renderer/acoustics/water_clutter.hpp"
@@ -230,36 +231,18 @@ struct SonarRenderer::Impl {
       const bool water_echoes =
           settings.physical.water_clutter.density_per_m3 > 0 || has_volume_reverberation(settings);
       if (water_echoes) {
-        strongest_of_surfaces = strongest_of_lines(image);
+        strongest_of_surfaces = strongest_of_lines(image, workers);
       }
       add_water_clutter(settings, motion.T_world_sonar, seed, image);
       add_volume_reverberation(echo.open_sr, settings, image);
       if (water_echoes) {
-        strongest_of_all = strongest_of_lines(image);
+        strongest_of_all = strongest_of_lines(image, workers);
       }
       apply_loss(request.line_weight, image);
     }
     statistics.binning_s += watch.lap();
   }
 
-  static std::vector<float> strongest_of_lines(const EchoImage& image) {
-    const auto lines = static_cast<std::size_t>(image.lines);
-    std::vector<float> strongest(lines, 0.0F);
-    for (std::size_t beam = 0; beam < static_cast<std::size_t>(image.beams); ++beam) {
-      const float* echo = &image.intensity[beam * lines];
-      for (std::size_t line = 0; line < lines; ++line) {
-        strongest[line] = std::max(strongest[line], echo[line]);
-      }
-    }
-    return strongest;
-  }
-
-  /// Divides `part` by `whole`; 0 if the whole is 0.
-  static void divide(std::vector<float>& part, const std::vector<float>& whole) {
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      part[i] = whole[i] > 0 ? part[i] / whole[i] : 0.0F;
-    }
-  }
   /// SkipRule::terrain_detail. Motion within a ping extends the range, but does not change the detail.
   void follow_terrain(const SonarSettings& settings, const SonarMotion& motion) {
     Stopwatch watch;
