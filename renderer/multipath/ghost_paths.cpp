@@ -13,6 +13,7 @@ namespace {
 
 constexpr int parts_across = packet_side;  // per cell at an edge
 constexpr int parts_up = 2 * packet_side;
+constexpr int rows_per_block = 32;     // an upright edge divides all cells of a column: too much for one job
 constexpr double corner_reach = 1.5;   // largest angle between a ray and a corner it finds, in cell diagonals
 constexpr double least_cosine = 1e-3;  // limits the range extent of surfaces seen edge-on, without energy
 
@@ -35,6 +36,10 @@ std::uint64_t surface_code(const PathScene& scene, const PathHit& hit) {
 std::uint64_t mixed(std::uint64_t key, std::uint64_t next) {
   key = (key ^ next) * 0x9E3779B97F4A7C15U;
   return key ^ (key >> 29U);
+}
+
+int blocks_per_column(const PathFan& fan) {
+  return (fan.rows() + rows_per_block - 1) / rows_per_block;
 }
 
 /// An echo around a range, spread over `a_m` and independently over `b_m`.
@@ -77,16 +82,24 @@ const std::vector<GhostPaths::Result>& GhostPaths::follow(const PathScene& scene
   const auto rows = static_cast<std::size_t>(fan.rows());
   keys_.resize(columns * rows);
   paths_.resize(columns);
-  results_.resize(columns);
-  for (std::size_t c = 0; c < columns; ++c) {
-    paths_[c].clear();
-    results_[c].patches.clear();
-    results_[c].corners.clear();
+  const int blocks = blocks_per_column(fan);
+  results_.resize(columns * static_cast<std::size_t>(blocks));
+  for (std::vector<Path>& paths : paths_) {
+    paths.clear();
+  }
+  for (Result& result : results_) {
+    result.patches.clear();
+    result.corners.clear();
   }
   workers_.run((fan.columns() + packet_side - 1) / packet_side,
                [&](int job) { follow_columns(ping, job * packet_side); });
-  workers_.run(fan.columns(), [&](int column) { refine_column(ping, column); });
+  workers_.run(fan.columns() * blocks,
+               [&](int block) { refine(ping, block / blocks, block % blocks * rows_per_block); });
   return results_;
+}
+
+GhostPaths::Result& GhostPaths::result_of(const PathFan& fan, int column, int row) {
+  return results_[static_cast<std::size_t>(column * blocks_per_column(fan) + row / rows_per_block)];
 }
 
 /// Follows packet_side columns.
@@ -110,7 +123,8 @@ void GhostPaths::follow_columns(const Ping& ping, int first_column) {
         path.row = row;
         path.mirror = mirrors[i];
         const auto c = static_cast<std::size_t>(column);
-        keys_[index(ping.fan, column, row)] = follow_on(ping, directions[i], path, results_[c]);
+        keys_[index(ping.fan, column, row)] =
+            follow_on(ping, directions[i], path, result_of(ping.fan, column, row));
         if (path.target.distance_m > 0) {
           paths_[c].push_back(path);
         }
@@ -130,16 +144,18 @@ GhostPaths::Result GhostPaths::search(const PathScene& scene, const PathFan& fan
   return result;
 }
 
-void GhostPaths::refine_column(const Ping& ping, int column) {
-  Result& result = results_[static_cast<std::size_t>(column)];
-  auto path = paths_[static_cast<std::size_t>(column)].cbegin();
-  const auto end = paths_[static_cast<std::size_t>(column)].cend();
-  for (int row = 0; row < ping.fan.rows(); ++row) {
+/// Refines a block of cells, from `first_row` on.
+void GhostPaths::refine(const Ping& ping, int column, int first_row) {
+  Result& result = result_of(ping.fan, column, first_row);
+  const std::vector<Path>& paths = paths_[static_cast<std::size_t>(column)];
+  auto path = std::ranges::lower_bound(paths, first_row, {}, &Path::row);
+  const int end_row = std::min(first_row + rows_per_block, ping.fan.rows());
+  for (int row = first_row; row < end_row; ++row) {
     const FanCell cell = ping.fan.cell(column, row);
-    const bool has_path = path != end && path->row == row;
+    const bool has_path = path != paths.end() && path->row == row;
     if (differs_from_neighbours(ping, column, row)) {
-      for (int first_row = 0; first_row < parts_up; first_row += packet_side) {
-        follow_parts(ping, cell, first_row, result);
+      for (int part_row = 0; part_row < parts_up; part_row += packet_side) {
+        follow_parts(ping, cell, part_row, result);
       }
     } else if (has_path) {
       add_echoes(ping, cell, *path, result);

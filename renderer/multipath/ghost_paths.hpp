@@ -59,7 +59,7 @@ class GhostPaths {
 
   explicit GhostPaths(WorkerPool& workers) : workers_(workers) {}
 
-  /// @return the results of all columns of the fan, from port to starboard; valid until the next call.
+  /// @return the results of blocks of cells, from port to starboard; valid until the next call.
   const std::vector<Result>& follow(const PathScene& scene, const PathFan& fan, const Pose& T_world_sonar,
                                     const PathLimits& limits);
 
@@ -85,15 +85,16 @@ class GhostPaths {
     return static_cast<std::size_t>(column) * static_cast<std::size_t>(fan.rows()) +
            static_cast<std::size_t>(row);
   }
+  Result& result_of(const PathFan& fan, int column, int row);
   void follow_columns(const Ping& ping, int first_column);
-  void refine_column(const Ping& ping, int column);
+  void refine(const Ping& ping, int column, int first_row);
   static void follow_parts(const Ping& ping, const FanCell& cell, int first_row, Result& result);
   bool differs_from_neighbours(const Ping& ping, int column, int row) const;
 
   WorkerPool& workers_;
   std::vector<std::uint64_t> keys_;       // follow_on() per cell, column after column
   std::vector<std::vector<Path>> paths_;  // per column, of cells with a target
-  std::vector<Result> results_;
+  std::vector<Result> results_;           // per rows_per_block cells of a column
 };
 
 }  // namespace sonard::render

@@ -114,8 +114,8 @@ void Multipath::collect_bounces(const SonarSettings& settings, const Pose& T_wor
 
 void Multipath::collect(const SonarSettings& settings, const Pose& T_world_sonar, const PathLimits& limits) {
   const std::vector<GhostPaths::Result>& results = ghosts_.follow(scene_, *fan_, T_world_sonar, limits);
-  for (const GhostPaths::Result& column : results) {
-    for (const BeamPatch& ghost : column.patches) {
+  for (const GhostPaths::Result& block : results) {
+    for (const BeamPatch& ghost : block.patches) {
       if (is_finite(ghost.patch)) {
         patches_of_beam_[static_cast<std::size_t>(ghost.beam)].push_back(ghost.patch);
       }
