@@ -215,11 +215,11 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   return cells;
 }
 
-/// Fills the cells `fresh`, which run from port to starboard. One job has all cells of a beam, unless the
-/// beams are so few that threads would be idle.
+/// Fills the cells `fresh`, which run from port to starboard. One job has all cells of a beam, unless these
+/// are so many that other threads would be idle.
 void SliceSampler::see(const Setting& setting, const std::vector<std::size_t>& fresh) {
-  constexpr std::size_t enough_jobs = 4;
-  const std::size_t longest = std::max<std::size_t>(1, fresh.size() / enough_jobs);
+  constexpr std::size_t jobs_per_thread = 4;
+  const std::size_t longest = std::max<std::size_t>(1, fresh.size() / (jobs_per_thread * workers_.size()));
   std::vector<std::size_t> begins;  // of each job in `fresh`
   for (std::size_t i = 0; i < fresh.size(); ++i) {
     if (i == 0 || cells_[fresh[i]]->beam != cells_[fresh[i - 1]]->beam || i - begins.back() >= longest) {
