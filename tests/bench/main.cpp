@@ -74,7 +74,7 @@ void run(const Options& options) {
         return demo_ping.scene.starts_with(s);
       });
   if (options.engine != "gpu" && demo_is_wanted) {
-    measure_demo_ping(results, {20, 101, 3.0});
+    measure_demo_ping(results, {20, 101, 3.0}, options.quick ? 0 : 24);
   }
   Campaign campaign(engines, options.references);
   if (options.quick) {
