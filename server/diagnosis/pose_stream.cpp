@@ -14,9 +14,9 @@
 namespace sonard::server {
 namespace {
 
-constexpr std::uint64_t enough_poses = 20;       // enough to measure a clock's rate,
-constexpr std::uint64_t few_poses = 5;           // and so are these
-constexpr double long_run_s = 2.0;               // over this time
+// Enough to measure a clock's rate. Poses that waited while the daemon started arrive all at once.
+constexpr std::uint64_t enough_poses = 20, few_poses = 5;
+constexpr double short_run_s = 1.0, long_run_s = 2.0;
 constexpr double least_time_rate = 0.001;        // stamps that advance more slowly bring no ping
 constexpr std::chrono::minutes worth_saying{1};  // a clock that went back once is reported for so long
 
@@ -34,8 +34,9 @@ std::string advice(const StampField& field) {
 }
 
 bool shows_rate(const PoseStatistics::Summary& summary) {
-  return summary.poses >= enough_poses ||
-         (summary.poses >= few_poses && static_cast<double>(summary.poses) >= long_run_s * summary.rate_hz);
+  const auto poses = static_cast<double>(summary.poses);
+  return (summary.poses >= enough_poses && poses >= short_run_s * summary.rate_hz) ||
+         (summary.poses >= few_poses && poses >= long_run_s * summary.rate_hz);
 }
 
 /// Finds stamps in another unit, by their rate.

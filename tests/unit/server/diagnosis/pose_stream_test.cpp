@@ -26,6 +26,7 @@ struct Stream {
   double speed_mps = 0.5;
   PingClock clock = PingClock::wall;
   milliseconds period{50};
+  milliseconds waits{0};  ///< earlier poses arrive only now, one after the other
 };
 
 /// The findings of six seconds, looked at after every pose; consecutive equal codes count once.
@@ -37,9 +38,11 @@ std::vector<Finding> findings_of(const Stream& stream) {
     pose::PoseSample sample;
     sample.time_ns = stream.stamp(since.count());
     sample.T_world_vehicle.position_m.x = stream.speed_mps * 1e-9 * static_cast<double>(since.count());
-    statistics.observe(sample, begin + since);
+    const std::chrono::nanoseconds waits = stream.waits;
+    const TimePoint arrival = begin + (since < waits ? waits + since / 1'000'000 : since);
+    statistics.observe(sample, arrival);
     const auto found =
-        look_at_stamps(statistics, stream.field, stream.clock, begin + since + milliseconds{1});
+        look_at_stamps(statistics, stream.field, stream.clock, arrival + std::chrono::microseconds{1});
     if (found && (findings.empty() || findings.back().code != found->code)) {
       findings.push_back(*found);
     }
@@ -65,6 +68,12 @@ std::int64_t left_out(std::int64_t) {
 }
 std::int64_t alike(std::int64_t) {
   return unix_s * 1'000'000'000 + 123'456'789;
+}
+
+TEST(PoseStream, PosesThatWaitedHaveTheUnitOfTheOthers) {
+  EXPECT_TRUE(findings_of({.stamp = in_unit(1), .waits = milliseconds{3000}}).empty());
+  expect_one({.stamp = in_unit(1'000), .waits = milliseconds{3000}}, "look like microseconds");
+  expect_one({.stamp = in_unit(1'000'000), .waits = milliseconds{3000}}, "look like milliseconds");
 }
 
 TEST(PoseStream, GoodStampsAreNoFinding) {
