@@ -55,7 +55,8 @@ def print_table(sets):
     rows["promise"] = list(PROMISES.values())
     rows["promise with facets"] = list(PROMISES_WITH_FACETS.values())
     for name, values in rows.items():
-        cells = [" / ".join(text_of(factor * value[key]) for value in values) for key, (_, factor) in COLUMNS.items()]
+        text = "{:g}".format if name.startswith("promise") else text_of
+        cells = [" / ".join(text(factor * value[key]) for value in values) for key, (_, factor) in COLUMNS.items()]
         print(f"| {name} | " + " | ".join(cells) + " |")
 
 
