@@ -25,7 +25,7 @@ double level_db(const render::EchoImage& image, int beam, double wall_m, double 
   return 10 * std::log10(sum);
 }
 
-TEST_P(AbsorptionAccuracy, T14_WallAndOneTwiceAsFar) {
+TEST_P(AbsorptionAccuracy, T14WallAndOneTwiceAsFar) {
   std::vector<render::EchoImage> images;
   for (const double wall_m : {10.0, 20.0}) {
     Scene scene = forward_looking_scene(

@@ -20,7 +20,7 @@ std::string strip_name(int i) {
 }
 
 // Strips narrower than a beam, upright in the centre of every eighth beam; eight images cover all beams.
-TEST_P(BearingAccuracy, T11_StripInTheCentreOfEveryBeam) {
+TEST_P(BearingAccuracy, T11StripInTheCentreOfEveryBeam) {
   std::vector<render::Body> bodies;
   for (int i = 0; i < strips; ++i) {
     bodies.push_back(make_body(strip_name(i), make_quad({0, -0.01F, -3}, {0, 0.02F, 0}, {0, 0, 6})));

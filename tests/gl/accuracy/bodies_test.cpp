@@ -45,7 +45,7 @@ render::TriangleMesh make_column(double x, double y, double radius_m, double hal
   return mesh;
 }
 
-TEST_P(SphereAccuracy, T4_Sphere) {
+TEST_P(SphereAccuracy, T4Sphere) {
   render::Body sphere = make_body("sphere", make_sphere(static_cast<float>(corner_radius_m(0.5, 512)), 512));
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
   const Scene scene = forward_looking_scene({sphere});
@@ -61,7 +61,7 @@ TEST_P(SphereAccuracy, T4_Sphere) {
   expect_within(targets(), measure(render(scene), expected), "sphere");
 }
 
-TEST_P(CylinderAccuracy, T5_UprightCylinder) {
+TEST_P(CylinderAccuracy, T5UprightCylinder) {
   const double azimuth = -25 * degree, axis_m = 9, radius_m = 0.6;
   const Scene scene = forward_looking_scene({make_body(
       "column", make_column(axis_m * std::cos(azimuth), axis_m * std::sin(azimuth), radius_m, 2, 512, 64))});

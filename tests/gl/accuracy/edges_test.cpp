@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Accuracy, EdgeAccuracy, all_cases(), case_name);
 INSTANTIATE_TEST_SUITE_P(Accuracy, DihedralAccuracy, all_cases(), case_name);
 
 // T6: walls at 8 and 12 m; the near one ends inside a beam, a third from its edge.
-TEST_P(EdgeAccuracy, T6_TwoHalfPlanes) {
+TEST_P(EdgeAccuracy, T6TwoHalfPlanes) {
   Scene scene = forward_looking_scene({});
   const auto& edges = scene.settings.aperture.beam_edges_rad;
   constexpr std::size_t edge_beam = 100;
@@ -57,7 +57,7 @@ double crossing(const Echo& echo, int from, int step, double level) {
 
 // T7: a thin wall 1.5 m high, 12 m away on a flat bed 5 m below, ends at a bearing. The echo of the open bed
 // falls slowly, so the edge of the shadow lies at half of it.
-TEST_P(EdgeAccuracy, T7_ShadowOfAWall) {
+TEST_P(EdgeAccuracy, T7ShadowOfAWall) {
   const double end = -20.1 * degree;
   Scene scene = forward_looking_scene(
       {make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0})),
@@ -122,7 +122,7 @@ double worst_near(const render::EchoImage& image, const render::EchoImage& truth
 
 // T8 without multipath: the lines in which double bounces would arrive hold the single bounce only. One bin
 // may be off by four times the RMS limit.
-TEST_P(DihedralAccuracy, T8_DihedralHoldsTheSingleBounce) {
+TEST_P(DihedralAccuracy, T8DihedralHoldsTheSingleBounce) {
   const double wall_m = 8, depth_m = 3;
   Scene scene =
       forward_looking_scene({make_body("bed", make_quad({-100, -100, -3}, {200, 0, 0}, {0, 200, 0})),
@@ -140,7 +140,7 @@ TEST_P(DihedralAccuracy, T8_DihedralHoldsTheSingleBounce) {
   }
 }
 
-TEST_P(EdgeAccuracy, T8_TrihedralHoldsTheSingleBounce) {
+TEST_P(EdgeAccuracy, T8TrihedralHoldsTheSingleBounce) {
   const double front_m = 8, side_m = 3, depth_m = 3;
   Scene scene =
       forward_looking_scene({make_body("bed", make_quad({-100, -100, -3}, {200, 0, 0}, {0, 200, 0})),

@@ -22,7 +22,7 @@ class PlaneAccuracy : public AccuracyTest {
 INSTANTIATE_TEST_SUITE_P(Accuracy, SlopeAccuracy, all_cases(), case_name);
 INSTANTIATE_TEST_SUITE_P(Accuracy, PlaneAccuracy, all_cases(), case_name);
 
-TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
+TEST_P(SlopeAccuracy, T1ObliqueSlope) {
   // A plane through (9, 0, 0) whose normal points away, to port and up.
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.35, -0.5));
   const glm::dvec3 a = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1)));
@@ -37,15 +37,15 @@ TEST_P(SlopeAccuracy, T1_ObliqueSlope) {
   expect_within(targets(), measure(render(scene), image_of_beams(scene.settings, echo)), "slope");
 }
 
-TEST_P(PlaneAccuracy, T1_BedUnderATiltedSonar) {
+TEST_P(PlaneAccuracy, T1BedUnderATiltedSonar) {
   expect_closed_form("plane", targets());
 }
 
-TEST_P(PlaneAccuracy, T2_PerpendicularWall) {
+TEST_P(PlaneAccuracy, T2PerpendicularWall) {
   expect_closed_form("b1_wall", targets());
 }
 
-TEST_P(PlaneAccuracy, T3_FlatSeabed) {
+TEST_P(PlaneAccuracy, T3FlatSeabed) {
   for (const char* scene : {"b2_seabed_2m", "b2_seabed_5m"}) {
     expect_closed_form(scene, targets());
   }

@@ -89,21 +89,21 @@ INSTANTIATE_TEST_SUITE_P(Engines, Convergence, all_engines(), engine_name);
 // On a wall at 10 m, one of 64 rows is 9 mm deep at the edge of the fan: about a bin. More rows are less
 // deep. The wall's nearest point lies where two bins meet, so the last digit of a range affects the order:
 // 1.60 to 2.15 were measured.
-TEST_P(Convergence, T2_Wall) {
+TEST_P(Convergence, T2Wall) {
   const std::vector<int> rows{64, 96, 128};
   const std::vector<double> found = errors(make_scene("b1_wall"), {0.35, 0.7, 1.047}, rows);
   EXPECT_GE(order(rows, found), 1.5);
   EXPECT_LT(found.back(), 1.1 * 4.6e-4);
 }
 
-TEST_P(Convergence, T1_TiltedSonarOverABed) {
+TEST_P(Convergence, T1TiltedSonarOverABed) {
   const std::vector<int> rows{512, 724, 1024};
   const std::vector<double> found = errors(make_scene("plane"), {0.02, 0.5}, rows);
   EXPECT_GE(order(rows, found), 1.7);
   EXPECT_LT(found.back(), 1.1 * 1.6e-4);
 }
 
-TEST_P(Convergence, T3_SeabedWithRowsBelowABin) {
+TEST_P(Convergence, T3SeabedWithRowsBelowABin) {
   const std::vector<int> rows{1024, 1448, 2048};
   const std::vector<double> found = errors(make_scene("b2_seabed_5m"), {0.3}, rows);
   EXPECT_GE(order(rows, found), 1.7);
@@ -111,7 +111,7 @@ TEST_P(Convergence, T3_SeabedWithRowsBelowABin) {
 }
 
 // If a row spreads over many bins, the footprint still converges, at least with first order.
-TEST_P(Convergence, T3_SeabedWithRowsAboveABin) {
+TEST_P(Convergence, T3SeabedWithRowsAboveABin) {
   const std::vector<int> rows{64, 128, 256, 512};
   const std::vector<double> found = errors(make_scene("b2_seabed_5m"), {0.3}, rows);
   EXPECT_GE(order(rows, found), 0.9);

@@ -70,7 +70,7 @@ class ClosedForm : public EngineTest {};
 
 INSTANTIATE_TEST_SUITE_P(Engines, ClosedForm, test::all_engines(), test::engine_name);
 
-TEST_P(ClosedForm, T1_ObliqueSlope) {
+TEST_P(ClosedForm, T1ObliqueSlope) {
   // A plane through (9, 0, 0) whose normal points away, to port and up.
   const glm::dvec3 n = glm::normalize(glm::dvec3(0.8, 0.35, -0.5));
   const glm::dvec3 a = glm::normalize(glm::cross(n, glm::dvec3(0, 0, 1)));
@@ -85,7 +85,7 @@ TEST_P(ClosedForm, T1_ObliqueSlope) {
 
 // Footprints near the limb reach beyond it, so silhouettes converge with first order. The total, 1.411161e-4
 // by T4, is right on a coarse grid, the shape on a finer one.
-TEST_P(ClosedForm, T4_Sphere) {
+TEST_P(ClosedForm, T4Sphere) {
   Body sphere = make_body("sphere", test::make_sphere(0.5F, 256));
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
   SonarRenderer renderer(make_world({sphere}), options());
@@ -118,7 +118,7 @@ TEST_P(ClosedForm, T4_Sphere) {
 }
 
 // T6: beams left of the edge hold only the near wall, beams right of it only the far one, nothing in between.
-TEST_P(ClosedForm, T6_TwoHalfPlanes) {
+TEST_P(ClosedForm, T6TwoHalfPlanes) {
   SonarRenderer renderer(make_world({make_body("near", make_quad({8, 0, -30}, {0, 60, 0}, {0, 0, 60})),
                                      make_body("far", make_quad({12, -90, -30}, {0, 180, 0}, {0, 0, 60}))}),
                          options());
@@ -142,7 +142,7 @@ TEST_P(ClosedForm, T6_TwoHalfPlanes) {
 }
 
 // T7: thin wall 1.5 m high, 12 m away on a flat bed 5 m below: shadow on (13.0, 17.857) m.
-TEST_P(ClosedForm, T7_ShadowOfAWall) {
+TEST_P(ClosedForm, T7ShadowOfAWall) {
   SonarRenderer renderer(make_world({make_body("bed", make_quad({-200, -200, 0}, {400, 0, 0}, {0, 400, 0})),
                                      make_body("wall", make_quad({12, -60, 0}, {0, 120, 0}, {0, 0, 1.5}))}),
                          options());

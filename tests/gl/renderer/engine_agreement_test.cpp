@@ -147,32 +147,32 @@ class EngineAgreement : public ::testing::Test {
   }
 };
 
-TEST_F(EngineAgreement, S21_DockingStation) {
+TEST_F(EngineAgreement, S21DockingStation) {
   expect_agreement_of(shipped_world("docking_station.sdf", looking({-2.136, -11.913, -25.6}, 80, 20)),
                       "docking station");
 }
 
-TEST_F(EngineAgreement, S21_IsolationValveWithNormalMap) {
+TEST_F(EngineAgreement, S21IsolationValveWithNormalMap) {
   expect_agreement_of(shipped_world("ssiv.sdf", looking({4.617, -12.686, -37.7}, 110, 20)),
                       "isolation valve");
 }
 
-TEST_F(EngineAgreement, S21_Tank) {
+TEST_F(EngineAgreement, S21Tank) {
   expect_agreement_of(tank(), "tank");
 }
 
-TEST_F(EngineAgreement, S21_NormalMapAveragedOverSamples) {
+TEST_F(EngineAgreement, S21NormalMapAveragedOverSamples) {
   expect_agreement_of(normal_mapped_bed(), "normal map");
 }
 
-TEST_F(EngineAgreement, S21_OddNumbersOfColumnsAndRows) {
+TEST_F(EngineAgreement, S21OddNumbersOfColumnsAndRows) {
   const View view = tank();
   PingRequest request = quiet_request(view.T_world_sonar);
   request.settings.sampling = Sampling::of_grid(3, 251, 301);
   expect_agreement_of(view, "odd grid", request);
 }
 
-TEST_F(EngineAgreement, S21_ModePaperWithBackFacesDropped) {
+TEST_F(EngineAgreement, S21ModePaperWithBackFacesDropped) {
   View view = tank();
   PingRequest request = quiet_request(view.T_world_sonar);
   request.settings.model = Model::paper;
@@ -183,7 +183,7 @@ TEST_F(EngineAgreement, S21_ModePaperWithBackFacesDropped) {
   expect_agreement_of(view, "paper, front faces", request);
 }
 
-TEST_F(EngineAgreement, S21_MovedBodies) {
+TEST_F(EngineAgreement, S21MovedBodies) {
   const View view = tank();
   SonarRenderer gpu(view.world, {EngineKind::gpu, 0});
   SonarRenderer cpu(view.world, {EngineKind::cpu, 0});
@@ -198,7 +198,7 @@ TEST_F(EngineAgreement, S21_MovedBodies) {
   }
 }
 
-TEST_F(EngineAgreement, S21_FarFromTheOriginAndRotated) {
+TEST_F(EngineAgreement, S21FarFromTheOriginAndRotated) {
   const Pose T_far_world{{1e6, -1e6, 3e5}, glm::angleAxis(0.7, glm::normalize(glm::dvec3(0.2, 0.3, 1)))};
   View view = tank();
   for (Body& body : view.world.bodies) {

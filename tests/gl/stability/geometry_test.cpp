@@ -32,7 +32,7 @@ void add_triangle(TriangleMesh& mesh, const std::array<glm::vec3, 3>& corners) {
 }
 
 // As in a loader, the mesh passes validated_mesh().
-TEST_P(Geometry, S4_DegenerateAndDuplicateTrianglesChangeNothing) {
+TEST_P(Geometry, S4DegenerateAndDuplicateTrianglesChangeNothing) {
   TriangleMesh broken = make_sphere(0.5F, 32);
   const std::size_t good = broken.indices.size();
   for (std::uint32_t i = 100; i < 130; ++i) {
@@ -59,7 +59,7 @@ TEST_P(Geometry, S4_DegenerateAndDuplicateTrianglesChangeNothing) {
   EXPECT_LE(different_share(clean, image, 1e-4), silhouette_share);
 }
 
-TEST_P(Geometry, S4_ZeroOrMissingNormalsBecomeGeometricOnes) {
+TEST_P(Geometry, S4ZeroOrMissingNormalsBecomeGeometricOnes) {
   const EchoImage clean = SonarRenderer(small_harbour(), options()).render_echo(quiet_request());
   TriangleMesh zero = make_sphere(0.5F, 32);
   std::fill(zero.normals.begin(), zero.normals.end(), glm::vec3(0.0F));
@@ -78,7 +78,7 @@ TEST_P(Geometry, S4_ZeroOrMissingNormalsBecomeGeometricOnes) {
 }
 
 // A normal map on a mesh that cannot carry one changes nothing.
-TEST_P(Geometry, S4_NormalMapWithoutTangentsOrTextureCoordinatesIsLeftOut) {
+TEST_P(Geometry, S4NormalMapWithoutTangentsOrTextureCoordinatesIsLeftOut) {
   auto map = std::make_shared<NormalMap>();
   map->width_px = map->height_px = 1;
   map->rgb = {255, 128, 128};  // along the tangent: it would darken all surfaces that face the sonar
@@ -96,7 +96,7 @@ TEST_P(Geometry, S4_NormalMapWithoutTangentsOrTextureCoordinatesIsLeftOut) {
   }
 }
 
-TEST_P(Geometry, S5_PrimitivesThatAreNoNumbersAreRejectedAndOthersUnaffected) {
+TEST_P(Geometry, S5PrimitivesThatAreNoNumbersAreRejectedAndOthersUnaffected) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float inf = std::numeric_limits<float>::infinity();
   constexpr float denormal = std::numeric_limits<float>::denorm_min();
@@ -116,7 +116,7 @@ TEST_P(Geometry, S5_PrimitivesThatAreNoNumbersAreRejectedAndOthersUnaffected) {
 }
 
 // Finite coordinates of the size of the solar system are out of range, so they change nothing.
-TEST_P(Geometry, S5_SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
+TEST_P(Geometry, S5SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
   const EchoImage clean = SonarRenderer(small_harbour(), options()).render_echo(quiet_request());
   World world = small_harbour();
   world.bodies.push_back(
@@ -135,7 +135,7 @@ TEST_P(Geometry, S5_SurfacesAsFarAsCoordinatesGoAreOutOfRange) {
 }
 
 // Eight bits hold no NaN, but the texels can cancel to no normal at all.
-TEST_P(Geometry, S5_NormalMapWhoseTexelsCancelStaysFinite) {
+TEST_P(Geometry, S5NormalMapWhoseTexelsCancelStaysFinite) {
   auto map = std::make_shared<NormalMap>();
   map->width_px = map->height_px = 2;
   map->rgb = {0, 0, 0, 255, 255, 255, 255, 255, 255, 0, 0, 0};
@@ -176,7 +176,7 @@ TriangleMesh soup(int count, double leg_m) {
 // ray meets its first at s with density k exp(-k s), and E[cos phi | met] = 2/3. So per steradian and metre
 // the echo is 2/3 mu k exp(-k (r - r0)) / r^2. The test has a tenth of the triangles of the design, to save
 // time.
-TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
+TEST_P(Geometry, S14SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   constexpr int count = 1'000'000;
   constexpr double leg_m = 0.012;
   SonarRenderer renderer(make_world({make_body("soup", soup(count, leg_m), full_mu)}), options());
@@ -219,7 +219,7 @@ TEST_P(Geometry, S14_SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
 
 // A strip s samples wide is found with probability min(1, s) (docs/stability.md, S14). Slices miss nothing
 // along the elevation. Across it they are a degree wide at most, and thin upright objects divide them.
-TEST_P(Geometry, S14_ThinStripsAreFoundAsOftenAsTheirWidthSays) {
+TEST_P(Geometry, S14ThinStripsAreFoundAsOftenAsTheirWidthSays) {
   const bool slices = GetParam() == Way::cpu_slices;
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(8, 40 * degree);
@@ -258,7 +258,7 @@ TEST_P(Geometry, S14_ThinStripsAreFoundAsOftenAsTheirWidthSays) {
 
 // Two walls of the same triangles in the same place: the first of the world echoes. On a fixed grid of the
 // CPU each packet of rays decides for itself, but always in the same way.
-TEST_P(Geometry, S14_TieBetweenCoplanarSurfaces) {
+TEST_P(Geometry, S14TieBetweenCoplanarSurfaces) {
   const TriangleMesh quad = make_quad({0, -20, -20}, {0, 40, 0}, {0, 0, 40});
   Body strong = make_body("strong", quad, 0.2);
   strong.T_world_body.position_m = {9, 0, 0};
@@ -287,7 +287,7 @@ TEST_P(Geometry, S14_TieBetweenCoplanarSurfaces) {
 }
 
 // The same wall in two triangulations: each sample may see either, but always the same one.
-TEST_P(Geometry, S14_FightOfCoplanarTriangulationsIsRepeatable) {
+TEST_P(Geometry, S14FightOfCoplanarTriangulationsIsRepeatable) {
   TriangleMesh other = make_quad({0, -20, -20}, {0, 40, 0}, {0, 0, 40});
   other.indices = {0, 1, 3, 1, 2, 3};
   World world = make_world({make_body("one", make_quad({0, -20, -20}, {0, 40, 0}, {0, 0, 40}), 0.2),
@@ -307,7 +307,7 @@ TEST_P(Geometry, S14_FightOfCoplanarTriangulationsIsRepeatable) {
   EXPECT_GE(sum(first), most / 2 * (1 - 1e-6));
 }
 
-TEST_P(Geometry, S14_OpenMeshFromBehind) {
+TEST_P(Geometry, S14OpenMeshFromBehind) {
   // make_quad's normal is a x b: +x here, away from a sonar at the origin.
   const World away = make_world({make_body("wall", make_quad({9, -20, -20}, {0, 40, 0}, {0, 0, 40}), 0.1)});
   const World facing = make_world({make_body("wall", make_quad({9, -20, -20}, {0, 0, 40}, {0, 40, 0}), 0.1)});
@@ -326,7 +326,7 @@ TEST_P(Geometry, S14_OpenMeshFromBehind) {
 
 // 2^18 samples, as points, of the strongest possible surface in the only bin of the only beam. With cos phi
 // = cos theta cos psi the integral over the fan is 2 sin(psi_m) (theta_m + sin(theta_m) cos(theta_m)).
-TEST_P(Geometry, S19_AQuarterOfAMillionSamplesInOneBin) {
+TEST_P(Geometry, S19AQuarterOfAMillionSamplesInOneBin) {
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(1, 60 * degree);
   request.settings.range = {1, 100.0, 0, false};

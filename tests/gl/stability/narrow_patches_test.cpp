@@ -15,7 +15,7 @@ SONARD_STABILITY_SUITE(NarrowPatches);
 
 // Both ends of the range in one image: a plate at 5 cm in front of half of the fan, a wall at 9 km behind all
 // of it.
-TEST_P(NarrowPatches, S1_NearPlateAndFarWallInOneImage) {
+TEST_P(NarrowPatches, S1NearPlateAndFarWallInOneImage) {
   Body plate = make_body("plate", make_quad({0, 0.005F, -0.1F}, {0, 0.2F, 0}, {0, 0, 0.2F}), full_mu);
   plate.T_world_body.position_m.x = 0.05;
   Body wall = make_body("wall", make_quad({0, -3e4F, -3e4F}, {0, 6e4F, 0}, {0, 0, 6e4F}), full_mu);
@@ -50,7 +50,7 @@ TEST_P(NarrowPatches, S1_NearPlateAndFarWallInOneImage) {
 }
 
 // A curtain in the upright plane of the fan's axis is seen edge-on: it has no echo.
-TEST_P(NarrowPatches, S3_CurtainThatHoldsTheSonar) {
+TEST_P(NarrowPatches, S3CurtainThatHoldsTheSonar) {
   SonarRenderer curtain(make_world({make_body("curtain", make_quad({-5, 0, -5}, {20, 0, 0}, {0, 0, 10}))}),
                         options());
   const EchoImage edge_on = curtain.render_echo(level_request());
@@ -60,7 +60,7 @@ TEST_P(NarrowPatches, S3_CurtainThatHoldsTheSonar) {
 
 // Inside a ball of radius a, every ray meets it at a with cos phi = 1. The echo of a beam of width w is
 // 2 w sin(theta_m) mu / a^2.
-TEST_P(NarrowPatches, S9_EveryFanHearsTheSameFromInsideABall) {
+TEST_P(NarrowPatches, S9EveryFanHearsTheSameFromInsideABall) {
   SonarRenderer renderer(make_world({make_body("ball", make_sphere(4.99F, 128), full_mu)}), options());
   for (const double width_deg : {0.01, 120.0, 179.0, 180.0, 360.0}) {
     for (const double height_deg : {0.01, 20.0, 120.0, 170.0}) {
@@ -86,7 +86,7 @@ TEST_P(NarrowPatches, S9_EveryFanHearsTheSameFromInsideABall) {
 
 // 2^18 samples of the strongest possible surface in the only bin of the only beam. With cos phi = cos theta
 // cos psi the integral over the fan is 2 sin(psi_m) (theta_m + sin(theta_m) cos(theta_m)).
-TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
+TEST_P(NarrowPatches, S19AQuarterOfAMillionSamplesInOneBin) {
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(1, 60 * degree);
   request.settings.range = {1, 100.0, 0, false};
@@ -124,7 +124,7 @@ TEST_P(NarrowPatches, S19_AQuarterOfAMillionSamplesInOneBin) {
 }
 
 // Thin upright objects divide slices, so that slices miss no strip at any place.
-TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
+TEST_P(NarrowPatches, S14SlicesMissNoThinStrip) {
   if (GetParam() != Way::cpu_slices) {
     return;  // grids find them by their width (geometry_test.cpp)
   }
@@ -141,7 +141,7 @@ TEST_P(NarrowPatches, S14_SlicesMissNoThinStrip) {
 
 // A face of a box whose range hardly changes along a slice ends at a steep edge. Its whole echo lies within a
 // part of a line, wherever its ends are across the wedge. The truth is a fine grid of rays.
-TEST_P(NarrowPatches, S3_FacesAlongASliceStayInTheirLines) {
+TEST_P(NarrowPatches, S3FacesAlongASliceStayInTheirLines) {
   if (GetParam() != Way::cpu_slices) {
     return;
   }

@@ -27,7 +27,7 @@ Body wall_at(double x_m, double mu = full_mu) {
 
 // A wall 0.002 bins behind the border of two bins echoes in the far bin, 0.002 bins before it in the near
 // bin, from 3 cm to 10 km.
-TEST_P(Precision, S1_RangesAreExactFromThreeCentimetresToTenKilometres) {
+TEST_P(Precision, S1RangesAreExactFromThreeCentimetresToTenKilometres) {
   for (const double about_m : {0.03, 0.1, 1.0, 10.0, 100.0, 1e3, 9.9e3}) {
     const double line_m = about_m / 900;
     for (const double offset : {0.002, -0.002}) {
@@ -41,7 +41,7 @@ TEST_P(Precision, S1_RangesAreExactFromThreeCentimetresToTenKilometres) {
 }
 
 // A wall hides one that is 1e-5 of the range behind it, in either order of the world's bodies.
-TEST_P(Precision, S1_NearerWallHidesTheOneRightBehindIt) {
+TEST_P(Precision, S1NearerWallHidesTheOneRightBehindIt) {
   for (const double front_m : {0.03, 1.0, 100.0, 9e3}) {
     const PingRequest request = telescope(level_request(), front_m / 900, 1000);
     Body front = wall_at(front_m, 0.01);
@@ -56,7 +56,7 @@ TEST_P(Precision, S1_NearerWallHidesTheOneRightBehindIt) {
 }
 
 // The whole scene, sonar included, moved as far as geocentric coordinates go, and turned.
-TEST_P(Precision, S2_ImageStaysFarFromTheOriginAndRotated) {
+TEST_P(Precision, S2ImageStaysFarFromTheOriginAndRotated) {
   const PingRequest request = quiet_request();
   const EchoImage here = SonarRenderer(small_harbour(), options()).render_echo(request);
   for (const double shift_m : {1e5, 1e6, 1e7}) {
@@ -81,7 +81,7 @@ TEST_P(Precision, S2_ImageStaysFarFromTheOriginAndRotated) {
 // A plane through (8, 0, 0) that every ray meets at a grazing angle between gamma / 2 and 3 gamma / 2; the
 // fan is gamma high. With x = gamma - theta: cos phi = x and r = 8 gamma / x, so per azimuth the echo is mu /
 // (64 gamma^2) times the integral of x^3, or 5 mu gamma^2 / 256.
-TEST_P(Precision, S3_GrazingIncidence) {
+TEST_P(Precision, S3GrazingIncidence) {
   double before = INFINITY;
   for (const double gamma_deg : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     const double gamma = gamma_deg * degree;
@@ -106,7 +106,7 @@ TEST_P(Precision, S3_GrazingIncidence) {
 
 // Fewer rows than the range cells they cross: the footprint is cut, and the image stays finite and has an
 // echo.
-TEST_P(Precision, S3_FootprintIsCutWhereOneSampleSeesHundredsOfBins) {
+TEST_P(Precision, S3FootprintIsCutWhereOneSampleSeesHundredsOfBins) {
   const Body bed = make_body("bed", make_quad({-100, -100, -0.01F}, {200, 0, 0}, {0, 200, 0}), full_mu);
   PingRequest request = level_request();
   request.settings.range = {8000, 0.002, 0, false};
@@ -119,7 +119,7 @@ TEST_P(Precision, S3_FootprintIsCutWhereOneSampleSeesHundredsOfBins) {
   EXPECT_GT(sum(image), 0);
 }
 
-TEST_P(Precision, S3_SonarInAPlaneTouchingItOrInsideABodyStaysFinite) {
+TEST_P(Precision, S3SonarInAPlaneTouchingItOrInsideABodyStaysFinite) {
   SonarRenderer bed(make_world({make_body("bed", make_quad({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}))}),
                     options());
   PingRequest request = level_request();
@@ -135,7 +135,7 @@ TEST_P(Precision, S3_SonarInAPlaneTouchingItOrInsideABodyStaysFinite) {
 
 // A closed ball around the sonar: the image holds its echo only. If the ball is nearer than the near limit,
 // the image may be empty.
-TEST_P(Precision, S3_InsideABallOnlyTheBallIsHeard) {
+TEST_P(Precision, S3InsideABallOnlyTheBallIsHeard) {
   for (const float radius_m : {0.005F, 0.5F, 5.0F}) {
     World world =
         make_world({make_body("ball", make_sphere(radius_m, 64), full_mu),

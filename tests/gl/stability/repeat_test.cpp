@@ -49,7 +49,7 @@ class Load {
   std::vector<std::thread> threads_;
 };
 
-TEST_P(Repeat, S12_SameInputGivesTheSameBitsAHundredTimesUnderLoadAndWithAnyThreads) {
+TEST_P(Repeat, S12SameInputGivesTheSameBitsAHundredTimesUnderLoadAndWithAnyThreads) {
   const PingRequest request = lively(quiet_request());
   RendererOptions every_time = options();
   every_time.skip.turn_off(SkipRule::unchanged_scene);  // or the echo would be made once
@@ -76,7 +76,7 @@ TEST_P(Repeat, S12_SameInputGivesTheSameBitsAHundredTimesUnderLoadAndWithAnyThre
 
 // Bodies move, leave the world (far away) and return. Apertures, ranges and samplings change from ping to
 // ping, and two sonars take turns. Every image equals the image of a fresh renderer.
-TEST_P(Repeat, S18_EveryPingAfterAChangeIsThatOfAFreshRenderer) {
+TEST_P(Repeat, S18EveryPingAfterAChangeIsThatOfAFreshRenderer) {
   SonarRenderer renderer(small_harbour(), options());
   const auto fresh = [](const Pose& ball, const Pose& crate, const PingRequest& request) {
     World world = small_harbour();
@@ -115,7 +115,7 @@ TEST_P(Repeat, S18_EveryPingAfterAChangeIsThatOfAFreshRenderer) {
 }
 
 // The long form, scene by scene, is tests/gl/renderer/engine_agreement_test.cpp.
-TEST(Agreement, S21_EnginesAgreeOnOneGrid) {
+TEST(Agreement, S21EnginesAgreeOnOneGrid) {
   require_gl();
   if (testing::Test::IsSkipped() || testing::Test::HasFatalFailure()) {
     return;

@@ -25,7 +25,7 @@ World wall(double x_m, double mu = full_mu) {
 }
 
 // pose::normalize() refuses or scales incoming poses; the renderer checks its poses again.
-TEST_P(Settings, S6_PosesAreRefusedOrScaledAndTheSignOfAQuaternionDoesNotMatter) {
+TEST_P(Settings, S6PosesAreRefusedOrScaledAndTheSignOfAQuaternionDoesNotMatter) {
   using pose::TransformFault;
   const auto fault = [](pose::Transform transform) { return pose::normalize(transform); };
   EXPECT_EQ(fault({{nan, 0, 0}, {}}), TransformFault::position_not_finite);
@@ -65,7 +65,7 @@ TEST_P(Settings, S6_PosesAreRefusedOrScaledAndTheSignOfAQuaternionDoesNotMatter)
   EXPECT_EQ(renderer.render_echo(request).intensity, image.intensity) << "refused poses leave nothing behind";
 }
 
-TEST_P(Settings, S7_RangesAreRefusedOrGiveAValidImage) {
+TEST_P(Settings, S7RangesAreRefusedOrGiveAValidImage) {
   SonarRenderer renderer(wall(5), options());
   const auto with = [](int lines, double step_m, int compression_log2 = 0) {
     PingRequest request = level_request();
@@ -113,7 +113,7 @@ TEST_P(Settings, S7_RangesAreRefusedOrGiveAValidImage) {
   EXPECT_GT(near.at(32, 0), 0);
 }
 
-TEST_P(Settings, S8_SmallestImageAndTarget) {
+TEST_P(Settings, S8SmallestImageAndTarget) {
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(1, 40 * degree);
   request.settings.range = {1, 10.0, 0, false};
@@ -132,7 +132,7 @@ TEST_P(Settings, S8_SmallestImageAndTarget) {
   EXPECT_EQ(renderer.render_ping(request).u8.size(), 1U);
 }
 
-TEST_P(Settings, S8_LargestImage) {
+TEST_P(Settings, S8LargestImage) {
   PingRequest request = level_request();
   request.settings.aperture.beam_edges_rad = equal_angle_edges(4096, 120 * degree);
   request.settings.range = {16384, 1e-3, 0, false};
@@ -156,7 +156,7 @@ TEST_P(Settings, S8_LargestImage) {
   }
 }
 
-TEST_P(Settings, S8_NothingAndTooMuchAreRefusedBeforeAllocation) {
+TEST_P(Settings, S8NothingAndTooMuchAreRefusedBeforeAllocation) {
   SonarRenderer renderer(wall(5), options());
   const auto refused = [&](const std::function<void(SonarSettings&)>& change) {
     PingRequest request = level_request();
@@ -180,7 +180,7 @@ TEST_P(Settings, S8_NothingAndTooMuchAreRefusedBeforeAllocation) {
 
 // A bed at depth h below a level fan of half height theta_m: its echo per azimuth is mu h^2 / 4 times
 // (sin(theta_m) / h)^4 - R^-4 up to range R (docs/physics.md 3.2, T3), equal at every azimuth.
-TEST_P(Settings, S9_EveryFanHearsTheBedBelow) {
+TEST_P(Settings, S9EveryFanHearsTheBedBelow) {
   const TriangleMesh bed = make_quad({-100, -100, 0}, {200, 0, 0}, {0, 200, 0});
   SonarRenderer renderer(make_world({make_body("bed", bed, full_mu)}), options());
   for (const double width_deg : {0.01, 120.0, 179.0, 180.0, 360.0}) {
@@ -209,7 +209,7 @@ TEST_P(Settings, S9_EveryFanHearsTheBedBelow) {
 
 // After half a turn, the image of a full circle is shifted by half the beams: the view ahead in one image
 // lies across the seam in the other.
-TEST_P(Settings, S9_FullCircleHasNoSeam) {
+TEST_P(Settings, S9FullCircleHasNoSeam) {
   SonarRenderer renderer(small_harbour(), options());
   constexpr int beams = 72;
   PingRequest request = quiet_request();
@@ -230,7 +230,7 @@ TEST_P(Settings, S9_FullCircleHasNoSeam) {
   EXPECT_LE(different_share(ahead, behind, slices ? 5e-2 : 1e-3), silhouette_share);
 }
 
-TEST_P(Settings, S9_FansThatCannotBeAreRefused) {
+TEST_P(Settings, S9FansThatCannotBeAreRefused) {
   SonarRenderer renderer(wall(5), options());
   const auto refused = [&](const std::function<void(Aperture&)>& change) {
     PingRequest request = level_request();
@@ -249,7 +249,7 @@ TEST_P(Settings, S9_FansThatCannotBeAreRefused) {
 }
 
 // A scanning head is one beam whose bearing turns: 6400 units a turn, as integers.
-TEST_P(Settings, S10_ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
+TEST_P(Settings, S10ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
   World world = make_world({make_body("ball", make_sphere(0.3F, 32), full_mu)});
   world.bodies[0].T_world_body.position_m = {-6, 0, 0};  // at bearing 180 degrees
   SonarRenderer renderer(world, options());
@@ -298,7 +298,7 @@ TEST_P(Settings, S10_ScanAcrossHalfATurnHasNoDuplicateAndNoGap) {
 }
 
 // Absorption is a factor of each line alone (docs/physics.md 2.1): 10^(-alpha r / 5).
-TEST_P(Settings, S15_AbsorptionFromNoneToTenDecibelsAMetre) {
+TEST_P(Settings, S15AbsorptionFromNoneToTenDecibelsAMetre) {
   SonarRenderer renderer(wall(5), options());
   PingRequest request = level_request();
   const EchoImage lossless = renderer.render_echo(request);
@@ -323,7 +323,7 @@ TEST_P(Settings, S15_AbsorptionFromNoneToTenDecibelsAMetre) {
   }
 }
 
-TEST_P(Settings, S16_MaterialsOutsideWhatIsPassive) {
+TEST_P(Settings, S16MaterialsOutsideWhatIsPassive) {
   std::vector<std::string> warnings;
   const auto material = [&](std::optional<double> rho, std::optional<double> mu_db) {
     return make_acoustic_material({"", rho, mu_db}, warnings);
@@ -358,7 +358,7 @@ TEST_P(Settings, S16_MaterialsOutsideWhatIsPassive) {
   EXPECT_NEAR(strongest(heard(glaring, Model::paper)), 0.9975, 1e-4);
 }
 
-TEST_P(Settings, S17_GainFromNothingToSaturationEverywhere) {
+TEST_P(Settings, S17GainFromNothingToSaturationEverywhere) {
   SonarRenderer renderer(wall(5), options());
   PingRequest request = level_request();
   PhysicalModel& model = request.settings.physical;

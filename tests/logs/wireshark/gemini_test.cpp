@@ -122,7 +122,7 @@ const std::vector<Expectation> expectations{
      {{"diagnostic.rx1_board", "1"}, {"diagnostic.psu_board", "4"}, {"diagnostic.tx_board", "5"}}},
 };
 
-TEST(GeminiDissector, fields_of_examples) {
+TEST(GeminiDissector, FieldsOfExamples) {
   std::vector<pcapng::Bytes> packets;
   std::vector<std::string> fields{prefix + "message", expert_field};
   for (const Expectation& expected : expectations) {
@@ -143,7 +143,7 @@ TEST(GeminiDissector, fields_of_examples) {
 }
 
 // All examples except two, which are only the beginnings of longer datagrams.
-TEST(GeminiDissector, no_example_is_malformed) {
+TEST(GeminiDissector, NoExampleIsMalformed) {
   std::vector<std::string> names = hex_fixture_names("gemini");
   std::erase_if(names, [](const std::string& name) { return name.ends_with("_start"); });
   std::vector<pcapng::Bytes> packets;
@@ -160,7 +160,7 @@ TEST(GeminiDissector, no_example_is_malformed) {
 }
 
 // The header alone is complete for status requests only, and half a header never is.
-TEST(GeminiDissector, every_example_cut_short_is_shown_as_malformed) {
+TEST(GeminiDissector, EveryExampleCutShortIsShownAsMalformed) {
   std::vector<pcapng::Bytes> packets;
   std::vector<std::string> names;
   for (const std::string& name : hex_fixture_names("gemini")) {
@@ -183,7 +183,7 @@ Bytes with(Bytes bytes, std::size_t offset, std::uint8_t value) {
 }
 
 // A run-length coded ping of two lines (6.8): 00 c is c zeros, 01 one zero.
-TEST(GeminiDissector, lines_are_held_to_the_head_of_their_ping) {
+TEST(GeminiDissector, LinesAreHeldToTheHeadOfTheirPing) {
   Bytes head = with(with(load_hex_fixture("gemini", "ping_head"), 22, 2), 23, 0);
   head = with(head, 44, 50);                                                      // threshold
   const Bytes good{0x42, 1,   0x59, 2, 0, 0, 0, 0, 0, 5, 0, 0, 0, 0, 0x04, 0x02,  // 4 words
@@ -204,7 +204,7 @@ TEST(GeminiDissector, lines_are_held_to_the_head_of_their_ping) {
   EXPECT_THAT(rows[3].at(expert_field), HasSubstr("Line 2 of 2"));
 }
 
-TEST(GeminiDissector, ports_are_a_preference) {
+TEST(GeminiDissector, PortsAreAPreference) {
   const Bytes status = load_hex_fixture("gemini", "status");
   const pcapng::Bytes elsewhere = pcapng::udp_packet({0x7F000001, 40'000}, {0x7F000001, 40'001}, status);
   EXPECT_EQ(dissect({elsewhere}, {prefix + "message"})[0].at(prefix + "message"), "");

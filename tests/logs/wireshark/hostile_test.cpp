@@ -40,19 +40,19 @@ void expect_no_failure(const std::string& device, std::uint16_t port) {
   EXPECT_EQ(dissected, packet_count);
 }
 
-TEST(HostileBytes, gemini) {
+TEST(HostileBytes, Gemini) {
   expect_no_failure("gemini", 52'900);
 }
 
-TEST(HostileBytes, micron) {
+TEST(HostileBytes, Micron) {
   expect_no_failure("micron", 4002);
 }
 
-TEST(HostileBytes, oculus) {
+TEST(HostileBytes, Oculus) {
   expect_no_failure("oculus", 52'102);
 }
 
-TEST(HostileBytes, ping360) {
+TEST(HostileBytes, Ping360) {
   expect_no_failure("ping360", 12'345);
 }
 
@@ -63,7 +63,7 @@ void expect_no_failure(const std::vector<pcapng::Bytes>& packets) {
 }
 
 // Consecutive broken frames in datagrams that cut them anywhere.
-TEST(HostileBytes, ping360_stream) {
+TEST(HostileBytes, Ping360Stream) {
   const auto names = hex_fixture_names("ping360");
   std::mt19937 random{2};
   std::vector<pcapng::Bytes> packets;
@@ -79,7 +79,7 @@ TEST(HostileBytes, ping360_stream) {
 }
 
 // The same kind of broken messages in one stream, which Wireshark reassembles.
-TEST(HostileBytes, oculus_stream) {
+TEST(HostileBytes, OculusStream) {
   const auto names = hex_fixture_names("oculus");
   std::mt19937 random{3};
   pcapng::TcpConversation line{{0x7F000001, 50'000}, {0x7F000001, 52'100}};
@@ -94,7 +94,7 @@ TEST(HostileBytes, oculus_stream) {
 
 // Every four bytes begin a frame of the longest payload with a wrong checksum. tshark must finish within its
 // time limit.
-TEST(HostileBytes, ping360_frames_within_frames) {
+TEST(HostileBytes, Ping360FramesWithinFrames) {
   Bytes payload;
   while (payload.size() + 4 <= pcapng::max_udp_payload) {
     payload.insert(payload.end(), {'B', 'R', 0x00, 0x10});
@@ -103,7 +103,7 @@ TEST(HostileBytes, ping360_frames_within_frames) {
       std::vector<pcapng::Bytes>(20, pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, 9092}, payload)));
 }
 
-TEST(HostileBytes, ping360_discovery) {
+TEST(HostileBytes, Ping360Discovery) {
   const std::string_view answer =
       "SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-C5\r\nIP Address:- 192.168.002.004\r\n";
   std::mt19937 random{3};

@@ -117,7 +117,7 @@ const std::vector<Expectation> expectations{
     {"aux_data", "aux_data", {{"data", "30313233346d6d0d00"}}},
 };
 
-TEST(MicronDissector, fields_of_examples) {
+TEST(MicronDissector, FieldsOfExamples) {
   std::vector<pcapng::Bytes> packets;
   std::vector<std::string> fields{prefix + "message", expert_field};
   for (const Expectation& expected : expectations) {
@@ -197,7 +197,7 @@ Row through_tcp(std::size_t piece) {
   return all;
 }
 
-TEST(MicronDissector, a_stream_is_put_together_from_any_pieces) {
+TEST(MicronDissector, AStreamIsPutTogetherFromAnyPieces) {
   for (const std::size_t piece : {2000U, 50U, 3U}) {
     SCOPED_TRACE(piece);
     const Row all = through_tcp(piece);
@@ -210,7 +210,7 @@ TEST(MicronDissector, a_stream_is_put_together_from_any_pieces) {
   }
 }
 
-TEST(MicronDissector, garbage_is_shown_and_the_frame_behind_it_found) {
+TEST(MicronDissector, GarbageIsShownAndTheFrameBehindItFound) {
   Bytes bytes{'@', 'x', 0x0A};
   const Bytes frame = load_hex_fixture("micron", "alive_5d");
   bytes.insert(bytes.end(), frame.begin(), frame.end());
@@ -222,7 +222,7 @@ TEST(MicronDissector, garbage_is_shown_and_the_frame_behind_it_found) {
   EXPECT_THAT(row.at(expert_field), HasSubstr("belong to no frame"));
 }
 
-TEST(MicronDissector, counts_that_disagree_are_malformed) {
+TEST(MicronDissector, CountsThatDisagreeAreMalformed) {
   Bytes line = load_hex_fixture("micron", "head_data");
   line.at(42) = 9;
   Bytes command = load_hex_fixture("micron", "head_command_ros");
@@ -235,7 +235,7 @@ TEST(MicronDissector, counts_that_disagree_are_malformed) {
   EXPECT_THAT(rows[1].at(expert_field), HasSubstr("Unknown form 0x77"));
 }
 
-TEST(MicronDissector, a_stream_is_found_on_any_port) {
+TEST(MicronDissector, AStreamIsFoundOnAnyPort) {
   pcapng::TcpConversation line{{0x7F000001, 40'000}, {0x7F000001, 7333}};
   const auto rows =
       dissect(line.from_client(load_hex_fixture("micron", "send_version")), {prefix + "message"});

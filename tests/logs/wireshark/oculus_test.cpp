@@ -94,7 +94,7 @@ void expect(const Row& row, const Expectation& expected) {
   }
 }
 
-TEST(OculusDissector, fields_of_commands) {
+TEST(OculusDissector, FieldsOfCommands) {
   pcapng::TcpConversation line{client, head};
   std::vector<pcapng::Bytes> packets;
   for (const Expectation& expected : commands) {
@@ -106,7 +106,7 @@ TEST(OculusDissector, fields_of_commands) {
   }
 }
 
-TEST(OculusDissector, fields_of_reports) {
+TEST(OculusDissector, FieldsOfReports) {
   pcapng::TcpConversation line{client, head};
   std::vector<pcapng::Bytes> packets;
   for (const Expectation& expected : reports) {
@@ -118,7 +118,7 @@ TEST(OculusDissector, fields_of_reports) {
   }
 }
 
-TEST(OculusDissector, fields_of_a_status) {
+TEST(OculusDissector, FieldsOfAStatus) {
   const Expectation expected{"status",
                              "status",
                              {{"status.deviceId", "7892"},
@@ -132,7 +132,7 @@ TEST(OculusDissector, fields_of_a_status) {
   expect(dissect({packet}, fields_of({expected}))[0], expected);
 }
 
-TEST(OculusDissector, a_stream_is_put_together_from_any_pieces) {
+TEST(OculusDissector, AStreamIsPutTogetherFromAnyPieces) {
   Bytes stream;
   std::string names;
   for (const Expectation& expected : reports) {
@@ -161,7 +161,7 @@ TEST(OculusDissector, a_stream_is_put_together_from_any_pieces) {
   }
 }
 
-TEST(OculusDissector, garbage_and_sizes_that_do_not_fit_are_shown) {
+TEST(OculusDissector, GarbageAndSizesThatDoNotFitAreShown) {
   Bytes bytes{'S', 'x', 'O'};
   Bytes ping = load_hex_fixture("oculus", "ping_result_v1");
   ping.at(106) = 2;  // rows

@@ -7,7 +7,7 @@
 namespace sonard::testing {
 namespace {
 
-TEST(Capture, addresses_ports_times_and_interface) {
+TEST(Capture, AddressesPortsTimesAndInterface) {
   const pcapng::Bytes packet = pcapng::udp_packet({0xC0A8020A, 52'901}, {0xC0A802C8, 52'901},
                                                   pcapng::Bytes{0x20, 1, 2, 2, 0, 0, 0, 0});
   const auto row = dissect({packet},
@@ -25,7 +25,7 @@ TEST(Capture, addresses_ports_times_and_interface) {
 }
 
 // Long data become several segments; the padding of an odd number of bytes counts in the checksum.
-TEST(Capture, long_pieces_and_long_datagrams) {
+TEST(Capture, LongPiecesAndLongDatagrams) {
   pcapng::TcpConversation conversation{{0x7F000001, 40'000}, {0x7F000002, 40'001}};
   std::vector<pcapng::Bytes> packets = conversation.open();
   for (const auto& segment : conversation.from_client(pcapng::Bytes(10'001, 7))) {

@@ -179,7 +179,7 @@ const std::vector<Expectation> expectations{
       {"transducer.number_of_samples", "512"}}},
 };
 
-TEST(Ping360Dissector, fields_of_examples) {
+TEST(Ping360Dissector, FieldsOfExamples) {
   std::vector<pcapng::Bytes> packets;
   std::vector<std::string> fields{prefix + "message", expert_field};
   std::set<std::string> names;
@@ -206,7 +206,7 @@ TEST(Ping360Dissector, fields_of_examples) {
 
 // If only one side sends a message, its number gives the direction; otherwise the sender's number does (1,
 // 2).
-TEST(Ping360Dissector, directions_and_requests_in_the_older_spelling) {
+TEST(Ping360Dissector, DirectionsAndRequestsInTheOlderSpelling) {
   const auto rows = dissect({datagram_of(frame(2000, 5, {5, 0})), datagram_of(frame(2601, 9, Bytes(14))),
                              datagram_of(frame(2300, 0, {})), datagram_of(frame(4, 0, {}))},
                             {prefix + "message", prefix + "from_head", prefix + "about", expert_field});
@@ -223,7 +223,7 @@ TEST(Ping360Dissector, directions_and_requests_in_the_older_spelling) {
 }
 
 // In ping-viewer straight ahead is 200, and 400 means 0 (2.3, 6).
-TEST(Ping360Dissector, straight_ahead_is_a_preference) {
+TEST(Ping360Dissector, StraightAheadIsAPreference) {
   Bytes settings(14);
   const auto at = [&](std::uint8_t low, std::uint8_t high) {
     settings[2] = low;
@@ -323,7 +323,7 @@ std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
 }
 
 // A recording's serial line uses a port that the Micron's dissector has, too.
-TEST(Ping360Dissector, a_stream_over_tcp_is_put_together_from_any_pieces) {
+TEST(Ping360Dissector, AStreamOverTcpIsPutTogetherFromAnyPieces) {
   for (const std::size_t piece : {2000U, 50U, 3U}) {
     for (const std::uint16_t port : {std::uint16_t{12'345}, pcapng::serial_head.port}) {
       SCOPED_TRACE(std::to_string(piece) + " bytes, port " + std::to_string(port));
@@ -338,7 +338,7 @@ TEST(Ping360Dissector, a_stream_over_tcp_is_put_together_from_any_pieces) {
 
 // Datagrams contain several frames, and cut them anywhere (1.1). tshark's second pass uses the state of the
 // first.
-TEST(Ping360Dissector, datagrams_are_put_together_from_any_pieces) {
+TEST(Ping360Dissector, DatagramsArePutTogetherFromAnyPieces) {
   for (const std::size_t piece : {2000U, 100U, 7U, 1U}) {
     for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"-2"}}) {
       SCOPED_TRACE(std::to_string(piece) + " bytes");
@@ -348,7 +348,7 @@ TEST(Ping360Dissector, datagrams_are_put_together_from_any_pieces) {
   }
 }
 
-TEST(Ping360Dissector, a_frame_in_pieces_names_the_packet_where_it_began) {
+TEST(Ping360Dissector, AFrameInPiecesNamesThePacketWhereItBegan) {
   const Bytes data = load_hex_fixture("ping360", "device_data");
   std::vector<pcapng::Bytes> packets;
   for (const pcapng::ByteView bytes : pieces_of(data, 12)) {
@@ -367,7 +367,7 @@ TEST(Ping360Dissector, a_frame_in_pieces_names_the_packet_where_it_began) {
 }
 
 // 1.1: after 100 ms, bytes no longer complete a frame. A whole frame never completes another.
-TEST(Ping360Dissector, frames_that_are_never_finished) {
+TEST(Ping360Dissector, FramesThatAreNeverFinished) {
   const Bytes data = load_hex_fixture("ping360", "device_data");
   const auto front = pcapng::ByteView{data}.first(12);
   const auto rest = pcapng::ByteView{data}.subspan(12);
@@ -391,7 +391,7 @@ TEST(Ping360Dissector, frames_that_are_never_finished) {
 
 // ---- Errors, and bytes between frames
 
-TEST(Ping360Dissector, a_wrong_checksum_is_said) {
+TEST(Ping360Dissector, AWrongChecksumIsSaid) {
   Bytes wrong = load_hex_fixture("ping360", "transducer");
   wrong.at(10) = 0xC9;  // angle 201, so the sum is one more than the checksum 0x03a7
   append(wrong, load_hex_fixture("ping360", "motor_off"));
@@ -405,7 +405,7 @@ TEST(Ping360Dissector, a_wrong_checksum_is_said) {
 }
 
 // A wrong length must not hide the frames after it (1.1).
-TEST(Ping360Dissector, frames_inside_of_a_broken_one_are_found) {
+TEST(Ping360Dissector, FramesInsideOfABrokenOneAreFound) {
   Bytes bytes = load_hex_fixture("ping360", "request_protocol_version");
   bytes.at(2) = 30;
   append(bytes, load_hex_fixture("ping360", "motor_off"));
@@ -420,7 +420,7 @@ TEST(Ping360Dissector, frames_inside_of_a_broken_one_are_found) {
   }
 }
 
-TEST(Ping360Dissector, junk_is_shown_and_the_frame_behind_it_found) {
+TEST(Ping360Dissector, JunkIsShownAndTheFrameBehindItFound) {
   const Bytes motor_off = load_hex_fixture("ping360", "motor_off");
   Bytes behind{0x00, 0xFF, 'U', 'U', 'U', 'B'};
   append(behind, motor_off);
@@ -443,7 +443,7 @@ TEST(Ping360Dissector, junk_is_shown_and_the_frame_behind_it_found) {
   EXPECT_EQ(rows[4].at(expert_field), "");
 }
 
-TEST(Ping360Dissector, payloads_that_do_not_fit_their_message) {
+TEST(Ping360Dissector, PayloadsThatDoNotFitTheirMessage) {
   const auto rows = dissect(
       {datagram_of(frame(2601, 0, Bytes(13))), datagram_of(frame(2601, 0, Bytes(15))),
        datagram_of(frame(2300, 2, {1, 0, 0, 0, 32, 0, 80, 0, 0xE4, 2, 4, 0, 4, 0, 9, 8, 7})),
@@ -459,7 +459,7 @@ TEST(Ping360Dissector, payloads_that_do_not_fit_their_message) {
 
 // ---- Ports
 
-TEST(Ping360Dissector, frames_are_found_on_any_port) {
+TEST(Ping360Dissector, FramesAreFoundOnAnyPort) {
   const Bytes request = load_hex_fixture("ping360", "request_protocol_version");
   const pcapng::Endpoint elsewhere{0x7F000002, 40'001};
   pcapng::TcpConversation line{host, elsewhere};
@@ -480,7 +480,7 @@ TEST(Ping360Dissector, frames_are_found_on_any_port) {
   }
 }
 
-TEST(Ping360Dissector, ports_are_a_preference) {
+TEST(Ping360Dissector, PortsAreAPreference) {
   const Bytes junk{0x00, 0xFF};
   const auto at = [&](std::uint16_t port) { return pcapng::udp_packet(host, {head.address, port}, junk); };
   const std::vector<pcapng::Bytes> packets{at(12'345), at(9092), at(40'001)};
@@ -500,7 +500,7 @@ TEST(Ping360Dissector, ports_are_a_preference) {
 const std::string answer =
     "SONAR PING360  \r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-C5\r\nIP Address:- 192.168.002.004\r\n";
 
-TEST(Ping360Dissector, discovery) {
+TEST(Ping360Dissector, Discovery) {
   const auto to_head = [](std::string_view text) {
     return pcapng::udp_packet(discovery, discovery, text_bytes(text));
   };

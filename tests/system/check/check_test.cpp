@@ -72,7 +72,7 @@ void expect_complaint(const Broken& broken) {
   EXPECT_THAT(lines[0], HasSubstr(broken.message));
 }
 
-TEST_P(BrokenConfig, is_refused_with_file_line_and_key) {
+TEST_P(BrokenConfig, IsRefusedWithFileLineAndKey) {
   expect_complaint(GetParam());
 }
 
@@ -156,7 +156,7 @@ class HeldPort {
   std::string config_;
 };
 
-TEST(AddressInUse, is_refused_for_a_head) {
+TEST(AddressInUse, IsRefusedForAHead) {
   const HeldPort held(SOCK_DGRAM, "127.91.0.18", "address_in_use.yaml");
   const ProcessResult result = run_process({SONARD_PROGRAM, "check", held.config()});
   EXPECT_EQ(result.exit_code, 2);
@@ -165,7 +165,7 @@ TEST(AddressInUse, is_refused_for_a_head) {
                        " is in use by another program (expected a free port)"));
 }
 
-TEST(AddressInUse, is_refused_for_the_pose_stream) {
+TEST(AddressInUse, IsRefusedForThePoseStream) {
   const HeldPort held(SOCK_STREAM, "127.91.0.19", "pose_port_in_use.yaml");
   const ProcessResult result = run_process({SONARD_PROGRAM, "check", held.config()});
   EXPECT_EQ(result.exit_code, 2);
@@ -174,7 +174,7 @@ TEST(AddressInUse, is_refused_for_the_pose_stream) {
                        " is in use by another program (expected a free port)"));
 }
 
-TEST(OverlappingHeads, are_refused_with_what_they_share) {
+TEST(OverlappingHeads, AreRefusedWithWhatTheyShare) {
   const std::string file = broken_folder + "overlapping_heads.yaml";
   const ProcessResult result = run_process({SONARD_PROGRAM, "check", file});
   EXPECT_EQ(result.exit_code, 2);
@@ -207,7 +207,7 @@ ProcessResult check_in_own_network(const std::string& config) {
 
 class ShippedConfig : public testing::TestWithParam<const char*> {};
 
-TEST_P(ShippedConfig, is_good_without_a_warning) {
+TEST_P(ShippedConfig, IsGoodWithoutAWarning) {
   const ProcessResult result = check_in_own_network(GetParam());
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_EQ(result.err, "");
@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                            return name;
                          });
 
-TEST(Check, can_leave_addresses_alone) {
+TEST(Check, CanLeaveAddressesAlone) {
   const ProcessResult result =
       run_process({SONARD_PROGRAM, "check", "--no-network", broken_folder + "foreign_address.yaml"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -275,7 +275,7 @@ class CheckedWorld : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("checked_world_" + std::to_string(getpid()));
 };
 
-TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
+TEST_F(CheckedWorld, IsToldOfWithExtentsScaleMaterialAndCost) {
   write("roof.obj", "v 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\n");
   const ProcessResult result =
       check(model("roof", "<mesh><uri>roof.obj</uri><scale>0.001 0.001 0.001</scale></mesh>"));
@@ -286,7 +286,7 @@ TEST_F(CheckedWorld, is_told_of_with_extents_scale_material_and_cost) {
 }
 
 /// The hull of a vehicle and a frame in millimetres, and a flat plate beside a mesh that has a scale.
-TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
+TEST_F(CheckedWorld, WhoseMeshesAreInMillimetresSaysSo) {
   write("hull.obj", "v 0 0 0\nv 2500 0 0\nv 0 600 0\nv 0 0 600\nf 1 2 3\nf 1 2 4\nf 2 3 4\n");
   write("frame.obj", "v 0 0 0\nv 6000 200 0\nv 0 0 2000\nf 1 2 3\n");
   write("plate.obj", "v 0 0 0\nv 3000 0 0\nv 0 3000 20\nf 1 2 3\n");
@@ -308,7 +308,7 @@ TEST_F(CheckedWorld, whose_meshes_are_in_millimetres_says_so) {
 
 /// Seabeds and pipelines of kilometres are usual, as are meshes far from each other. Shapes without a file
 /// are in metres.
-TEST_F(CheckedWorld, that_is_large_is_not_taken_for_millimetres) {
+TEST_F(CheckedWorld, ThatIsLargeIsNotTakenForMillimetres) {
   write("bed.obj", "v 0 0 0\nv 7000 0 80\nv 0 9000 0\nf 1 2 3\n");
   write("pipe.obj", "v 0 0 0\nv 3000 1 0\nv 0 0 1\nf 1 2 3\n");
   write("mark.obj", "v 0 0 0\nv 1 0 0\nv 0 2 3\nf 1 2 3\n");
@@ -330,7 +330,7 @@ TEST_F(CheckedWorld, that_is_large_is_not_taken_for_millimetres) {
   EXPECT_THAT(result.err, testing::Not(HasSubstr("millimetres"))) << result.err;
 }
 
-TEST_F(CheckedWorld, asks_of_a_tiny_mesh_only_if_it_is_scaled) {
+TEST_F(CheckedWorld, AsksOfATinyMeshOnlyIfItIsScaled) {
   write("bolt.obj", "v 0 0 0\nv 0.003 0 0\nv 0 0.003 0.001\nf 1 2 3\n");
   const ProcessResult result =
       check(model("bolt", "<mesh><uri>bolt.obj</uri></mesh>") +
@@ -341,7 +341,7 @@ TEST_F(CheckedWorld, asks_of_a_tiny_mesh_only_if_it_is_scaled) {
 }
 
 /// A rotated plane has a thickness of some 1e-16 m in floating point.
-TEST_F(CheckedWorld, has_sizes_to_the_micrometre) {
+TEST_F(CheckedWorld, HasSizesToTheMicrometre) {
   const ProcessResult result = check(
       "<model name=\"wall\"><pose>5 0 0 0 1.5707963 0.3</pose><link name=\"l\"><visual name=\"v\"><geometry>"
       "<plane><size>2 4</size><normal>1 0 0</normal></plane></geometry></visual></link></model>" +
@@ -350,7 +350,7 @@ TEST_F(CheckedWorld, has_sizes_to_the_micrometre) {
   EXPECT_THAT(result.out, Not(HasSubstr("e-1")));
 }
 
-TEST_F(CheckedWorld, without_a_surface_is_open_water_only_if_told_so) {
+TEST_F(CheckedWorld, WithoutASurfaceIsOpenWaterOnlyIfToldSo) {
   const std::string marks = "<model name=\"marks\"><frame name=\"f\"/></model>\n";
   const ProcessResult refused = check(marks);
   EXPECT_EQ(refused.exit_code, 2);
@@ -367,7 +367,7 @@ TEST_F(CheckedWorld, without_a_surface_is_open_water_only_if_told_so) {
   }
 }
 
-TEST_F(CheckedWorld, finds_models_by_the_environment) {
+TEST_F(CheckedWorld, FindsModelsByTheEnvironment) {
   write("lib/post/model.sdf", "<sdf version=\"1.6\">" + model("post", "<box/>") + "</sdf>");
   const ProcessResult result = check(
       "<include><uri>post</uri></include><include><uri>file://post</uri><name>p2</name>"
@@ -379,7 +379,7 @@ TEST_F(CheckedWorld, finds_models_by_the_environment) {
               AllOf(HasSubstr("w: 2 bodies, 24 triangles"), HasSubstr("left out: lights (1): sun")));
 }
 
-TEST_F(CheckedWorld, is_told_of_as_json) {
+TEST_F(CheckedWorld, IsToldOfAsJson) {
   write("world.sdf", "<sdf version=\"1.9\" xmlns:sonard=\"x\"><world name=\"w\">\n" +
                          model("ball", "<sphere><radius>1</radius></sphere>") + "</world></sdf>");
   const std::string config =
@@ -403,7 +403,7 @@ TEST_F(CheckedWorld, is_told_of_as_json) {
   EXPECT_THAT(areas, testing::IsSupersetOf({"world", "body", "poses", "head", "cost"}));
 }
 
-TEST_F(CheckedWorld, is_told_of_as_json_with_the_places_of_what_is_wrong) {
+TEST_F(CheckedWorld, IsToldOfAsJsonWithThePlacesOfWhatIsWrong) {
   const std::string config =
       write("sonard.yaml",
             "world: {file: gone.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nheads:\n  - name: bow\n"
@@ -432,7 +432,7 @@ TEST_F(CheckedWorld, is_told_of_as_json_with_the_places_of_what_is_wrong) {
   EXPECT_EQ(absent["problems"][0]["line"], nullptr);
 }
 
-TEST(Help, names_values_in_words) {
+TEST(Help, NamesValuesInWords) {
   for (const char* const command : {"run", "check", "render", "selftest", "replay", "info", "demo"}) {
     const std::string help = run_process({SONARD_PROGRAM, command, "--help"}).out;
     for (const char* const raw : {"ENUM", "FLOAT", "UINT", "INT:", "TEXT:", "->", " in [", "e+0"}) {
@@ -448,7 +448,7 @@ TEST(Help, names_values_in_words) {
   EXPECT_THAT(help_of("check"), HasSubstr("--json "));
 }
 
-TEST_F(CheckedWorld, is_told_of_with_all_that_is_wrong) {
+TEST_F(CheckedWorld, IsToldOfWithAllThatIsWrong) {
   const ProcessResult result = check(
       model("a", "<mesh><uri>gone.obj</uri></mesh>") + model("b", "<sphere><radius>x</radius></sphere>") +
       "<include><uri>model://nowhere</uri></include>\n" +
@@ -462,7 +462,7 @@ TEST_F(CheckedWorld, is_told_of_with_all_that_is_wrong) {
   EXPECT_THAT(result.out, HasSubstr("3 problems"));
 }
 
-TEST_F(CheckedWorld, that_includes_itself_ends_at_once_and_in_little_memory) {
+TEST_F(CheckedWorld, ThatIncludesItselfEndsAtOnceAndInLittleMemory) {
   write("a.sdf", "<sdf version=\"1.9\"><model name=\"a\"><include><uri>b.sdf</uri></include></model></sdf>");
   write("b.sdf", "<sdf version=\"1.9\"><model name=\"b\"><include><uri>a.sdf</uri></include></model></sdf>");
   const ProcessResult result =
@@ -472,7 +472,7 @@ TEST_F(CheckedWorld, that_includes_itself_ends_at_once_and_in_little_memory) {
                                 HasSubstr("'a.sdf' includes itself: a.sdf -> b.sdf -> a.sdf")));
 }
 
-TEST_F(CheckedWorld, whose_includes_multiply_ends_at_once_and_in_little_memory) {
+TEST_F(CheckedWorld, WhoseIncludesMultiplyEndsAtOnceAndInLittleMemory) {
   for (int level = 1; level <= 9; ++level) {
     std::string text = "<sdf version=\"1.9\"><model name=\"m\">";
     for (int i = 0; i < 12; ++i) {
@@ -487,7 +487,7 @@ TEST_F(CheckedWorld, whose_includes_multiply_ends_at_once_and_in_little_memory) 
   EXPECT_THAT(result.err, HasSubstr("more than 1000000 elements, includes among them"));
 }
 
-TEST_F(CheckedWorld, says_where_on_earth_it_is) {
+TEST_F(CheckedWorld, SaysWhereOnEarthItIs) {
   const ProcessResult result = check(
       "<spherical_coordinates><surface_model>EARTH_WGS84</surface_model><latitude_deg>53.5</latitude_deg>"
       "<longitude_deg>-9.25</longitude_deg><elevation>2</elevation></spherical_coordinates>\n" +
@@ -496,7 +496,7 @@ TEST_F(CheckedWorld, says_where_on_earth_it_is) {
   EXPECT_THAT(result.out, HasSubstr("origin   latitude 53.5000000, longitude -9.2500000, altitude 2.00 m\n"));
 }
 
-TEST_F(CheckedWorld, tries_where_it_will_write) {
+TEST_F(CheckedWorld, TriesWhereItWillWrite) {
   const std::string world = model("a", "<sphere/>");
   EXPECT_THAT(check(world, "recording: {directory: /proc/logs, mcap: true}\n").err,
               HasSubstr("recording.directory: cannot write into /proc: "));
@@ -506,7 +506,7 @@ TEST_F(CheckedWorld, tries_where_it_will_write) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << "nothing is left behind";
 }
 
-TEST_F(CheckedWorld, tries_a_pseudo_terminal) {
+TEST_F(CheckedWorld, TriesAPseudoTerminal) {
   write("world.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + model("a", "<sphere/>") + "</world></sdf>");
   const auto check_link = [&](const std::string& link) {
     return run_process({SONARD_PROGRAM, "check",
@@ -521,14 +521,14 @@ TEST_F(CheckedWorld, tries_a_pseudo_terminal) {
   EXPECT_FALSE(std::filesystem::is_symlink(good)) << "nothing is left behind";
 }
 
-TEST(CommandLine, has_its_own_exit_code_for_wrong_use) {
+TEST(CommandLine, HasItsOwnExitCodeForWrongUse) {
   EXPECT_EQ(run_process({SONARD_PROGRAM}).exit_code, 64);
   EXPECT_EQ(run_process({SONARD_PROGRAM, "check"}).exit_code, 64);
   EXPECT_EQ(run_process({SONARD_PROGRAM, "serve", "x.yaml"}).exit_code, 64);
   EXPECT_EQ(run_process({SONARD_PROGRAM, "run", "x.yaml", "--log-level", "loud"}).exit_code, 64);
 }
 
-TEST(CommandLine, explains_itself) {
+TEST(CommandLine, ExplainsItself) {
   const ProcessResult help = run_process({SONARD_PROGRAM, "--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out,
@@ -538,21 +538,21 @@ TEST(CommandLine, explains_itself) {
   EXPECT_THAT(version.out, StartsWith("sonard "));
 }
 
-TEST(Run, refuses_a_broken_configuration_like_check) {
+TEST(Run, RefusesABrokenConfigurationLikeCheck) {
   const std::string file = broken_folder + "bad_unit.yaml";
   const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr(file + ":15:18: water.temperature_c: '10C' contains a unit"));
 }
 
-TEST(Run, names_the_key_of_a_missing_world) {
+TEST(Run, NamesTheKeyOfAMissingWorld) {
   const std::string file = broken_folder + "missing_world.yaml";
   const ProcessResult result = run_process({SONARD_PROGRAM, "run", file});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(lines_of(result.err), Contains(StartsWith(file + ":3:9: world.file: ")));
 }
 
-TEST(Run, has_its_own_exit_code_for_an_address_in_use) {
+TEST(Run, HasItsOwnExitCodeForAnAddressInUse) {
   const HeldPort held(SOCK_DGRAM, "127.91.0.18", "address_in_use.yaml");
   const ProcessResult result = run_process({SONARD_PROGRAM, "run", held.config()});
   EXPECT_EQ(result.exit_code, 3);

@@ -33,7 +33,7 @@ ProcessResult selftest(const std::string& setting, const std::string& engine) {
   return run_process({"env", setting, SONARD_PROGRAM, "selftest", "--engine", engine});
 }
 
-TEST(SelfTest, passes_on_every_engine_and_names_it) {
+TEST(SelfTest, PassesOnEveryEngineAndNamesIt) {
   const ProcessResult gpu = selftest("A=", "gpu");
   EXPECT_EQ(gpu.exit_code, 0) << gpu.err;
   EXPECT_THAT(gpu.out, ContainsRegex("OpenGL   devices of EGL:\n         0: "));
@@ -49,7 +49,7 @@ TEST(SelfTest, passes_on_every_engine_and_names_it) {
   EXPECT_THAT(cpu.out, HasSubstr("\nPASS\n"));
 }
 
-TEST(SelfTest, measures_both_engines_and_tells_both_times) {
+TEST(SelfTest, MeasuresBothEnginesAndTellsBothTimes) {
   const ProcessResult result = run_process({SONARD_PROGRAM, "selftest"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   if (result.out.find(software) != std::string::npos) {
@@ -61,7 +61,7 @@ TEST(SelfTest, measures_both_engines_and_tells_both_times) {
   EXPECT_THAT(result.out, ContainsRegex("; (cpu|gpu) is taken"));
 }
 
-TEST(SelfTest, tells_programs_the_same) {
+TEST(SelfTest, TellsProgramsTheSame) {
   const ProcessResult result = run_process({SONARD_PROGRAM, "selftest", "--json"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(result.out);
@@ -82,21 +82,21 @@ TEST(SelfTest, tells_programs_the_same) {
   EXPECT_EQ(failed["device_taken"], nullptr);
 }
 
-TEST(SelfTest, fails_with_its_own_exit_code_when_the_gpu_is_asked_for_without_gl) {
+TEST(SelfTest, FailsWithItsOwnExitCodeWhenTheGpuIsAskedForWithoutGl) {
   const ProcessResult result = selftest(no_gl, "gpu");
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.err, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
   EXPECT_THAT(result.out, HasSubstr("libgl1-mesa-dri")) << "what to install";
 }
 
-TEST(SelfTest, names_the_devices_there_are_when_the_one_asked_for_is_not_there) {
+TEST(SelfTest, NamesTheDevicesThereAreWhenTheOneAskedForIsNotThere) {
   const ProcessResult result =
       run_process({SONARD_PROGRAM, "selftest", "--engine", "gpu", "--gpu-device", "no such card"});
   EXPECT_EQ(result.exit_code, 4);
   EXPECT_THAT(result.err, HasSubstr("gpu.device: no device 'no such card' with OpenGL 4.5 (found 0: "));
 }
 
-TEST(SelfTest, uses_the_cpu_where_there_is_no_gl) {
+TEST(SelfTest, UsesTheCpuWhereThereIsNoGl) {
   for (const char* engine : {"auto", "cpu"}) {
     const ProcessResult result = selftest(no_gl, engine);
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -104,7 +104,7 @@ TEST(SelfTest, uses_the_cpu_where_there_is_no_gl) {
   }
 }
 
-TEST(SelfTest, knows_no_other_engine) {
+TEST(SelfTest, KnowsNoOtherEngine) {
   EXPECT_EQ(selftest("A=", "gl").exit_code, 64);
 }
 
@@ -152,7 +152,7 @@ class ServedConfig {
   std::string path_;
 };
 
-TEST(Run, serves_from_the_cpu_where_there_is_no_gl) {
+TEST(Run, ServesFromTheCpuWhereThereIsNoGl) {
   const ServedConfig config("auto");
   const ProcessResult result = config.run_without_gl();
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
@@ -163,7 +163,7 @@ TEST(Run, serves_from_the_cpu_where_there_is_no_gl) {
   EXPECT_THAT(result.out, ContainsRegex("sonard ready heads=1 .*engine=\"cpu, Embree [34]"));
 }
 
-TEST(Run, measures_the_engines_at_the_first_start_only_and_never_a_software_opengl) {
+TEST(Run, MeasuresTheEnginesAtTheFirstStartOnlyAndNeverASoftwareOpengl) {
   const ServedConfig config("auto");
   const TemporaryFolder cache;
   const std::vector<std::string> environment{"XDG_CACHE_HOME=" + cache.path().string()};
@@ -184,14 +184,14 @@ TEST(Run, measures_the_engines_at_the_first_start_only_and_never_a_software_open
   EXPECT_THAT(again, HasSubstr("sonard ready heads=1"));
 }
 
-TEST(Run, ends_with_its_own_exit_code_when_the_gpu_is_asked_for_without_gl) {
+TEST(Run, EndsWithItsOwnExitCodeWhenTheGpuIsAskedForWithoutGl) {
   const ServedConfig config("gpu");
   const ProcessResult result = config.run_without_gl();
   EXPECT_EQ(result.exit_code, 4) << result.out;
   EXPECT_THAT(result.out, HasSubstr("renderer: no OpenGL 4.5 through EGL"));
 }
 
-TEST(Run, logs_json_from_its_first_line_to_its_last) {
+TEST(Run, LogsJsonFromItsFirstLineToItsLast) {
   const ServedConfig config("cpu");
   const ProcessResult result = config.run({"A="}, {"--log-format", "json"});
   EXPECT_EQ(result.exit_code, 0) << result.out;
@@ -210,7 +210,7 @@ TEST(Run, logs_json_from_its_first_line_to_its_last) {
   EXPECT_THAT(engine, StartsWith("cpu, Embree"));
 }
 
-TEST(Run, tells_problems_as_json_where_the_log_is) {
+TEST(Run, TellsProblemsAsJsonWhereTheLogIs) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "a.yaml") << "wibble: 1\n";
   const ProcessResult result =
@@ -228,7 +228,7 @@ TEST(Run, tells_problems_as_json_where_the_log_is) {
   EXPECT_EQ(wibbles, 1);
 }
 
-TEST(Check, shows_the_engine_that_is_asked_for) {
+TEST(Check, ShowsTheEngineThatIsAskedFor) {
   const ServedConfig config("gpu");
   const ProcessResult result = run_process({SONARD_PROGRAM, "check", "--no-network", config.path()});
   EXPECT_EQ(result.exit_code, 0) << result.err;

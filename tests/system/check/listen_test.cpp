@@ -49,7 +49,7 @@ class Listen : public testing::Test {
   std::string config_ = testing::TempDir() + "listen_" + std::to_string(getpid()) + ".yaml";
 };
 
-TEST_F(Listen, shows_who_sends_what) {
+TEST_F(Listen, ShowsWhoSendsWhat) {
   const ChildProcess python = publisher();
   const ProcessResult result = listen();
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err << python.output();
@@ -64,13 +64,13 @@ TEST_F(Listen, shows_who_sends_what) {
                   "0\\.0, pitch -?0\\.0, yaw 9[0-9]\\.[0-9] degrees; "));
 }
 
-TEST_F(Listen, says_that_nothing_arrives_and_what_to_look_at) {
+TEST_F(Listen, SaysThatNothingArrivesAndWhatToLookAt) {
   const ProcessResult result = listen();
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.out, HasSubstr("no pose of the vehicle: nothing arrived: is the publisher running"));
 }
 
-TEST_F(Listen, says_that_a_sender_is_not_allowed) {
+TEST_F(Listen, SaysThatASenderIsNotAllowed) {
   const ChildProcess python = publisher();
   const ProcessResult result = listen(", allow: [10.0.0.0/8]");
   EXPECT_EQ(result.exit_code, 2);
@@ -79,7 +79,7 @@ TEST_F(Listen, says_that_a_sender_is_not_allowed) {
   EXPECT_THAT(result.err, HasSubstr("not in the allow list"));
 }
 
-TEST_F(Listen, wants_an_input_to_listen_to) {
+TEST_F(Listen, WantsAnInputToListenTo) {
   const ProcessResult result = listen_with("initial: {position_m: [0, 0, 0]}");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.out, HasSubstr("nothing to listen to"));

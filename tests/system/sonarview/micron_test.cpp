@@ -128,7 +128,7 @@ std::vector<std::string> operator+(std::vector<std::string> left, const std::vec
   return left;
 }
 
-TEST_F(SonarviewMicron, a_full_turn_by_tcp_has_every_sample_in_its_place) {
+TEST_F(SonarviewMicron, AFullTurnByTcpHasEverySampleInItsPlace) {
   const FakeHead head(by_tcp(), {.echo = echo});
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "1", "--out", path("out")} + forty_bins_);
@@ -141,7 +141,7 @@ TEST_F(SonarviewMicron, a_full_turn_by_tcp_has_every_sample_in_its_place) {
   EXPECT_TRUE(fs::exists(path("out/turn-last.png")));
 }
 
-TEST_F(SonarviewMicron, says_what_the_head_covers) {
+TEST_F(SonarviewMicron, SaysWhatTheHeadCovers) {
   const FakeHead head(by_tcp(), {.echo = echo});
   const ProcessResult result =
       run({"--tcp", head.tcp(), "--lines", "2", "--range", "20", "--bins", "200", "--sound-speed", "1500"});
@@ -153,7 +153,7 @@ TEST_F(SonarviewMicron, says_what_the_head_covers) {
   EXPECT_THAT(result.err, HasSubstr("covers 19.968 m of 20 m"));
 }
 
-TEST_F(SonarviewMicron, a_pty_that_splits_and_makes_noise_loses_nothing) {
+TEST_F(SonarviewMicron, APtyThatSplitsAndMakesNoiseLosesNothing) {
   const FakeHead head(by_pty(), {.echo = echo, .carry = poor_line()});
   const ProcessResult result =
       run(std::vector<std::string>{"--tty", head.tty(), "--turns", "2", "--step", "3.6", "--out", path("out"),
@@ -170,7 +170,7 @@ TEST_F(SonarviewMicron, a_pty_that_splits_and_makes_noise_loses_nothing) {
   EXPECT_EQ(result.err, "");
 }
 
-TEST_F(SonarviewMicron, a_tcp_server_that_splits_and_makes_noise_loses_nothing) {
+TEST_F(SonarviewMicron, ATcpServerThatSplitsAndMakesNoiseLosesNothing) {
   const FakeHead head(by_tcp(), {.echo = echo, .carry = poor_line()});
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "1", "--scan-left", "--step", "3.6",
@@ -180,7 +180,7 @@ TEST_F(SonarviewMicron, a_tcp_server_that_splits_and_makes_noise_loses_nothing) 
   expect_polar(path("out/polar-last.png"), 100, 0, 64);
 }
 
-TEST_F(SonarviewMicron, a_sector_through_astern_by_udp) {
+TEST_F(SonarviewMicron, ASectorThroughAsternByUdp) {
   const FakeHead head(by_udp(), {.echo = echo});
   const ProcessResult result = run(std::vector<std::string>{"--udp", head.udp(), "--turns", "2", "--sector",
                                                             "162", "-162", "--out", path("out")} +
@@ -193,7 +193,7 @@ TEST_F(SonarviewMicron, a_sector_through_astern_by_udp) {
   EXPECT_TRUE(fs::exists(path("out/fan-last.png")));
 }
 
-TEST_F(SonarviewMicron, four_bit_lines_hold_the_window) {
+TEST_F(SonarviewMicron, FourBitLinesHoldTheWindow) {
   const FakeHead head(by_tcp(), {.echo = echo});
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--lines", "3", "--four-bit", "--ad-low", "0",
@@ -212,7 +212,7 @@ TEST_F(SonarviewMicron, four_bit_lines_hold_the_window) {
   EXPECT_THAT(lines[0], HasSubstr("\"bits\":4,\"bins\":\"" + expected + "\"}"));
 }
 
-TEST_F(SonarviewMicron, writes_lines_as_they_came) {
+TEST_F(SonarviewMicron, WritesLinesAsTheyCame) {
   const FakeHead head(by_tcp(), {.echo = echo});
   const ProcessResult result = run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "1", "--raw",
                                                             path("lines.jsonl"), "--log-lines"} +
@@ -239,7 +239,7 @@ TEST_F(SonarviewMicron, writes_lines_as_they_came) {
   EXPECT_EQ(values_of(result.out, "line").at("bearing_deg"), "-1.8");
 }
 
-TEST_F(SonarviewMicron, goes_on_where_it_was_when_a_tcp_server_comes_back) {
+TEST_F(SonarviewMicron, GoesOnWhereItWasWhenATcpServerComesBack) {
   const FakeHead head(by_tcp(), {.echo = echo, .vanish_at_ping = 60});
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "2"} + forty_bins_);
@@ -255,7 +255,7 @@ TEST_F(SonarviewMicron, goes_on_where_it_was_when_a_tcp_server_comes_back) {
   EXPECT_EQ(result.exit_code, 4);
 }
 
-TEST_F(SonarviewMicron, opens_a_tty_again_that_had_vanished) {
+TEST_F(SonarviewMicron, OpensATtyAgainThatHadVanished) {
   const FakeHead head(by_pty(folder_ / "tty"), {.echo = echo, .vanish_at_ping = 60});
   const ProcessResult result =
       run(std::vector<std::string>{"--tty", head.tty(), "--turns", "1"} + forty_bins_);
@@ -264,7 +264,7 @@ TEST_F(SonarviewMicron, opens_a_tty_again_that_had_vanished) {
   EXPECT_EQ(values_of(result.out, "summary").at("turns"), "1");
 }
 
-TEST_F(SonarviewMicron, gives_up_on_a_line_that_does_not_come_back) {
+TEST_F(SonarviewMicron, GivesUpOnALineThatDoesNotComeBack) {
   const FakeHead head(by_tcp(), {.echo = echo, .vanish_at_ping = 20, .away = 1h});
   const ProcessResult result =
       run(std::vector<std::string>{"--tcp", head.tcp(), "--turns", "1", "--wait", "1.5"} + forty_bins_);
@@ -272,7 +272,7 @@ TEST_F(SonarviewMicron, gives_up_on_a_line_that_does_not_come_back) {
   EXPECT_THAT(result.err, HasSubstr("did not open again within 1.5 s: Connection refused"));
 }
 
-TEST_F(SonarviewMicron, a_line_that_nobody_answers_on_has_no_head) {
+TEST_F(SonarviewMicron, ALineThatNobodyAnswersOnHasNoHead) {
   const FakeHead other(by_pty(), {.device =
                                       [] {
                                         micron::DeviceConfig device;
@@ -289,14 +289,14 @@ TEST_F(SonarviewMicron, a_line_that_nobody_answers_on_has_no_head) {
   EXPECT_EQ(run({"--tty", other.tty(), "--node", "7", "--lines", "4"}).exit_code, 0);
 }
 
-TEST_F(SonarviewMicron, a_line_that_is_not_there_has_no_head) {
+TEST_F(SonarviewMicron, ALineThatIsNotThereHasNoHead) {
   const ProcessResult result = run({"--tty", path("nothing"), "--wait", "1"});
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.err, HasSubstr("cannot open tty " + path("nothing")));
   EXPECT_THAT(result.err, HasSubstr("No such file or directory"));
 }
 
-TEST_F(SonarviewMicron, reboots_a_head_first) {
+TEST_F(SonarviewMicron, RebootsAHeadFirst) {
   FakeHead::Settings settings{.echo = echo};
   settings.device.least_centring_time = 2s;  // long enough for the message
   const FakeHead head(by_tcp(), settings);
@@ -306,7 +306,7 @@ TEST_F(SonarviewMicron, reboots_a_head_first) {
   EXPECT_THAT(result.err, HasSubstr("centring"));
 }
 
-TEST_F(SonarviewMicron, a_file_that_cannot_be_written_is_said_at_once) {
+TEST_F(SonarviewMicron, AFileThatCannotBeWrittenIsSaidAtOnce) {
   const ProcessResult result = run({"--tcp", "127.0.0.1:1", "--raw", path("no/such/folder")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.err, HasSubstr("cannot write " + path("no/such/folder")));

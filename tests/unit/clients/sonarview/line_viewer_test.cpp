@@ -121,20 +121,20 @@ RunOptions options() {
   return options;
 }
 
-TEST(LineViewer, a_line_that_cannot_be_opened_has_no_head) {
+TEST(LineViewer, ALineThatCannotBeOpenedHasNoHead) {
   Bytes viewer(options(), {.there = false});
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
   EXPECT_THAT(viewer.said, HasSubstr("within 0.3 s: Connection refused"));
   EXPECT_EQ(viewer.counters->pings, 0U);
 }
 
-TEST(LineViewer, an_open_line_without_a_word_has_no_head) {
+TEST(LineViewer, AnOpenLineWithoutAWordHasNoHead) {
   Bytes viewer(options(), {.bytes = 0});
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::no_head);
   EXPECT_THAT(viewer.said, HasSubstr("open, and silent"));
 }
 
-TEST(LineViewer, a_line_that_is_lost_is_opened_again_and_counted) {
+TEST(LineViewer, ALineThatIsLostIsOpenedAgainAndCounted) {
   RunOptions run = options();
   run.wait = 30s;
   run.pings = 6;
@@ -146,7 +146,7 @@ TEST(LineViewer, a_line_that_is_lost_is_opened_again_and_counted) {
   EXPECT_THAT(viewer.said, HasSubstr("is open again"));
 }
 
-TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
+TEST(LineViewer, ALineThatDoesNotComeBackLeavesTheRunIncomplete) {
   Bytes viewer(options(), {.closes = true, .leaves = true});
   EXPECT_EQ(viewer.run_quietly(), ExitStatus::incomplete);
   EXPECT_THAT(viewer.said, HasSubstr("did not open again within 0.3 s"));
@@ -154,7 +154,7 @@ TEST(LineViewer, a_line_that_does_not_come_back_leaves_the_run_incomplete) {
 }
 
 /// A head that serves another client accepts the connection and closes it.
-TEST(LineViewer, a_line_that_is_closed_whenever_it_opens_is_given_up_and_said_once) {
+TEST(LineViewer, ALineThatIsClosedWheneverItOpensIsGivenUpAndSaidOnce) {
   RunOptions run = options();
   run.wait = 1200ms;
   Bytes viewer(run, {.bytes = 0, .closes = true});
@@ -167,7 +167,7 @@ TEST(LineViewer, a_line_that_is_closed_whenever_it_opens_is_given_up_and_said_on
   EXPECT_THAT(viewer.said, HasSubstr("within 1.2 s: " + why));
 }
 
-TEST(LineViewer, pings_that_stay_away_leave_it_incomplete_too) {
+TEST(LineViewer, PingsThatStayAwayLeaveItIncompleteToo) {
   RunOptions run = options();
   run.ping_wait = 200ms;
   Bytes viewer(run, {});
@@ -175,7 +175,7 @@ TEST(LineViewer, pings_that_stay_away_leave_it_incomplete_too) {
   EXPECT_THAT(viewer.said, HasSubstr("no more pings"));
 }
 
-TEST(LineViewer, a_time_that_is_over_ends_it_well) {
+TEST(LineViewer, ATimeThatIsOverEndsItWell) {
   RunOptions run = options();
   run.duration = 200ms;
   Bytes viewer(run, {});
@@ -184,7 +184,7 @@ TEST(LineViewer, a_time_that_is_over_ends_it_well) {
   EXPECT_EQ(viewer.said, "");
 }
 
-TEST(LineViewer, an_answer_to_its_goodbye_is_waited_for_but_not_for_ever) {
+TEST(LineViewer, AnAnswerToItsGoodbyeIsWaitedForButNotForEver) {
   for (const bool answers : {true, false}) {
     RunOptions run = options();
     run.pings = 3;

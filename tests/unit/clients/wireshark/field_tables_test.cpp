@@ -16,7 +16,7 @@ std::string checked_in(const std::string& name) {
   return {std::istreambuf_iterator<char>{file}, {}};
 }
 
-TEST(FieldTables, files_are_up_to_date) {
+TEST(FieldTables, FilesAreUpToDate) {
   for (const FieldTables& tables : device_field_tables()) {
     const std::string device{tables.device};
     const std::string file = "sonard_" + device + "_fields.lua";
@@ -26,7 +26,7 @@ TEST(FieldTables, files_are_up_to_date) {
 }
 
 // If the code that makes a table lacks a name, the table has "unknown" there.
-TEST(FieldTables, name_every_message) {
+TEST(FieldTables, NameEveryMessage) {
   for (const FieldTables& tables : device_field_tables()) {
     const std::string lua = tables.lua();
     EXPECT_EQ(lua.find("unknown"), std::string::npos) << tables.device;
@@ -36,7 +36,7 @@ TEST(FieldTables, name_every_message) {
   }
 }
 
-TEST(FieldTables, have_a_dissector_that_loads_them) {
+TEST(FieldTables, HaveADissectorThatLoadsThem) {
   for (const FieldTables& tables : device_field_tables()) {
     const std::string device{tables.device};
     EXPECT_NE(checked_in("sonard_" + device + ".lua").find("sonard_" + device + "_fields.lua"),

@@ -6,13 +6,13 @@
 namespace sonard {
 namespace {
 
-TEST(Printable, leaves_text_as_it_is) {
+TEST(Printable, LeavesTextAsItIs) {
   for (const char* text : {"", "bow", "a\\b 'c' \"d\"", "Gerät, 声纳, 🐬"}) {
     EXPECT_EQ(printable(text), text);
   }
 }
 
-TEST(Printable, makes_one_line_that_commands_no_terminal) {
+TEST(Printable, MakesOneLineThatCommandsNoTerminal) {
   EXPECT_EQ(printable("a\nb\r\tc"), "a\\nb\\x0d\\tc");
   EXPECT_EQ(printable("\x1b[2J\x07\x7f"), "\\x1b[2J\\x07\\x7f");
   EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
@@ -25,7 +25,7 @@ TEST(Printable, makes_one_line_that_commands_no_terminal) {
 }
 
 // Ill-formed bytes after table 3-7 of the Unicode standard.
-TEST(Printable, shows_bytes_that_are_no_utf_8) {
+TEST(Printable, ShowsBytesThatAreNoUtf8) {
   EXPECT_EQ(printable("\xff"), "\\xff");
   EXPECT_EQ(printable("\x80z"), "\\x80z");
   EXPECT_EQ(printable("\xc3"), "\\xc3") << "cut off";

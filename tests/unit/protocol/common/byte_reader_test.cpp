@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-TEST(ByteReader, reads_least_significant_byte_first) {
+TEST(ByteReader, ReadsLeastSignificantByteFirst) {
   const Bytes bytes{0x01, 0x03, 0x02, 0x07, 0x06, 0x05, 0x04, 0xF8, 0xF7, 0xF6, 0xF5, 0xF4, 0xF3, 0xF2, 0xF1};
   ByteReader reader{bytes};
   EXPECT_EQ(reader.u8("a"), 0x01);
@@ -25,13 +25,13 @@ TEST(ByteReader, reads_least_significant_byte_first) {
   EXPECT_TRUE(reader.ok());
 }
 
-TEST(ByteReader, reads_odd_widths) {
+TEST(ByteReader, ReadsOddWidths) {
   const Bytes bytes{0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77};
   ByteReader reader{bytes};
   EXPECT_EQ(reader.little_endian(7, "time"), 0x77665544332211U);
 }
 
-TEST(ByteReader, latches_the_first_error_and_reads_zero_from_then_on) {
+TEST(ByteReader, LatchesTheFirstErrorAndReadsZeroFromThenOn) {
   const Bytes bytes{0x01, 0x02, 0x03};
   ByteReader reader{bytes};
   EXPECT_EQ(reader.u16le("first"), 0x0201);
@@ -42,14 +42,14 @@ TEST(ByteReader, latches_the_first_error_and_reads_zero_from_then_on) {
   EXPECT_EQ(*reader.error(), (WireError{WireErrorReason::truncated, 2, "second"}));
 }
 
-TEST(ByteReader, gives_no_partial_span) {
+TEST(ByteReader, GivesNoPartialSpan) {
   const Bytes bytes{0x01, 0x02, 0x03};
   ByteReader reader{bytes};
   EXPECT_TRUE(reader.bytes(4, "data").empty());
   EXPECT_FALSE(reader.ok());
 }
 
-TEST(ByteReader, takes_a_span_to_the_last_byte) {
+TEST(ByteReader, TakesASpanToTheLastByte) {
   const Bytes bytes{0x01, 0x02, 0x03};
   ByteReader reader{bytes};
   reader.skip(1, "spare");
@@ -60,7 +60,7 @@ TEST(ByteReader, takes_a_span_to_the_last_byte) {
   EXPECT_TRUE(reader.ok());
 }
 
-TEST(ByteReader, refuses_a_count_that_would_overflow_the_offset) {
+TEST(ByteReader, RefusesACountThatWouldOverflowTheOffset) {
   const Bytes bytes{0x01, 0x02};
   ByteReader reader{bytes};
   reader.skip(1, "spare");
@@ -68,7 +68,7 @@ TEST(ByteReader, refuses_a_count_that_would_overflow_the_offset) {
   EXPECT_EQ(*reader.error(), (WireError{WireErrorReason::truncated, 1, "data"}));
 }
 
-TEST(ByteReader, can_blame_a_field_read_before) {
+TEST(ByteReader, CanBlameAFieldReadBefore) {
   const Bytes bytes{0x01, 0x02};
   ByteReader reader{bytes};
   reader.skip(2, "count");
@@ -76,7 +76,7 @@ TEST(ByteReader, can_blame_a_field_read_before) {
   EXPECT_EQ(*reader.error(), (WireError{WireErrorReason::bad_length, 0, "count"}));
 }
 
-TEST(ByteWriter, appends_least_significant_byte_first) {
+TEST(ByteWriter, AppendsLeastSignificantByteFirst) {
   Bytes out{0xEE};
   ByteWriter writer{out};
   writer.u8(0x01);
@@ -90,14 +90,14 @@ TEST(ByteWriter, appends_least_significant_byte_first) {
       out, (Bytes{0xEE, 0x01, 0x03, 0x02, 0x07, 0x06, 0x05, 0x04, 0x0A, 0x09, 0x08, 0x00, 0x00, 0xAA, 0xBB}));
 }
 
-TEST(ByteWriter, writes_eight_bytes) {
+TEST(ByteWriter, WritesEightBytes) {
   Bytes out;
   ByteWriter writer{out};
   writer.u64le(0x0102030405060708U);
   EXPECT_EQ(out, (Bytes{8, 7, 6, 5, 4, 3, 2, 1}));
 }
 
-TEST(WireError, prints_as_one_line) {
+TEST(WireError, PrintsAsOneLine) {
   EXPECT_EQ(to_string(WireError{WireErrorReason::truncated, 22, "end_range"}),
             "truncated: field end_range at byte 22");
   EXPECT_EQ(to_string(WireErrorReason::bad_length), "bad_length");

@@ -8,13 +8,13 @@
 namespace sonard {
 namespace {
 
-TEST(LinearSamples, a_square_root_is_squared) {
+TEST(LinearSamples, ASquareRootIsSquared) {
   std::vector<std::uint8_t> samples{0, 16, 128, 254, 255};
   make_linear(samples, 0.5);
   EXPECT_EQ(samples, (std::vector<std::uint8_t>{0, 1, 64, 253, 255}));  // 255 (x / 255)^2
 }
 
-TEST(LinearSamples, amplitudes_stay_as_they_are) {
+TEST(LinearSamples, AmplitudesStayAsTheyAre) {
   std::vector<std::uint8_t> samples{0, 1, 77, 254, 255};
   make_linear(samples, 1.0);
   EXPECT_EQ(samples, (std::vector<std::uint8_t>{0, 1, 77, 254, 255}));

@@ -19,34 +19,34 @@ Result<int, std::string> half(int number) {
   return number / 2;
 }
 
-TEST(Result, holds_the_value) {
+TEST(Result, HoldsTheValue) {
   const auto result = half(6);
   ASSERT_TRUE(result);
   EXPECT_EQ(*result, 3);
   EXPECT_EQ(result.value_or(-1), 3);
 }
 
-TEST(Result, holds_the_error) {
+TEST(Result, HoldsTheError) {
   const auto result = half(7);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error(), "odd");
   EXPECT_EQ(result.value_or(-1), -1);
 }
 
-TEST(Result, converts_into_a_variant_value) {
+TEST(Result, ConvertsIntoAVariantValue) {
   using Message = std::variant<int, std::string>;
   const Result<Message, WireError> result = std::string{"text"};
   ASSERT_TRUE(result);
   EXPECT_EQ(std::get<std::string>(*result), "text");
 }
 
-TEST(Result, moves_its_value_out) {
+TEST(Result, MovesItsValueOut) {
   Result<std::unique_ptr<int>, WireError> result = std::make_unique<int>(5);
   const std::unique_ptr<int> taken = *std::move(result);
   EXPECT_EQ(*taken, 5);
 }
 
-TEST(Result, compares_by_content) {
+TEST(Result, ComparesByContent) {
   EXPECT_EQ(half(4), half(4));
   EXPECT_EQ(half(1), half(3));
   EXPECT_FALSE(half(4) == half(6));

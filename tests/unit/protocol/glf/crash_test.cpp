@@ -23,7 +23,7 @@ struct SmallLog {
   }
 };
 
-TEST(Crash, whole_logs_are_indexed) {
+TEST(Crash, WholeLogsAreIndexed) {
   const SmallLog log;
   for (const Bytes& file : {small_dat(), packed(small_dat())}) {
     const auto view = LogView::open(file);
@@ -47,7 +47,7 @@ TEST(Crash, whole_logs_are_indexed) {
   }
 }
 
-TEST(Crash, every_cut_keeps_the_whole_records_and_can_be_closed) {
+TEST(Crash, EveryCutKeepsTheWholeRecordsAndCanBeClosed) {
   const SmallLog log;
   const Bytes whole = small_dat();
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -72,7 +72,7 @@ TEST(Crash, every_cut_keeps_the_whole_records_and_can_be_closed) {
   }
 }
 
-TEST(Crash, tails_say_why_and_where) {
+TEST(Crash, TailsSayWhyAndWhere) {
   Bytes dat = small_dat();
   dat.resize(dat.size() - 3);
   const SmallLog log;
@@ -85,7 +85,7 @@ TEST(Crash, tails_say_why_and_where) {
   EXPECT_EQ(LogView::open(dat)->index().tail_size, 1000U);
 }
 
-TEST(Crash, archives_that_were_cut_are_refused) {
+TEST(Crash, ArchivesThatWereCutAreRefused) {
   const Bytes whole = packed(small_dat());
   for (std::size_t size = 1; size < whole.size(); ++size) {
     const auto view = LogView::open(std::span{whole}.first(size));
@@ -94,7 +94,7 @@ TEST(Crash, archives_that_were_cut_are_refused) {
   }
 }
 
-TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
+TEST(Crash, OfAnArchiveWithoutItsEndEveryWholeRecordIsLeft) {
   const SmallLog log;
   const Bytes whole = packed(small_dat());
   // The records start after both local headers, the .cfg and the first block's header. One block holds them
@@ -116,7 +116,7 @@ TEST(Crash, of_an_archive_without_its_end_every_whole_record_is_left) {
   }
 }
 
-TEST(Crash, of_several_blocks_none_is_lost) {
+TEST(Crash, OfSeveralBlocksNoneIsLost) {
   std::vector<Bytes> parts;
   for (int i = 0; i < 40; ++i) {
     parts.push_back(encode(patterned_image(i), 0));  // 3.8 kB each, uncompressed: three blocks

@@ -11,7 +11,7 @@ Bytes text(const std::string& characters) {
   return {characters.begin(), characters.end()};
 }
 
-TEST(Crc32, is_that_of_zip) {
+TEST(Crc32, IsThatOfZip) {
   Crc32 crc;
   EXPECT_EQ(crc.value(), 0U);
   crc.add(text("1234"));
@@ -22,7 +22,7 @@ TEST(Crc32, is_that_of_zip) {
 // One stored block and the Adler-32 of RFC 1950: a = 1 + 97, b = 1 + 97 for the one byte 'a'.
 const Bytes stored_a{0x78, 0x01, 0x01, 0x01, 0x00, 0xFE, 0xFF, 'a', 0x00, 0x62, 0x00, 0x62};
 
-TEST(Inflate, takes_a_stream_of_the_size_that_was_asked_for) {
+TEST(Inflate, TakesAStreamOfTheSizeThatWasAskedFor) {
   EXPECT_EQ(inflate_exactly(stored_a, 1, DeflateForm::zlib), text("a"));
   EXPECT_EQ(inflate_exactly(std::span{stored_a}.subspan(2), 1, DeflateForm::bare), text("a"));
   EXPECT_FALSE(inflate_exactly(stored_a, 0, DeflateForm::zlib));
@@ -30,7 +30,7 @@ TEST(Inflate, takes_a_stream_of_the_size_that_was_asked_for) {
   EXPECT_FALSE(inflate_exactly(stored_a, 1, DeflateForm::bare));
 }
 
-TEST(Inflate, refuses_a_stream_that_is_cut_or_wrong) {
+TEST(Inflate, RefusesAStreamThatIsCutOrWrong) {
   for (std::size_t size = 0; size < stored_a.size(); ++size) {
     EXPECT_FALSE(inflate_exactly(std::span{stored_a}.first(size), 1, DeflateForm::zlib)) << size;
   }
@@ -40,7 +40,7 @@ TEST(Inflate, refuses_a_stream_that_is_cut_or_wrong) {
 }
 
 // No machine has that much memory, so allocating it would throw.
-TEST(Inflate, asks_for_no_memory_that_the_stream_cannot_fill) {
+TEST(Inflate, AsksForNoMemoryThatTheStreamCannotFill) {
   EXPECT_FALSE(inflate_exactly(stored_a, std::uint64_t{1} << 62, DeflateForm::zlib));
 }
 

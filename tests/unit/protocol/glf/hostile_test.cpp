@@ -20,7 +20,7 @@ Bytes other_record(std::uint8_t type, std::uint32_t length) {
   return record;
 }
 
-TEST(Hostile, other_types_are_skipped_by_their_length_and_counted) {
+TEST(Hostile, OtherTypesAreSkippedByTheirLengthAndCounted) {
   const Bytes dat = joined({encode(small_image()),
                             other_record(1, 21),
                             other_record(99, 180),
@@ -33,7 +33,7 @@ TEST(Hostile, other_types_are_skipped_by_their_length_and_counted) {
   EXPECT_EQ(*view->status(view->index().records[1]), small_status());
 }
 
-TEST(Hostile, other_types_of_impossible_length_cost_themselves) {
+TEST(Hostile, OtherTypesOfImpossibleLengthCostThemselves) {
   Bytes other = other_record(99, 40);
   for (const std::uint32_t length : {0U, 20U}) {
     patch(other, 2, length);
@@ -52,14 +52,14 @@ TEST(Hostile, other_types_of_impossible_length_cost_themselves) {
 }
 
 // Real images are reported to carry 168 there.
-TEST(Hostile, wrong_lengths_of_images_do_not_matter) {
+TEST(Hostile, WrongLengthsOfImagesDoNotMatter) {
   Bytes image = encode(patterned_image(1));
   patch<std::uint32_t>(image, 2, 168);
   const Bytes dat = joined({image, image, {0xDE, 0xDE}});
   EXPECT_EQ(LogView::open(dat)->index().records.size(), 2U);
 }
 
-TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
+TEST(Hostile, DamagedImagesDoNotHideWhatComesAfterThem) {
   for (const std::size_t offset : {23U, 31U, 41U, 47U, 112U, 113U}) {
     Bytes image = encode(small_image());
     image[offset] ^= 0x80U;
@@ -81,7 +81,7 @@ TEST(Hostile, damaged_images_do_not_hide_what_comes_after_them) {
 }
 
 // If the length leads to bytes that only look like a header, the next whole record counts as the next one.
-TEST(Hostile, damaged_images_whose_length_leads_nowhere_do_not_hide_what_comes_after_them) {
+TEST(Hostile, DamagedImagesWhoseLengthLeadsNowhereDoNotHideWhatComesAfterThem) {
   constexpr std::size_t next = 60;  // inside the bearings
   Bytes image = encode(small_image());
   patch<std::uint16_t>(image, 23, 0xEFEE);
@@ -110,7 +110,7 @@ TEST(Hostile, damaged_images_whose_length_leads_nowhere_do_not_hide_what_comes_a
   EXPECT_TRUE(ends_there()) << "nor the second";
 }
 
-TEST(Hostile, what_is_no_log_is_refused) {
+TEST(Hostile, WhatIsNoLogIsRefused) {
   EXPECT_EQ(LogView::open(from_hex("89 50 4E 47")).error(),
             (WireError{WireErrorReason::bad_value, 0, "file"}));
   EXPECT_EQ(LogView::open(from_hex("50 4B 03 04")).error(),
@@ -118,7 +118,7 @@ TEST(Hostile, what_is_no_log_is_refused) {
   EXPECT_TRUE(LogView::open({})->index().records.empty());
 }
 
-TEST(Hostile, archive_without_a_dat) {
+TEST(Hostile, ArchiveWithoutADat) {
   Bytes archive = packed(small_dat());
   archive[archive.size() - 23] = 'x';  // the last letter of the last name in the directory
   EXPECT_EQ(LogView::open(archive).error(),
@@ -134,7 +134,7 @@ Bytes with_central(std::size_t offset, Value value) {
   return archive;
 }
 
-TEST(Hostile, directories_that_lie) {
+TEST(Hostile, DirectoriesThatLie) {
   const std::size_t size = packed(small_dat()).size();
   using enum WireErrorReason;
   EXPECT_EQ(LogView::open(with_central<std::uint32_t>(0, 0)).error().field, "central_signature");
@@ -151,7 +151,7 @@ TEST(Hostile, directories_that_lie) {
 }
 
 // Every bit of the header of the first block of the .dat, which follows the .cfg of 14 bytes.
-TEST(Hostile, broken_block_headers_are_refused) {
+TEST(Hostile, BrokenBlockHeadersAreRefused) {
   constexpr std::size_t block = 30 + 25 + 14 + 10 + 30 + 26;
   const Bytes archive = packed(small_dat());
   ASSERT_EQ(archive[block + 5], '*');
@@ -169,7 +169,7 @@ TEST(Hostile, broken_block_headers_are_refused) {
   }
 }
 
-TEST(Hostile, broken_config_is_refused_by_its_crc) {
+TEST(Hostile, BrokenConfigIsRefusedByItsCrc) {
   Bytes archive = packed(small_dat());
   archive[30 + 25 + 5] ^= 1U;
   EXPECT_EQ(LogView::open(archive).error(), (WireError{WireErrorReason::bad_value, 55, "crc"}));
@@ -196,7 +196,7 @@ Bytes compressed_archive(const Bytes& stream, std::uint32_t size, std::uint32_t 
   return joined({local, entry, name, stream, central, entry, Bytes(14), name, end});
 }
 
-TEST(Hostile, bombs_are_held_to_the_limit) {
+TEST(Hostile, BombsAreHeldToTheLimit) {
   constexpr std::uint32_t size = 10'000'000;
   const Bytes zeros = deflated_zeros(size);
   EXPECT_LT(zeros.size(), 10'500U);
@@ -215,7 +215,7 @@ TEST(Hostile, bombs_are_held_to_the_limit) {
   EXPECT_EQ(LogView::open(compressed_archive(zeros, 1'000'000'000, crc.value())).error().field, "entry_data");
 }
 
-TEST(Hostile, compressed_logs_are_unpacked) {
+TEST(Hostile, CompressedLogsAreUnpacked) {
   const Bytes dat = small_dat();
   const Bytes zlib = *deflate_shorter(dat, 9);
   Crc32 crc;
@@ -230,7 +230,7 @@ TEST(Hostile, compressed_logs_are_unpacked) {
 }
 
 // Each file either opens or returns an error. The sanitizers check the rest.
-TEST(Hostile, flipped_bits_never_do_more_than_damage) {
+TEST(Hostile, FlippedBitsNeverDoMoreThanDamage) {
   std::mt19937 random{4};
   const std::vector<Bytes> wholes{small_dat(), packed(small_dat())};
   std::size_t decoded = 0;

@@ -12,7 +12,7 @@
 namespace sonard::glf::testing {
 namespace {
 
-TEST(Image, bytes_are_those_of_the_tables) {
+TEST(Image, BytesAreThoseOfTheTables) {
   // 21 + 30 + 6 + 3 * 8 + 34 = 115. 1000.5 is 0x408F440000000000, 65 is 0x42820000, 1500 is 0x44BB8000.
   EXPECT_EQ(encode(small_image()),
             from_hex("2A 02 73 00 00 00 "                      // id, version, length
@@ -31,7 +31,7 @@ TEST(Image, bytes_are_those_of_the_tables) {
                      "00 80 BB 44 35 00 01 02 04 00 DE DE"));  // sound speed .. end tag
 }
 
-TEST(Image, part_of_a_fan_keeps_where_it_starts) {
+TEST(Image, PartOfAFanKeepsWhereItStarts) {
   ImageRecord image = small_image();
   image.first_line = 7;
   image.first_beam = 9;
@@ -45,7 +45,7 @@ TEST(Image, part_of_a_fan_keeps_where_it_starts) {
   EXPECT_EQ(*decode_image(record), image);
 }
 
-TEST(Image, packed_ones_have_the_size_that_the_layout_says) {
+TEST(Image, PackedOnesHaveTheSizeThatTheLayoutSays) {
   for (const int level : {1, 6, 9}) {
     const Bytes record = encode(patterned_image(3), level);
     EXPECT_EQ(value_at<std::uint16_t>(record, 21 + 24), 0) << "zlib";
@@ -60,7 +60,7 @@ TEST(Image, packed_ones_have_the_size_that_the_layout_says) {
 }
 
 // Readers take data of the image's length for raw pixels, for any type, so compressed data must be shorter.
-TEST(Image, noise_is_stored_as_it_is) {
+TEST(Image, NoiseIsStoredAsItIs) {
   ImageRecord image = patterned_image(0);
   std::mt19937 random{1};
   for (auto& pixel : image.pixels) {
@@ -74,7 +74,7 @@ TEST(Image, noise_is_stored_as_it_is) {
 }
 
 // Images from zeros, which shrink well, to noise, so that zlib returns every size.
-TEST(Image, zlib_is_never_as_long_as_the_image) {
+TEST(Image, ZlibIsNeverAsLongAsTheImage) {
   std::mt19937 random{2};
   int raw = 0;
   for (std::size_t noise = 0; noise <= 64; ++noise) {
@@ -94,7 +94,7 @@ TEST(Image, zlib_is_never_as_long_as_the_image) {
   EXPECT_LT(raw, 65);
 }
 
-TEST(Image, empty_ones_are_records_too) {
+TEST(Image, EmptyOnesAreRecordsToo) {
   ImageRecord image = small_image();
   image.lines = 0;
   image.pixels.clear();
@@ -104,7 +104,7 @@ TEST(Image, empty_ones_are_records_too) {
 }
 
 // Without the field for the packing, all later fields move by two bytes, and the size shows raw pixels (1.4).
-TEST(Image, other_versions_lack_the_packing) {
+TEST(Image, OtherVersionsLackThePacking) {
   Bytes record = encode(small_image());
   patch<std::uint16_t>(record, 21 + 4, 2);
   record.erase(record.begin() + 21 + 24, record.begin() + 21 + 26);
@@ -116,13 +116,13 @@ TEST(Image, other_versions_lack_the_packing) {
   EXPECT_EQ(*decode_image(record), patterned_image(1));
 }
 
-TEST(Image, length_in_the_header_does_not_matter) {
+TEST(Image, LengthInTheHeaderDoesNotMatter) {
   Bytes record = encode(small_image());
   patch<std::uint32_t>(record, 2, 168);
   EXPECT_EQ(*decode_image(record), small_image());
 }
 
-TEST(Image, every_shortened_one_is_refused) {
+TEST(Image, EveryShortenedOneIsRefused) {
   const Bytes record = encode(small_image());
   for (std::size_t size = 0; size < record.size(); ++size) {
     const auto decoded = decode_image(std::span{record}.first(size));
@@ -140,7 +140,7 @@ WireError error_after(std::size_t offset, Value value, Bytes record = encode(sma
   return decoded ? WireError{} : decoded.error();
 }
 
-TEST(Image, what_makes_no_sense_is_refused_with_its_place) {
+TEST(Image, WhatMakesNoSenseIsRefusedWithItsPlace) {
   using enum WireErrorReason;
   EXPECT_EQ(error_after<std::uint8_t>(0, '+'), (WireError{bad_value, 0, "id"}));
   EXPECT_EQ(error_after<std::uint8_t>(14, 3), (WireError{bad_value, 14, "data_type"}));
@@ -155,7 +155,7 @@ TEST(Image, what_makes_no_sense_is_refused_with_its_place) {
 }
 
 // More lines than the data can hold are refused before memory is allocated for them.
-TEST(Image, bombs_are_refused) {
+TEST(Image, BombsAreRefused) {
   const Bytes record = encode(patterned_image(1));
   EXPECT_EQ(error_after<std::uint32_t>(31, 51, record),
             (WireError{WireErrorReason::bad_value, 51, "pixels"}));
@@ -169,7 +169,7 @@ TEST(Image, bombs_are_refused) {
             (WireError{WireErrorReason::bad_length, 51, "pixels"}));
 }
 
-TEST(Image, values_that_contradict_themselves_are_not_written) {
+TEST(Image, ValuesThatContradictThemselvesAreNotWritten) {
   ImageRecord image = small_image();
   image.pixels.push_back(0);
   EXPECT_THROW(encode(image), std::invalid_argument);
@@ -180,7 +180,7 @@ TEST(Image, values_that_contradict_themselves_are_not_written) {
   EXPECT_THROW(encode(small_image(), -1), std::invalid_argument);
 }
 
-TEST(Image, bearings_of_a_log_fall_from_port_to_starboard) {
+TEST(Image, BearingsOfALogFallFromPortToStarboard) {
   EXPECT_EQ(bearing_for_log(-1.0405), 1.0405);
   EXPECT_EQ(bearing_for_log(1.0405), -1.0405);
 }

@@ -7,7 +7,7 @@
 namespace sonard::glf {
 namespace {
 
-TEST(LogConfig, is_the_fixed_text) {
+TEST(LogConfig, IsTheFixedText) {
   EXPECT_EQ(config_xml({.app_name = "sonard 1 & <co>",
                         .creation_time_s = 1'479'651'753.25,
                         .close_time_s = 1'479'651'760.0,

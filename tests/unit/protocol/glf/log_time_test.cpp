@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t epoch_ns = 315'532'800'000'000'000;       // 1980-01-01 00:00:00 UTC
 constexpr std::int64_t november_ns = 1'795'184'553'250'000'000;  // 2026-11-20 14:22:33.25 UTC
 
-TEST(LogTime, counts_from_1980_in_local_time) {
+TEST(LogTime, CountsFrom1980InLocalTime) {
   EXPECT_EQ(glf_time_s(epoch_ns, 0), 0.0);
   EXPECT_EQ(glf_time_s(epoch_ns, 3600), 3600.0);
   EXPECT_EQ(glf_time_s(epoch_ns, -5 * 3600), -18000.0);
@@ -21,7 +21,7 @@ TEST(LogTime, counts_from_1980_in_local_time) {
   EXPECT_EQ(glf_time_s(november_ns, 7200), 1'479'658'953.25);
 }
 
-TEST(LogTime, comes_back_to_a_quarter_of_a_microsecond) {
+TEST(LogTime, ComesBackToAQuarterOfAMicrosecond) {
   for (const std::int32_t offset_s : {0, 3600, -12'600, 50'400}) {
     for (std::int64_t ns = november_ns; ns < november_ns + 1'000'000'000; ns += 12'345'677) {
       const auto back = unix_ns(glf_time_s(ns, offset_s), offset_s);
@@ -33,14 +33,14 @@ TEST(LogTime, comes_back_to_a_quarter_of_a_microsecond) {
   EXPECT_EQ(unix_ns(-0.5, 0), epoch_ns - 500'000'000);
 }
 
-TEST(LogTime, what_is_no_time_is_none) {
+TEST(LogTime, WhatIsNoTimeIsNone) {
   EXPECT_FALSE(unix_ns(std::numeric_limits<double>::quiet_NaN(), 0));
   EXPECT_FALSE(unix_ns(std::numeric_limits<double>::infinity(), 0));
   EXPECT_FALSE(unix_ns(-1e300, 0));
   EXPECT_FALSE(unix_ns(9e9, 0));
 }
 
-TEST(LogTime, names_say_when) {
+TEST(LogTime, NamesSayWhen) {
   const double time_s = glf_time_s(november_ns, 0);
   EXPECT_EQ(log_stamp(time_s), "2026-11-20-142233");
   EXPECT_EQ(log_stamp(glf_time_s(november_ns, 10 * 3600)), "2026-11-21-002233");
@@ -49,7 +49,7 @@ TEST(LogTime, names_say_when) {
   EXPECT_EQ(config_name(log_stamp(time_s)), "log_2026-11-20-142233.cfg");
 }
 
-TEST(LogTime, dates_stay_within_what_a_zip_can_say) {
+TEST(LogTime, DatesStayWithinWhatAZipCanSay) {
   EXPECT_EQ(civil_time(-5.0), CivilTime{});
   EXPECT_EQ(civil_time(std::numeric_limits<double>::quiet_NaN()), CivilTime{});
   EXPECT_EQ(civil_time(1e300), (CivilTime{2107, 12, 31, 23, 59, 59}));

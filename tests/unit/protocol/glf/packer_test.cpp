@@ -18,7 +18,7 @@ Bytes text(const std::string& characters) {
 // 0x72D0, 2026-11-20 is 46 << 9 | 11 << 5 | 20 = 0x5D74. Names have 25 and 26 characters. 4 bytes are stored
 // in 14, 9 in 19: the local header of the .dat is at 30 + 25 + 14 = 69 = 0x45, the directory at 69 + 30 + 26
 // + 19 = 144 = 0x90; it has 2 * 46 + 25 + 26 = 143 = 0x8F bytes.
-TEST(Packer, archive_is_what_readers_expect) {
+TEST(Packer, ArchiveIsWhatReadersExpect) {
   const Bytes config_entry =
       from_hex("14 00 00 00 08 00 D0 72 74 5D D4 1C D1 01 0E 00 00 00 04 00 00 00 19 00 00 00");
   const Bytes dat_entry =
@@ -56,7 +56,7 @@ TEST(Packer, archive_is_what_readers_expect) {
 }
 
 // A reader finds a byte of the .dat at dataStart + (off / 65531) * 65536 + 5 + off % 65531.
-TEST(Packer, positions_follow_the_formula) {
+TEST(Packer, PositionsFollowTheFormula) {
   std::mt19937 random{3};
   for (const std::size_t size : {1U, 65'530U, 65'531U, 65'532U, 131'062U, 200'000U}) {
     Bytes dat(size);
@@ -72,7 +72,7 @@ TEST(Packer, positions_follow_the_formula) {
   }
 }
 
-TEST(Packer, refuses_what_readers_cannot_find) {
+TEST(Packer, RefusesWhatReadersCannotFind) {
   const auto pack = [](std::size_t config_size, std::uint64_t dat_size) {
     return Packer{"s", std::string(config_size, ' '), {.size = dat_size}, {}};
   };

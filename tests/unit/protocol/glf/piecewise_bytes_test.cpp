@@ -9,7 +9,7 @@
 namespace sonard::glf {
 namespace {
 
-TEST(PiecewiseBytes, every_part_is_what_it_would_be_in_one_piece) {
+TEST(PiecewiseBytes, EveryPartIsWhatItWouldBeInOnePiece) {
   std::vector<std::uint8_t> whole(12);
   std::iota(whole.begin(), whole.end(), std::uint8_t{1});
   PiecewiseBytes pieces;

@@ -9,14 +9,14 @@
 namespace sonard::glf::testing {
 namespace {
 
-TEST(Status, header_says_what_it_is) {
+TEST(Status, HeaderSaysWhatItIs) {
   const Bytes record = encode(small_status());
   ASSERT_EQ(record.size(), 21U + 218U);
   EXPECT_EQ(Bytes(record.begin(), record.begin() + 21),
             from_hex("2A 02 EF 00 00 00 00 00 00 00 00 41 9F 40 03 01 02 66 00 00 00"));
 }
 
-TEST(Status, fields_are_at_their_offsets) {
+TEST(Status, FieldsAreAtTheirOffsets) {
   const Bytes record = encode(small_status());
   const auto body = std::span{record}.subspan(21);
   EXPECT_EQ(value_at<std::uint16_t>(body, 0), 1);
@@ -52,12 +52,12 @@ TEST(Status, fields_are_at_their_offsets) {
   EXPECT_EQ(value_at<std::uint8_t>(body, 217), 1);
 }
 
-TEST(Status, reads_what_was_written) {
+TEST(Status, ReadsWhatWasWritten) {
   EXPECT_EQ(*decode_status(encode(small_status())), small_status());
   EXPECT_EQ(*decode_status(encode(StatusRecord{})), StatusRecord{});
 }
 
-TEST(Status, every_shortened_one_is_refused) {
+TEST(Status, EveryShortenedOneIsRefused) {
   const Bytes record = encode(small_status());
   for (std::size_t size = 0; size < record.size(); ++size) {
     const auto decoded = decode_status(std::span{record}.first(size));
@@ -66,7 +66,7 @@ TEST(Status, every_shortened_one_is_refused) {
   }
 }
 
-TEST(Status, an_image_is_none) {
+TEST(Status, AnImageIsNone) {
   EXPECT_EQ(decode_status(encode(patterned_image(0))).error(),
             (WireError{WireErrorReason::bad_value, 14, "data_type"}));
 }

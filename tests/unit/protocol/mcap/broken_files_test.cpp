@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t first_chunk = 8 + 9 + 12;  // after the magic and a header that holds "test"
 
-TEST(McapBroken, a_wrong_byte_in_a_chunk_costs_its_messages_and_names_its_crc) {
+TEST(McapBroken, AWrongByteInAChunkCostsItsMessagesAndNamesItsCrc) {
   Bytes file = finished_file();
   file[first_chunk + 9 + 40 + 20] ^= 1;  // inside the records
   const auto reader = Reader::open(file);
@@ -30,7 +30,7 @@ TEST(McapBroken, a_wrong_byte_in_a_chunk_costs_its_messages_and_names_its_crc) {
   EXPECT_EQ(damaged.lost_messages, (std::map<std::uint16_t, std::uint64_t>{{1, 2}}));
 }
 
-TEST(McapBroken, without_a_summary_chunks_behind_a_damaged_one_are_found) {
+TEST(McapBroken, WithoutASummaryChunksBehindADamagedOneAreFound) {
   const Bytes whole = finished_file();
   const std::uint64_t second_chunk = read_summary(whole)->chunks[1].offset;
   Bytes file{whole.begin(), whole.end() - 1};
@@ -45,7 +45,7 @@ TEST(McapBroken, without_a_summary_chunks_behind_a_damaged_one_are_found) {
   EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
-TEST(McapBroken, a_compressed_chunk_is_refused_and_never_cut_off) {
+TEST(McapBroken, ACompressedChunkIsRefusedAndNeverCutOff) {
   Bytes file = finished_file();
   file.resize(file.size() - 1);
   const Bytes name{2, 0, 0, 0, 'z', 's'};
@@ -63,7 +63,7 @@ TEST(McapBroken, a_compressed_chunk_is_refused_and_never_cut_off) {
   EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
-TEST(McapBroken, sizes_beyond_the_file_are_no_whole_record) {
+TEST(McapBroken, SizesBeyondTheFileAreNoWholeRecord) {
   Bytes file = finished_file();
   file.resize(file.size() - 1);
   for (std::size_t i = 1; i <= 8; ++i) {
@@ -75,7 +75,7 @@ TEST(McapBroken, sizes_beyond_the_file_are_no_whole_record) {
   EXPECT_TRUE(section->summary.chunks.empty());
 }
 
-TEST(McapBroken, a_summary_with_a_wrong_byte_is_not_used) {
+TEST(McapBroken, ASummaryWithAWrongByteIsNotUsed) {
   Bytes file = finished_file();
   const auto summary_start = scan_data_section(file)->end + 13;
   file[summary_start + 9] ^= 1;
@@ -86,7 +86,7 @@ TEST(McapBroken, a_summary_with_a_wrong_byte_is_not_used) {
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
-TEST(McapBroken, a_summary_whose_chunks_overlap_is_not_used) {
+TEST(McapBroken, ASummaryWhoseChunksOverlapIsNotUsed) {
   const Bytes file = finished_file();
   const auto section = scan_data_section(file);
   ASSERT_TRUE(section);
@@ -140,7 +140,7 @@ void flip_bits(const Bytes& whole) {
 }
 
 // Every error and every message must lie inside the file. The sanitizers check the rest.
-TEST(McapBroken, flipped_bits_never_crash) {
+TEST(McapBroken, FlippedBitsNeverCrash) {
   flip_bits(finished_file());
   flip_bits(growing_file());
 }

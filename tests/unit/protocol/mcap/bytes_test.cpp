@@ -66,7 +66,7 @@ Bytes by_hand() {
 
 constexpr std::uint64_t log_time = 0x01000000'0000002A;
 
-TEST(McapBytes, writer_makes_what_the_specification_says) {
+TEST(McapBytes, WriterMakesWhatTheSpecificationSays) {
   Writer writer{"w", 1};
   const auto schema_id = writer.add_schema("S", "pb", Bytes{7, 8, 9});
   const auto channel_id = writer.add_channel(schema_id, "/c", "pb", {{"kk", "vv"}});
@@ -76,7 +76,7 @@ TEST(McapBytes, writer_makes_what_the_specification_says) {
   EXPECT_EQ(writer.take().append, by_hand());
 }
 
-TEST(McapBytes, reader_reads_what_the_specification_says) {
+TEST(McapBytes, ReaderReadsWhatTheSpecificationSays) {
   const Bytes file = by_hand();
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
@@ -90,7 +90,7 @@ TEST(McapBytes, reader_reads_what_the_specification_says) {
 }
 
 // The check value of CRC32 for "123456789", in one and in two parts.
-TEST(McapBytes, crc32_is_that_of_zip) {
+TEST(McapBytes, Crc32IsThatOfZip) {
   EXPECT_EQ(crc32(bytes_of("123456789")), 0xCBF43926U);
   EXPECT_EQ(crc32(bytes_of("56789"), crc32(bytes_of("1234"))), 0xCBF43926U);
   EXPECT_EQ(crc32(Bytes{}, 0xCBF43926U), 0xCBF43926U);

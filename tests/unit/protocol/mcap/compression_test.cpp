@@ -47,7 +47,7 @@ void expect_messages(const Reader& reader, int count) {
   }
 }
 
-TEST(McapCompression, a_file_that_grew_holds_every_message_and_is_shorter) {
+TEST(McapCompression, AFileThatGrewHoldsEveryMessageAndIsShorter) {
   Writer writer{"test", 100'000, Compression::zstd};
   Bytes file = grown_file(writer, 9);
   writer.finish();
@@ -63,7 +63,7 @@ TEST(McapCompression, a_file_that_grew_holds_every_message_and_is_shorter) {
   EXPECT_EQ(scan_data_section(file)->summary, reader->summary());
 }
 
-TEST(McapCompression, chunks_that_were_never_in_the_file_are_compressed_too) {
+TEST(McapCompression, ChunksThatWereNeverInTheFileAreCompressedToo) {
   Writer writer{"test", 1000, Compression::zstd};
   const auto channel = writer.add_channel(0, "/x", "json");
   for (int i = 0; i < 9; ++i) {
@@ -76,7 +76,7 @@ TEST(McapCompression, chunks_that_were_never_in_the_file_are_compressed_too) {
   expect_messages(*reader, 9);
 }
 
-TEST(McapCompression, what_does_not_get_shorter_stays_as_it_is) {
+TEST(McapCompression, WhatDoesNotGetShorterStaysAsItIs) {
   Writer writer{"test", 100'000, Compression::zstd};
   const auto channel = writer.add_channel(0, "/x", "json");
   Bytes noise;
@@ -96,7 +96,7 @@ TEST(McapCompression, what_does_not_get_shorter_stays_as_it_is) {
   EXPECT_EQ(all_of(reader->messages()).at(1).data, std::string(noise.begin(), noise.end()));
 }
 
-TEST(McapCompression, a_writer_that_is_killed_between_two_pieces_loses_nothing) {
+TEST(McapCompression, AWriterThatIsKilledBetweenTwoPiecesLosesNothing) {
   for (int messages = 1; messages <= 8; ++messages) {
     Writer writer{"test", 100'000, Compression::zstd};
     Bytes file = grown_file(writer, messages);
@@ -111,7 +111,7 @@ TEST(McapCompression, a_writer_that_is_killed_between_two_pieces_loses_nothing) 
 }
 
 // The writer has written the shorter chunk over the open one, but not yet cut off the rest of the open one.
-TEST(McapCompression, a_writer_that_is_killed_before_the_cut_loses_nothing_of_the_chunk) {
+TEST(McapCompression, AWriterThatIsKilledBeforeTheCutLosesNothingOfTheChunk) {
   Writer writer{"test", 100'000, Compression::zstd};
   Bytes file = grown_file(writer, 2);
   writer.add_message(1, 2, 0, bytes_of(text_of(2)));
@@ -130,7 +130,7 @@ TEST(McapCompression, a_writer_that_is_killed_before_the_cut_loses_nothing_of_th
   expect_messages(*reader, 3);
 }
 
-TEST(McapCompression, a_message_is_found_again_at_its_place) {
+TEST(McapCompression, AMessageIsFoundAgainAtItsPlace) {
   Writer writer{"test", 100'000, Compression::zstd};
   Bytes file = grown_file(writer, 6);
   writer.finish();
@@ -151,7 +151,7 @@ TEST(McapCompression, a_message_is_found_again_at_its_place) {
   EXPECT_FALSE(reader->data_at(beyond));
 }
 
-TEST(McapCompression, broken_frames_are_errors) {
+TEST(McapCompression, BrokenFramesAreErrors) {
   const Bytes packed = compress_zstd(bytes_of(text_of(0)));
   EXPECT_EQ(decompress_zstd(packed, 400), bytes_of(text_of(0)));
   EXPECT_FALSE(decompress_zstd(packed, 399));

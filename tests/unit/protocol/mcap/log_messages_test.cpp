@@ -24,7 +24,7 @@ SonarImage image() {
   return message;
 }
 
-TEST(LogMessages, schema_alone_is_enough_to_read_a_message) {
+TEST(LogMessages, SchemaAloneIsEnoughToReadAMessage) {
   google::protobuf::FileDescriptorSet set;
   const auto bytes = schema_data(*SonarImage::descriptor());
   ASSERT_TRUE(set.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
@@ -41,7 +41,7 @@ TEST(LogMessages, schema_alone_is_enough_to_read_a_message) {
   EXPECT_EQ(read->GetReflection()->GetString(*read, descriptor->FindFieldByName("pixels")), "abcdef");
 }
 
-TEST(LogMessages, an_image_has_a_pixel_and_a_bearing_for_each_beam) {
+TEST(LogMessages, AnImageHasAPixelAndABearingForEachBeam) {
   EXPECT_FALSE(problem_of(image()));
   SonarImage few = image();
   few.set_pixels("abcde");
@@ -52,7 +52,7 @@ TEST(LogMessages, an_image_has_a_pixel_and_a_bearing_for_each_beam) {
 }
 
 // Programs count these messages and print a line of their own.
-TEST(LogMessages, a_text_that_is_not_utf_8_is_refused_without_a_line_of_the_library) {
+TEST(LogMessages, ATextThatIsNotUtf8IsRefusedWithoutALineOfTheLibrary) {
   const std::vector<std::uint8_t> head_is_ff{0x0A, 1, 0xFF};  // field 1 of 1 byte
   SonarImage message;
   message.set_head("\xFF");
@@ -62,7 +62,7 @@ TEST(LogMessages, a_text_that_is_not_utf_8_is_refused_without_a_line_of_the_libr
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(LogMessages, bytes_of_something_else_are_refused) {
+TEST(LogMessages, BytesOfSomethingElseAreRefused) {
   const auto encoded = encode(image());
   EXPECT_TRUE(decode<SonarImage>(encoded));
   EXPECT_FALSE(decode<SonarImage>(std::span{encoded}.first(encoded.size() - 1)));

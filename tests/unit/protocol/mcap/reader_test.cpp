@@ -9,14 +9,14 @@
 namespace sonard::mcap::testing {
 namespace {
 
-TEST(McapReader, messages_come_in_the_order_of_their_times) {
+TEST(McapReader, MessagesComeInTheOrderOfTheirTimes) {
   const Bytes file = finished_file();
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
   EXPECT_EQ(all_of(reader->messages()), messages_in_order);
 }
 
-TEST(McapReader, messages_of_equal_times_come_in_the_order_of_the_file) {
+TEST(McapReader, MessagesOfEqualTimesComeInTheOrderOfTheFile) {
   Writer writer{"test", 100'000};
   const auto channel = writer.add_channel(0, "/x", "json");
   writer.add_message(channel, 50, 50, bytes_of("first"));
@@ -31,7 +31,7 @@ TEST(McapReader, messages_of_equal_times_come_in_the_order_of_the_file) {
             (std::vector<Said>{{1, 1, 10, "before"}, {1, 0, 50, "first"}, {1, 2, 50, "second"}}));
 }
 
-TEST(McapReader, only_the_channels_that_were_asked_for) {
+TEST(McapReader, OnlyTheChannelsThatWereAskedFor) {
   const Bytes file = finished_file();
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
@@ -42,7 +42,7 @@ TEST(McapReader, only_the_channels_that_were_asked_for) {
   EXPECT_TRUE(all_of(reader->messages({3})).empty());
 }
 
-TEST(McapReader, summary_says_what_was_written) {
+TEST(McapReader, SummarySaysWhatWasWritten) {
   const Bytes file = finished_file();
   const auto reader = Reader::open(file);
   ASSERT_TRUE(reader);
@@ -56,7 +56,7 @@ TEST(McapReader, summary_says_what_was_written) {
   EXPECT_EQ(summary.end_time_ns(), 70U);
 }
 
-TEST(McapReader, the_data_section_says_the_same_as_the_summary) {
+TEST(McapReader, TheDataSectionSaysTheSameAsTheSummary) {
   const Bytes file = finished_file();
   const auto section = scan_data_section(file);
   const auto summary = read_summary(file);
@@ -65,7 +65,7 @@ TEST(McapReader, the_data_section_says_the_same_as_the_summary) {
   EXPECT_EQ(section->summary, *summary);
 }
 
-TEST(McapReader, pieces_make_the_same_file) {
+TEST(McapReader, PiecesMakeTheSameFile) {
   Writer writer{"test", 1};
   Bytes pieces = writer.take().append;
   const auto channel = writer.add_channel(0, "/x", "json");
@@ -84,7 +84,7 @@ TEST(McapReader, pieces_make_the_same_file) {
   EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
-TEST(McapReader, a_file_without_messages_is_whole) {
+TEST(McapReader, AFileWithoutMessagesIsWhole) {
   Writer writer{"test", 1000};
   writer.finish();
   const Bytes file = writer.take().append;
@@ -95,7 +95,7 @@ TEST(McapReader, a_file_without_messages_is_whole) {
   EXPECT_TRUE(all_of(reader->messages()).empty());
 }
 
-TEST(McapReader, records_of_later_versions_are_skipped) {
+TEST(McapReader, RecordsOfLaterVersionsAreSkipped) {
   Bytes file = finished_file();
   const Bytes foreign{0x8F, 3, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
   file.insert(file.begin() + 8 + 9 + 12, foreign.begin(), foreign.end());  // after the header of 21 bytes

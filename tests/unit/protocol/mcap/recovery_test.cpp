@@ -29,7 +29,7 @@ std::vector<std::uint64_t> chunk_ends(const Bytes& file) {
 
 constexpr std::size_t header_end = 8 + 9 + 12;  // magic and a header that holds "test"
 
-TEST(McapRecovery, every_cut_keeps_every_whole_chunk) {
+TEST(McapRecovery, EveryCutKeepsEveryWholeChunk) {
   const Bytes whole = finished_file();
   const auto ends = chunk_ends(whole);
   const std::vector<std::size_t> messages_by_chunks{0, 2, 5, 7};
@@ -53,7 +53,7 @@ TEST(McapRecovery, every_cut_keeps_every_whole_chunk) {
   }
 }
 
-TEST(McapRecovery, a_cut_behind_the_last_chunk_gives_the_file_that_was_meant) {
+TEST(McapRecovery, ACutBehindTheLastChunkGivesTheFileThatWasMeant) {
   const Bytes whole = finished_file();
   for (std::size_t size = chunk_ends(whole).back(); size < whole.size(); ++size) {
     const Bytes cut{whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)};
@@ -63,7 +63,7 @@ TEST(McapRecovery, a_cut_behind_the_last_chunk_gives_the_file_that_was_meant) {
   }
 }
 
-TEST(McapRecovery, says_how_much_is_lost) {
+TEST(McapRecovery, SaysHowMuchIsLost) {
   const Bytes whole = finished_file();
   const auto size = static_cast<std::ptrdiff_t>(chunk_ends(whole)[1] - 1);
   const auto recovery = recover(Bytes{whole.begin(), whole.begin() + size});
@@ -119,7 +119,7 @@ std::size_t messages_after_recovery(const Bytes& file) {
   return all.size();
 }
 
-TEST(McapRecovery, a_chunk_that_grows_keeps_every_message_whenever_its_writer_is_killed) {
+TEST(McapRecovery, AChunkThatGrowsKeepsEveryMessageWheneverItsWriterIsKilled) {
   GrowingFile growing;
   for (int i = 0; i < 8; ++i) {
     SCOPED_TRACE(i);
@@ -147,7 +147,7 @@ TEST(McapRecovery, a_chunk_that_grows_keeps_every_message_whenever_its_writer_is
   }
 }
 
-TEST(McapRecovery, a_file_that_grew_is_the_one_that_was_written_at_once) {
+TEST(McapRecovery, AFileThatGrewIsTheOneThatWasWrittenAtOnce) {
   GrowingFile growing;
   Writer writer{"test", 100'000};
   const auto channel =
@@ -173,7 +173,7 @@ TEST(McapRecovery, a_file_that_grew_is_the_one_that_was_written_at_once) {
   EXPECT_EQ(growing.file, writer.take().append);
 }
 
-TEST(McapRecovery, a_whole_file_stays_as_it_is) {
+TEST(McapRecovery, AWholeFileStaysAsItIs) {
   const Bytes whole = finished_file();
   const auto recovery = recover(whole);
   ASSERT_TRUE(recovery);
@@ -181,7 +181,7 @@ TEST(McapRecovery, a_whole_file_stays_as_it_is) {
   EXPECT_TRUE(recovery->end.empty());
 }
 
-TEST(McapRecovery, zeros_where_the_disk_was_not_written_are_cut_off) {
+TEST(McapRecovery, ZerosWhereTheDiskWasNotWrittenAreCutOff) {
   const Bytes whole = finished_file();
   const auto size = static_cast<std::ptrdiff_t>(chunk_ends(whole)[1]);
   Bytes cut{whole.begin(), whole.begin() + size};
@@ -192,7 +192,7 @@ TEST(McapRecovery, zeros_where_the_disk_was_not_written_are_cut_off) {
   EXPECT_EQ(recovery->lost_size, 4096U);
 }
 
-TEST(McapRecovery, a_whole_file_is_rebuilt_with_all_its_messages) {
+TEST(McapRecovery, AWholeFileIsRebuiltWithAllItsMessages) {
   const Bytes whole = finished_file();
   const auto rebuilt = rebuild(whole);
   ASSERT_TRUE(rebuilt);
@@ -225,7 +225,7 @@ std::vector<Said> messages_rebuilt(const Bytes& damaged) {
 }
 
 // The file has three chunks, of which the first holds the schema and the first channel.
-TEST(McapRecovery, a_damaged_chunk_does_not_cost_the_chunks_after_it) {
+TEST(McapRecovery, ADamagedChunkDoesNotCostTheChunksAfterIt) {
   const Bytes whole = finished_file();
   const auto summary = read_summary(whole);
   const std::vector<std::size_t> messages_of{2, 3, 2};
@@ -250,7 +250,7 @@ TEST(McapRecovery, a_damaged_chunk_does_not_cost_the_chunks_after_it) {
   }
 }
 
-TEST(McapRecovery, an_open_chunk_after_a_damaged_one_is_closed) {
+TEST(McapRecovery, AnOpenChunkAfterADamagedOneIsClosed) {
   GrowingFile growing;
   for (int i = 0; i < 8; ++i) {
     const Piece piece = growing.next();
@@ -265,7 +265,7 @@ TEST(McapRecovery, an_open_chunk_after_a_damaged_one_is_closed) {
   EXPECT_EQ(messages_rebuilt(damaged).size(), 5U) << "of 3, 3 and 2 messages";
 }
 
-TEST(McapRecovery, nothing_to_keep_is_an_error) {
+TEST(McapRecovery, NothingToKeepIsAnError) {
   const Bytes whole = finished_file();
   for (std::ptrdiff_t size = 0; size < static_cast<std::ptrdiff_t>(header_end); ++size) {
     EXPECT_FALSE(recover(Bytes{whole.begin(), whole.begin() + size})) << size;

@@ -32,7 +32,7 @@ Bytes two_packets() {
   return writer.take();
 }
 
-TEST(PcapngBlocks, writer_makes_what_the_draft_says) {
+TEST(PcapngBlocks, WriterMakesWhatTheDraftSays) {
   Writer writer{"w"};
   EXPECT_EQ(writer.add_interface("bow"), 0U);
   writer.add_packet(0, 0x1122334455667788, Bytes{1, 2, 3, 4, 5});
@@ -41,7 +41,7 @@ TEST(PcapngBlocks, writer_makes_what_the_draft_says) {
   EXPECT_EQ(writer.add_interface("stern"), 1U);
 }
 
-TEST(PcapngBlocks, reader_reads_what_the_draft_says) {
+TEST(PcapngBlocks, ReaderReadsWhatTheDraftSays) {
   const auto block = block_at(by_hand, 80);
   ASSERT_TRUE(block && *block);
   const auto packet = read_packet(**block);
@@ -51,7 +51,7 @@ TEST(PcapngBlocks, reader_reads_what_the_draft_says) {
   EXPECT_EQ((Bytes{packet->bytes.begin(), packet->bytes.end()}), (Bytes{1, 2, 3, 4, 5}));
 }
 
-TEST(PcapngRecovery, every_cut_keeps_every_whole_block) {
+TEST(PcapngRecovery, EveryCutKeepsEveryWholeBlock) {
   const Bytes whole = two_packets();
   ASSERT_EQ(whole.size(), 156U);
   const std::vector<std::size_t> block_ends{40, 80, 120, 156};
@@ -69,7 +69,7 @@ TEST(PcapngRecovery, every_cut_keeps_every_whole_block) {
   }
 }
 
-TEST(PcapngRecovery, a_block_that_contradicts_itself_ends_the_good_part) {
+TEST(PcapngRecovery, ABlockThatContradictsItselfEndsTheGoodPart) {
   Bytes lengths = two_packets();
   lengths[120 - 4] = 44;
   EXPECT_EQ(recover(lengths)->keep_size, 80U);
@@ -81,7 +81,7 @@ TEST(PcapngRecovery, a_block_that_contradicts_itself_ends_the_good_part) {
   EXPECT_EQ(recover(interface)->keep_size, 80U);
 }
 
-TEST(PcapngRecovery, flipped_bits_never_crash) {
+TEST(PcapngRecovery, FlippedBitsNeverCrash) {
   const Bytes whole = two_packets();
   std::mt19937 random{1};
   for (int i = 0; i < 20'000; ++i) {

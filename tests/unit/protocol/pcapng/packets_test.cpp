@@ -10,7 +10,7 @@ namespace {
 constexpr Endpoint a{0x0A'00'00'01, 0x1234};
 constexpr Endpoint b{0x0A'00'00'02, 0x5678};
 
-TEST(UdpPacket, bytes) {
+TEST(UdpPacket, Bytes) {
   // IPv4: 4500 + 001F + 4000 + 4011 + 0A00 + 0001 + 0A00 + 0002 = D933, inverted 26CC.
   // UDP: 0A00 + 0001 + 0A00 + 0002 + 0011 + 000B + 1234 + 5678 + 000B + 0102 + 0300 = 80D8, inverted 7F27.
   EXPECT_EQ(udp_packet(a, b, Bytes{1, 2, 3}), (Bytes{0x45, 0,    0,    31,   0, 0,  0x40, 0,    64, 17, 0x26,
@@ -18,7 +18,7 @@ TEST(UdpPacket, bytes) {
                                                      0x12, 0x34, 0x56, 0x78, 0, 11, 0x7F, 0x27, 1,  2,  3}));
 }
 
-TEST(UdpPacket, a_checksum_of_zero_is_written_as_ones) {
+TEST(UdpPacket, AChecksumOfZeroIsWrittenAsOnes) {
   // Without the payload the words sum to 0A00 + 0001 + 0A00 + 0002 + 0011 + 000A + 1234 + 5678 + 000A =
   // 7CD4. With FFFF - 7CD4 = 832B as payload they sum to FFFF, whose inverse is 0.
   const Bytes packet = udp_packet(a, b, Bytes{0x83, 0x2B});
@@ -45,7 +45,7 @@ Segment read(const Bytes& packet) {
 }
 
 // In RFC 9293, SYN and FIN count as one byte each.
-TEST(TcpConversation, numbers_run_on_from_open_to_close) {
+TEST(TcpConversation, NumbersRunOnFromOpenToClose) {
   TcpConversation conversation{a, b};
   std::vector<Segment> segments;
   const auto take = [&](const std::vector<Bytes>& packets) {

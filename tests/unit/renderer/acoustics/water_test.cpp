@@ -41,14 +41,14 @@ double ainslie_mccolm_db_per_km(double f, const Water& water) {
 
 class Absorption : public testing::TestWithParam<AbsorptionCase> {};
 
-TEST_P(Absorption, francois_garrison_meets_the_table) {
+TEST_P(Absorption, FrancoisGarrisonMeetsTheTable) {
   const AbsorptionCase& c = GetParam();
   // The table has five or six digits.
   EXPECT_NEAR(francois_garrison_absorption_db_per_m(c.f_khz * 1e3, c.water) * 1e3,
               c.francois_garrison_db_per_km, 2e-5 * c.francois_garrison_db_per_km);
 }
 
-TEST_P(Absorption, lies_within_a_tenth_of_a_second_opinion) {
+TEST_P(Absorption, LiesWithinATenthOfASecondOpinion) {
   const AbsorptionCase& c = GetParam();
   const double other = ainslie_mccolm_db_per_km(c.f_khz, c.water);
   EXPECT_NEAR(other, c.ainslie_mccolm_db_per_km, 2e-5 * other);
@@ -67,18 +67,18 @@ INSTANTIATE_TEST_SUITE_P(Table, Absorption,
                                          AbsorptionCase{2100, {10, 35, 10, 8.0}, 1418.02, 1539.63},
                                          AbsorptionCase{100, {10, 35, 0, 8.0}, 33.630, 34.341}));
 
-TEST(Absorption, francois_garrison_meets_the_public_toolbox_value) {
+TEST(Absorption, FrancoisGarrisonMeetsThePublicToolboxValue) {
   EXPECT_NEAR(francois_garrison_absorption_db_per_m(50e3, {27, 35, 10, 8.1}) * 1e3, 10.710, 5e-4);
 }
 
-TEST(Absorption, acidity_hardly_matters_at_sonar_frequencies) {
+TEST(Absorption, AcidityHardlyMattersAtSonarFrequencies) {
   const double acid = francois_garrison_absorption_db_per_m(720e3, {10, 35, 10, 7.7});
   const double alkaline = francois_garrison_absorption_db_per_m(720e3, {10, 35, 10, 8.2});
   EXPECT_GT(alkaline, acid);
   EXPECT_LT((alkaline - acid) * 1e3, 0.2);
 }
 
-TEST(Absorption, is_finite_and_not_negative_far_outside_the_stated_range) {
+TEST(Absorption, IsFiniteAndNotNegativeFarOutsideTheStatedRange) {
   for (const double f : {0.0, 1.0, 1e3, 1e6, 1e7}) {
     for (const double t : {-2.0, 0.0, 20.0, 20.001, 40.0}) {
       for (const double s : {0.0, 1e-9, 35.0, 45.0}) {
@@ -93,23 +93,23 @@ TEST(Absorption, is_finite_and_not_negative_far_outside_the_stated_range) {
   }
 }
 
-TEST(Absorption, knows_where_the_formula_was_stated) {
+TEST(Absorption, KnowsWhereTheFormulaWasStated) {
   EXPECT_TRUE(in_absorption_range(723380, {10, 35, 10, 8}));
   EXPECT_FALSE(in_absorption_range(1.2e6, {10, 35, 10, 8}));
   EXPECT_FALSE(in_absorption_range(723380, {31, 35, 10, 8}));
   EXPECT_FALSE(in_absorption_range(723380, {10, 0, 10, 8}));
 }
 
-TEST(SoundSpeed, mackenzie_meets_its_published_check_value) {
+TEST(SoundSpeed, MackenzieMeetsItsPublishedCheckValue) {
   EXPECT_NEAR(mackenzie_sound_speed_mps({25, 35, 1000, 8}), 1550.744, 5e-4);
 }
 
-TEST(SoundSpeed, both_formulas_meet_the_table) {
+TEST(SoundSpeed, BothFormulasMeetTheTable) {
   EXPECT_NEAR(mackenzie_sound_speed_mps({10, 35, 10, 8}), 1489.97, 5e-3);
   EXPECT_NEAR(medwin_sound_speed_mps({10, 35, 10, 8}), 1490.15, 5e-3);
 }
 
-TEST(SoundSpeed, takes_mackenzie_in_its_range_and_medwin_outside) {
+TEST(SoundSpeed, TakesMackenzieInItsRangeAndMedwinOutside) {
   const Water sea{10, 35, 10, 8};
   const Water lake{10, 0, 10, 7};
   const Water polar{-1, 34, 10, 8};

@@ -10,7 +10,7 @@
 namespace sonard::render {
 namespace {
 
-TEST(ShippedWorlds, load_whole) {
+TEST(ShippedWorlds, LoadWhole) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(SONARD_SOURCE_DIR "/configs/worlds")) {
     if (entry.path().extension() != ".sdf") {

@@ -38,7 +38,7 @@ PingImage blank_image(const PingJob& job) {
 }
 
 // More pings than 16 bits count. A job's number goes on; its number on the wire wraps at 256.
-TEST(LongRun, S11_PingNumbersWrapOnTheWireOnly) {
+TEST(LongRun, S11PingNumbersWrapOnTheWireOnly) {
   constexpr std::uint64_t pings = 70'000;
   gemini::DeviceConfig config = gemini::example_config();
   config.min_ping_period = 1ms;
@@ -71,7 +71,7 @@ TEST(LongRun, S11_PingNumbersWrapOnTheWireOnly) {
 
 // 2^31 ms are 25 days, 2^32 ms 50, and 2^32 us 72 minutes: times stay exact across all of them. By then
 // seconds in float would step in milliseconds.
-TEST(LongRun, S11_TimesBeyondTwoToTheThirtyOneMilliseconds) {
+TEST(LongRun, S11TimesBeyondTwoToTheThirtyOneMilliseconds) {
   gemini::DeviceConfig config = gemini::example_config();
   config.status_period = 60s;
   Bench bench(config);
@@ -102,7 +102,7 @@ TEST(LongRun, S11_TimesBeyondTwoToTheThirtyOneMilliseconds) {
 
 // A year on the publisher's clock, in nanoseconds and double metres: poses are interpolated as at the start.
 // Then the clock is set back by the year, as when a simulation is reset, and poses follow at once.
-TEST(LongRun, S11_PosesAfterAYearAndWithTheClockSetBack) {
+TEST(LongRun, S11PosesAfterAYearAndWithTheClockSetBack) {
   PoseHistory history{PoseConfig{}};
   constexpr std::int64_t year_ns = 365LL * 24 * 3600 * 1'000'000'000;
   TimePoint arrival = 1000s;
@@ -133,7 +133,7 @@ TEST(LongRun, S11_PosesAfterAYearAndWithTheClockSetBack) {
 using Water = ConfigFolder;
 
 // Absorption outside the range of its formula causes one warning, with any number of heads.
-TEST_F(Water, S15_OutsideTheFormulaIsWarnedOfOnce) {
+TEST_F(Water, S15OutsideTheFormulaIsWarnedOfOnce) {
   const std::string second_head =
       "  - name: aft\n    type: gemini_720i\n    sonar_id: 514\n"
       "    network: {alternate_address: 127.0.0.3, netmask: 255.0.0.0}\n";
@@ -319,7 +319,7 @@ class VirtualDaemon {
 
 // If the renderer's context is lost in the middle of pings, the daemon is notified once, and nothing is
 // rendered or sent any more. (tests/unit/server/daemon/daemon_test.cpp tests the exit code of the process.)
-TEST(LongRun, S18_LostContextEndsTheServiceOnce) {
+TEST(LongRun, S18LostContextEndsTheServiceOnce) {
   int failures = 0;
   int rendered = 0;
   std::string reason;
@@ -363,7 +363,7 @@ std::size_t resident_bytes() {
 
 // A renderer ten times too slow that also fails every seventh ping, for a day: each ping takes the newest
 // pose, no ping queues up, and after the first hour memory grows by at most 12 bytes per ping.
-TEST(LongRun, S20_ADayOfARendererThatIsTooSlow) {
+TEST(LongRun, S20ADayOfARendererThatIsTooSlow) {
   VirtualDaemon daemon(
       [](const render::PingRequest& request) {
         if (request.ping_number % 7 == 3) {

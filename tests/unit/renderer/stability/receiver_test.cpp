@@ -77,7 +77,7 @@ double clamped_mean(double mean, double sd) {
 }
 
 // docs/physics.md 1.2, A8 and A9: I times a Gaussian (or its absolute value), clamped to [0, 1].
-TEST(Extremes, S13_PaperSpeckleHasItsMomentsFromNoneToHuge) {
+TEST(Extremes, S13PaperSpeckleHasItsMomentsFromNoneToHuge) {
   PingRequest request = plain_request();
   request.settings.model = Model::paper;
   PaperModel& model = request.settings.paper;
@@ -98,7 +98,7 @@ TEST(Extremes, S13_PaperSpeckleHasItsMomentsFromNoneToHuge) {
 }
 
 // Rayleigh: mean sqrt(pi) / 2 of the root intensity, CV sqrt(4 / pi - 1).
-TEST(Extremes, S13_RayleighHoldsForTheFirstAndTheLastSeedAndPing) {
+TEST(Extremes, S13RayleighHoldsForTheFirstAndTheLastSeedAndPing) {
   constexpr auto last = std::numeric_limits<std::uint64_t>::max();
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
@@ -124,7 +124,7 @@ TEST(Extremes, S13_RayleighHoldsForTheFirstAndTheLastSeedAndPing) {
   }
 }
 
-TEST(Extremes, S13_NoiseFromNothingToFarAboveFullScale) {
+TEST(Extremes, S13NoiseFromNothingToFarAboveFullScale) {
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   request.settings.physical.noise = true;
@@ -142,7 +142,7 @@ TEST(Extremes, S13_NoiseFromNothingToFarAboveFullScale) {
 }
 
 // Motion of any size, with any aperture, leaves speckle Rayleigh.
-TEST(Extremes, S13_SpeckleSurvivesEveryMotion) {
+TEST(Extremes, S13SpeckleSurvivesEveryMotion) {
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::ou;
   Receiver receiver;
@@ -160,7 +160,7 @@ TEST(Extremes, S13_SpeckleSurvivesEveryMotion) {
 }
 
 // TVG at range 0 would be minus infinity dB: a line takes the gain of its middle.
-TEST(Extremes, S17_TvgIsFiniteFromTheFirstMicrometreOn) {
+TEST(Extremes, S17TvgIsFiniteFromTheFirstMicrometreOn) {
   PhysicalModel model;
   for (const double step_m : {1e-6, 0.01, 1e4}) {
     for (const double coefficient : {0.0, 20.0, 30.0, 40.0, 60.0}) {
@@ -179,7 +179,7 @@ TEST(Extremes, S17_TvgIsFiniteFromTheFirstMicrometreOn) {
 }
 
 // An echo far above full scale gives the highest code in both formats and does not wrap around.
-TEST(Extremes, S17_SaturationEverywhereDoesNotWrap) {
+TEST(Extremes, S17SaturationEverywhereDoesNotWrap) {
   PingRequest request = plain_request();
   request.settings.physical.speckle = PhysicalModel::Speckle::off;
   Receiver receiver;

@@ -43,7 +43,7 @@ const GeminiConfig& gemini_of(const DaemonConfig& config) {
   return gemini_config(config.heads.at(0));
 }
 
-TEST_F(Loader, gives_defaults_for_what_is_left_out) {
+TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(minimal_config);
   const DaemonConfig& config = loaded.config;
   EXPECT_THAT(loaded.warning_lines(), IsEmpty());
@@ -79,7 +79,7 @@ TEST_F(Loader, gives_defaults_for_what_is_left_out) {
   EXPECT_FALSE(gemini.trigger);
 }
 
-TEST_F(Loader, reads_what_the_gpu_may_take) {
+TEST_F(Loader, ReadsWhatTheGpuMayTake) {
   EXPECT_EQ(load(minimal_config).config.gpu.memory_mib, 4096U);
   EXPECT_EQ(load(minimal_config + "gpu: {memory_mib: 512}\n").config.gpu.memory_mib, 512U);
   EXPECT_THAT(complaints(minimal_config + "gpu: {memory_mib: 0}\n"),
@@ -87,7 +87,7 @@ TEST_F(Loader, reads_what_the_gpu_may_take) {
                                 HasSubstr("expected a whole number from 1 to 1048576"))));
 }
 
-TEST_F(Loader, reads_the_engine) {
+TEST_F(Loader, ReadsTheEngine) {
   EXPECT_EQ(load(minimal_config + "engine: auto\n").config.engine, render::EngineKind::automatic);
   EXPECT_EQ(load(minimal_config + "engine: gpu\n").config.engine, render::EngineKind::gpu);
   EXPECT_EQ(load(minimal_config + "engine: cpu\n").config.engine, render::EngineKind::cpu);
@@ -96,7 +96,7 @@ TEST_F(Loader, reads_the_engine) {
   EXPECT_EQ(config.gpu.retry_s, 30.0);
 }
 
-TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
+TEST_F(Loader, StartsThePaperKeysFromAPreset) {
   const LoadedConfig loaded =
       load(minimal_config + "    acoustics: {paper: {preset: paper2018, speckle_mean: 0.9}}\n");
   const render::PaperModel& paper = loaded.config.heads.at(0).acoustics.paper;
@@ -107,7 +107,7 @@ TEST_F(Loader, starts_the_paper_keys_from_a_preset) {
   EXPECT_GT(paper.attenuation_per_m, 0.0);
 }
 
-TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device) {
+TEST_F(Loader, ComputesAbsorptionFromTheWaterAtTheFrequencyOfTheDevice) {
   // Fresh water: only the f^2 term remains, so 161.088 dB/km at 720 kHz (docs/physics.md 2.2) scales exactly.
   const LoadedConfig loaded =
       load(minimal_config + "water: {temperature_c: 10, salinity_ppt: 0, depth_m: 5, ph: 7}\n");
@@ -117,7 +117,7 @@ TEST_F(Loader, computes_absorption_from_the_water_at_the_frequency_of_the_device
   EXPECT_NEAR(model.tvg_absorption_db_per_m, expected_db_per_m, 1e-6);
 }
 
-TEST_F(Loader, takes_water_properties_that_are_given_outright) {
+TEST_F(Loader, TakesWaterPropertiesThatAreGivenOutright) {
   const LoadedConfig loaded = load(minimal_config +
                                    "    acoustics: {physical: {tvg_absorption_db_per_km: 120}}\n"
                                    "water: {absorption_db_per_km: 80, sound_speed_mps: 1482.5}\n");
@@ -127,7 +127,7 @@ TEST_F(Loader, takes_water_properties_that_are_given_outright) {
   EXPECT_DOUBLE_EQ(gemini_of(loaded.config).device.water_sound_speed_mps, 1482.5);
 }
 
-TEST_F(Loader, computes_the_speed_of_sound_when_asked_to) {
+TEST_F(Loader, ComputesTheSpeedOfSoundWhenAskedTo) {
   const std::string water = "water: {temperature_c: 10, salinity_ppt: 35, depth_m: 10, sound_speed_mps: ";
   const auto speed_mps = [&](const std::string& word) {
     return gemini_of(load(minimal_config + water + word + "}\n").config).device.water_sound_speed_mps;
@@ -136,7 +136,7 @@ TEST_F(Loader, computes_the_speed_of_sound_when_asked_to) {
   EXPECT_EQ(speed_mps("ping_configuration"), 0.0);
 }
 
-TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
+TEST_F(Loader, TurnsRollPitchYawIntoARotation) {
   const LoadedConfig down =
       load(minimal_config + "    mount: {position_m: [0.5, 0, -0.25], rpy_deg: [0, 20, 0]}\n");
   const render::Pose& mount = down.config.heads.at(0).T_vehicle_sonar;
@@ -155,7 +155,7 @@ TEST_F(Loader, turns_roll_pitch_yaw_into_a_rotation) {
   EXPECT_NEAR(glm::length(q * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 0, 1e-12);
 }
 
-TEST_F(Loader, reads_the_link_and_its_units) {
+TEST_F(Loader, ReadsTheLinkAndItsUnits) {
   const LoadedConfig loaded = load(minimal_config +
                                    "    link:\n"
                                    "      seed: 18446744073709551615\n"
@@ -171,7 +171,7 @@ TEST_F(Loader, reads_the_link_and_its_units) {
   EXPECT_FALSE(link.to_client.transparent());
 }
 
-TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
+TEST_F(Loader, ResolvesPathsAgainstTheFolderOfTheFile) {
   const LoadedConfig loaded = load(
       "world: {file: /somewhere/else.sdf}\n"
       "poses: {trajectory: {file: sub/t.csv, loop: true, speed: 2, axes: ned_frd}}\n" +
@@ -184,7 +184,7 @@ TEST_F(Loader, resolves_paths_against_the_folder_of_the_file) {
   EXPECT_EQ(loaded.config.heads.at(0).dump_directory, folder_ / "pings");
 }
 
-TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
+TEST_F(Loader, KeepsThePlacesOfKeysForLaterProblems) {
   const LoadedConfig loaded = load(minimal_config);
   EXPECT_THAT(loaded.problem_with("world.file", "no such file"),
               HasSubstr("config.yaml:1:15: world.file: no such"));
@@ -198,7 +198,7 @@ TEST_F(Loader, keeps_the_places_of_keys_for_later_problems) {
 
 // ---- Errors
 
-TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
+TEST_F(Loader, NamesUnknownKeysAndGuessesWhatWasMeant) {
   EXPECT_THAT(
       complaints(minimal_config + "    moutn: {}\n"),
       ElementsAre(AllOf(StartsWith("config.yaml:11:5: heads[0].moutn: unknown key, did you mean 'mount'?"),
@@ -207,7 +207,7 @@ TEST_F(Loader, names_unknown_keys_and_guesses_what_was_meant) {
               ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
 }
 
-TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
+TEST_F(Loader, NamesTheSectionOfAKeyThatIsInAnother) {
   EXPECT_THAT(
       complaints(minimal_config + "    acoustics: {multipath: off}\n"),
       ElementsAre(StartsWith("config.yaml:11:17: heads[0].acoustics.multipath: unknown key here, did you "
@@ -227,7 +227,7 @@ TEST_F(Loader, names_the_section_of_a_key_that_is_in_another) {
               ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
 }
 
-TEST_F(Loader, names_the_key_of_a_word_in_the_place_of_a_mapping) {
+TEST_F(Loader, NamesTheKeyOfAWordInThePlaceOfAMapping) {
   EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {multipath: off}}\n"),
               ElementsAre("config.yaml:11:39: heads[0].acoustics.physical.multipath: is 'off' (expected a "
                           "mapping such as {level: off})"));
@@ -235,7 +235,7 @@ TEST_F(Loader, names_the_key_of_a_word_in_the_place_of_a_mapping) {
               ElementsAre("config.yaml:11:7: skip: is '7' (expected a mapping, key: value)"));
 }
 
-TEST_F(Loader, shows_the_mappings_of_a_key_with_dots) {
+TEST_F(Loader, ShowsTheMappingsOfAKeyWithDots) {
   EXPECT_THAT(
       complaints(minimal_config + "    acoustics.physical.multipath.level: off\n"),
       ElementsAre(StartsWith("config.yaml:11:5: heads[0].acoustics.physical.multipath.level: unknown key: a "
@@ -250,7 +250,7 @@ TEST_F(Loader, shows_the_mappings_of_a_key_with_dots) {
   }
 }
 
-TEST_F(Loader, names_a_key_without_a_colon_on_its_line) {
+TEST_F(Loader, NamesAKeyWithoutAColonOnItsLine) {
   const auto at = [](const char* place, const char* key, const char* value) {
     return ElementsAre(StartsWith(fmt::format(
         "config.yaml:{0}: a colon is missing after '{1}' (expected {1}: {2})", place, key, value)));
@@ -281,7 +281,7 @@ TEST_F(Loader, names_a_key_without_a_colon_on_its_line) {
                           "salinity_ppt: 35)"));
 }
 
-TEST_F(Loader, names_a_quote_in_the_middle_of_a_text) {
+TEST_F(Loader, NamesAQuoteInTheMiddleOfAText) {
   EXPECT_THAT(
       complaints(minimal_config + "  - name: 'gemini's'\n    type: micron\n"),
       ElementsAre("config.yaml:11:18: this quote ends the text that begins in column 11 (expected two "
@@ -293,7 +293,7 @@ TEST_F(Loader, names_a_quote_in_the_middle_of_a_text) {
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: 'the captain''s'}\n"), IsEmpty());
 }
 
-TEST_F(Loader, says_that_no_tilde_is_expanded) {
+TEST_F(Loader, SaysThatNoTildeIsExpanded) {
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"),
               ElementsAre(StartsWith("config.yaml:11:24: recording.directory: '~/logs' begins with ~, which "
                                      "sonard does not expand (expected an absolute path")));
@@ -301,7 +301,7 @@ TEST_F(Loader, says_that_no_tilde_is_expanded) {
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"), IsEmpty());
 }
 
-TEST_F(Loader, names_the_kind_of_head_that_has_an_unknown_key) {
+TEST_F(Loader, NamesTheKindOfHeadThatHasAnUnknownKey) {
   const std::string micron = "  - {type: micron, name: side, serial: {tcp: [{bind: '127.0.0.2:4001'}]}, ";
   EXPECT_THAT(
       complaints(minimal_config + micron + "sonar_id: 3}\n"),
@@ -309,7 +309,7 @@ TEST_F(Loader, names_the_kind_of_head_that_has_an_unknown_key) {
           "heads[1].sonar_id: unknown key of a micron, it is a key of gemini_720i (expected one of ")));
 }
 
-TEST_F(Loader, leads_from_single_angles_and_coordinates_to_the_keys_of_a_pose) {
+TEST_F(Loader, LeadsFromSingleAnglesAndCoordinatesToTheKeysOfAPose) {
   for (const char* const key : {"roll", "pitch", "yaw"}) {
     EXPECT_THAT(
         complaints(minimal_config + fmt::format("    mount: {{{}: 3}}\n", key)),
@@ -345,7 +345,7 @@ std::string offered_in(const std::string& problem) {
   return found == std::string::npos ? "" : problem.substr(begin, problem.find('\'', begin) - begin);
 }
 
-TEST_F(Loader, offers_only_keys_that_a_head_of_this_type_may_have) {
+TEST_F(Loader, OffersOnlyKeysThatAHeadOfThisTypeMayHave) {
   const auto is_known = [&](const std::string& text) {
     return std::ranges::none_of(complaints(text), [](const std::string& one) {
       return one.find("unknown key") != std::string::npos;
@@ -373,7 +373,7 @@ TEST_F(Loader, offers_only_keys_that_a_head_of_this_type_may_have) {
   EXPECT_GT(offers, 500U);
 }
 
-TEST_F(Loader, names_a_key_without_a_blank_after_its_colon) {
+TEST_F(Loader, NamesAKeyWithoutABlankAfterItsColon) {
   const std::string heads = "heads: [{type: gemini_720i, name: a}]\n";
   const auto expected = [](const char* at, const char* word, const char* key) {
     return Contains(
@@ -398,7 +398,7 @@ TEST_F(Loader, names_a_key_without_a_blank_after_its_colon) {
               expected("2:15", "'bind:127.0.0.1:14600'", "bind"));
 }
 
-TEST_F(Loader, an_empty_bind_is_the_only_problem_of_its_socket) {
+TEST_F(Loader, AnEmptyBindIsTheOnlyProblemOfItsSocket) {
   for (const char* const value : {"", "[]", "{}"}) {
     EXPECT_THAT(complaints("world: empty\nposes: {initial: {position_m: [0, 0, 0]}, udp: {bind: " +
                            std::string(value) + "}}\n" + minimal_config.substr(minimal_config.find("heads"))),
@@ -407,7 +407,7 @@ TEST_F(Loader, an_empty_bind_is_the_only_problem_of_its_socket) {
   }
 }
 
-TEST_F(Loader, names_a_quote_that_nothing_opens) {
+TEST_F(Loader, NamesAQuoteThatNothingOpens) {
   EXPECT_THAT(complaints(minimal_config + "engine: cpu\"\n"),
               ElementsAre(StartsWith(
                   "config.yaml:11:9: engine: 'cpu\"' ends with a quote but does not begin with one")));
@@ -416,7 +416,7 @@ TEST_F(Loader, names_a_quote_that_nothing_opens) {
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: \"the captain's\"}\n"), testing::IsEmpty());
 }
 
-TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
+TEST_F(Loader, SaysWhatToDoAboutAKeyOfEarlierVersions) {
   EXPECT_THAT(complaints(minimal_config + "gpu_binning: on\n"),
               ElementsAre("config.yaml:11:1: gpu_binning: is no longer a key: remove it; engine `gpu` always "
                           "bins on the GPU"));
@@ -425,7 +425,7 @@ TEST_F(Loader, says_what_to_do_about_a_key_of_earlier_versions) {
                           "`engine: cpu` for ray, `engine: auto` for auto"));
 }
 
-TEST_F(Loader, reads_a_key_by_its_former_name_and_warns) {
+TEST_F(Loader, ReadsAKeyByItsFormerNameAndWarns) {
   const std::string former =
       minimal_config + "    timing: {surface_timeout_ms: 500}\n    link: {to_surface: {loss: 0.5}}\n";
   const LoadedConfig loaded = load(former);
@@ -444,14 +444,14 @@ TEST_F(Loader, reads_a_key_by_its_former_name_and_warns) {
           "timing.surface_timeout_ms: is the former name of 'client_timeout_ms', which is given too")));
 }
 
-TEST_F(Loader, suggests_the_key_with_its_unit) {
+TEST_F(Loader, SuggestsTheKeyWithItsUnit) {
   EXPECT_THAT(
       complaints(minimal_config + "    link: {to_client: {delay: 5s}}\n"),
       ElementsAre(StartsWith(
           "config.yaml:11:24: heads[0].link.to_client.delay: unknown key, did you mean 'delay_ms'?")));
 }
 
-TEST_F(Loader, refuses_units_in_values) {
+TEST_F(Loader, RefusesUnitsInValues) {
   EXPECT_THAT(complaints(minimal_config + "water: {temperature_c: 10C, depth_m: 5 m}\n"),
               ElementsAre(AllOf(StartsWith("config.yaml:11:24: water.temperature_c: '10C' contains a unit"),
                                 HasSubstr("expected a number from -4 to 45, in degrees Celsius")),
@@ -459,7 +459,7 @@ TEST_F(Loader, refuses_units_in_values) {
                                 HasSubstr("expected a number from 0 to 11000, in m)"))));
 }
 
-TEST_F(Loader, refuses_duplicate_keys_at_every_depth) {
+TEST_F(Loader, RefusesDuplicateKeysAtEveryDepth) {
   EXPECT_THAT(
       complaints(minimal_config + "      netmask: 255.0.0.0\n"),
       ElementsAre("config.yaml:11:7: heads[0].network.netmask: duplicate key (expected once; first given on "
@@ -471,7 +471,7 @@ TEST_F(Loader, refuses_duplicate_keys_at_every_depth) {
               ElementsAre("config.yaml:12:1: wibble: duplicate key (expected once; first given on line 11)"));
 }
 
-TEST_F(Loader, refuses_wrong_types) {
+TEST_F(Loader, RefusesWrongTypes) {
   EXPECT_THAT(complaints("world: [a, b]\n" + minimal_config.substr(minimal_config.find("poses:"))),
               ElementsAre(StartsWith("config.yaml:1:8: world: is a list (expected a mapping")));
   EXPECT_THAT(
@@ -497,7 +497,7 @@ TEST_F(Loader, refuses_wrong_types) {
               ElementsAre(HasSubstr("heads: is a mapping (expected a list, each item starting with '-')")));
 }
 
-TEST_F(Loader, noise_follows_from_a_budget) {
+TEST_F(Loader, NoiseFollowsFromABudget) {
   const auto physical = [&](const std::string& text) {
     return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
   };
@@ -514,7 +514,7 @@ TEST_F(Loader, noise_follows_from_a_budget) {
       ElementsAre(HasSubstr("physical.noise_budget: sets noise_level_db, which is given too")));
 }
 
-TEST_F(Loader, refuses_ends_before_beginnings) {
+TEST_F(Loader, RefusesEndsBeforeBeginnings) {
   const std::string begin = minimal_config + "    acoustics: {physical: ";
   EXPECT_THAT(complaints(begin + "{ring_down: {on: true, peak_m: 0.5, end_m: 0.4}}}\n"),
               ElementsAre(HasSubstr("ring_down.end_m: is not beyond peak_m")));
@@ -522,7 +522,7 @@ TEST_F(Loader, refuses_ends_before_beginnings) {
               ElementsAre(HasSubstr("interference.most_db: is less than least_db")));
 }
 
-TEST_F(Loader, refuses_numbers_out_of_range) {
+TEST_F(Loader, RefusesNumbersOutOfRange) {
   EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {near_field_blank_m: -0.5}}\n"),
               ElementsAre(HasSubstr(
                   "near_field_blank_m: -0.5 is out of range (expected a number from 0 to 120, in m)")));
@@ -538,14 +538,14 @@ TEST_F(Loader, refuses_numbers_out_of_range) {
               ElementsAre(HasSubstr("0 is out of range (expected a number above 0 to 170, in degrees)")));
 }
 
-TEST_F(Loader, says_which_words_stand_beside_a_number) {
+TEST_F(Loader, SaysWhichWordsStandBesideANumber) {
   EXPECT_THAT(
       complaints(minimal_config + "water: {sound_speed_mps: guessed}\n"),
       ElementsAre(HasSubstr("(expected a number from 1000 to 2000, in m/s, or 'ping_configuration', or "
                             "'computed')")));
 }
 
-TEST_F(Loader, refuses_ids_that_clients_never_talk_to) {
+TEST_F(Loader, RefusesIdsThatClientsNeverTalkTo) {
   for (const char* id : {"0", "1", "65536", "-2"}) {
     std::string text = minimal_config;
     text.replace(text.find("513"), 3, id);
@@ -555,7 +555,7 @@ TEST_F(Loader, refuses_ids_that_clients_never_talk_to) {
   }
 }
 
-TEST_F(Loader, refuses_addresses_that_are_no_host) {
+TEST_F(Loader, RefusesAddressesThatAreNoHost) {
   const auto with_address = [](const std::string& address) {
     std::string text = minimal_config;
     return text.replace(text.find("127.0.0.2"), 9, address);
@@ -573,7 +573,7 @@ TEST_F(Loader, refuses_addresses_that_are_no_host) {
                   "interface of this machine such as eth0)")));
 }
 
-TEST_F(Loader, an_interface_that_is_not_there_is_a_matter_of_the_network) {
+TEST_F(Loader, AnInterfaceThatIsNotThereIsAMatterOfTheNetwork) {
   const auto trouble = [&](const std::string& address, const std::string& mask, const std::string& more) {
     std::string text = minimal_config + more;
     text.replace(text.find("127.0.0.2"), 9, address);
@@ -597,7 +597,7 @@ TEST_F(Loader, an_interface_that_is_not_there_is_a_matter_of_the_network) {
   EXPECT_FALSE(trouble("127.0.0.300", "usb77", "").first);
 }
 
-TEST_F(Loader, names_the_interface_that_a_head_is_named_by) {
+TEST_F(Loader, NamesTheInterfaceThatAHeadIsNamedBy) {
   std::string text = minimal_config;
   text.replace(text.find("127.0.0.2"), 9, "lo");
   text.replace(text.find("255.0.0.0"), 9, "lo");
@@ -608,7 +608,7 @@ TEST_F(Loader, names_the_interface_that_a_head_is_named_by) {
   EXPECT_EQ(gemini_of(load(minimal_config).config).interface, "");
 }
 
-TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
+TEST_F(Loader, WarnsOfRadiansThatAreGivenForDegrees) {
   const auto warnings = [&](const std::string& rpy) {
     return load(minimal_config + "    mount: {rpy_deg: " + rpy + "}\n").warning_lines();
   };
@@ -631,7 +631,7 @@ TEST_F(Loader, warns_of_radians_that_are_given_for_degrees) {
               ElementsAre(HasSubstr("poses.initial.rpy_deg: 0, 0, 1.571 look like radians")));
 }
 
-TEST_F(Loader, warns_of_mounts_in_centimetres) {
+TEST_F(Loader, WarnsOfMountsInCentimetres) {
   const auto warnings = [&](const std::string& position) {
     return load(minimal_config + "    mount: {position_m: " + position + "}\n").warning_lines();
   };
@@ -642,7 +642,7 @@ TEST_F(Loader, warns_of_mounts_in_centimetres) {
   EXPECT_THAT(warnings("[1.5, 0, -0.3]"), IsEmpty());
 }
 
-TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
+TEST_F(Loader, SaysWhichBoundOfTheAbsorptionFormulaIsLeft) {
   const auto warnings = [&](const std::string& type, const std::string& water) {
     return load("world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nwater: " + water +
                 "\nheads:\n  - name: a\n    type: oculus\n    model: " + type +
@@ -674,14 +674,14 @@ TEST_F(Loader, says_which_bound_of_the_absorption_formula_is_left) {
           high("2099 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 degrees")));
 }
 
-TEST_F(Loader, refuses_masks_with_holes) {
+TEST_F(Loader, RefusesMasksWithHoles) {
   std::string text = minimal_config;
   text.replace(text.find("255.0.0.0"), 9, "255.0.255.0");
   EXPECT_THAT(complaints(text),
               ElementsAre(StartsWith("config.yaml:10:16: heads[0].network.netmask: 255.0.255.0 is not")));
 }
 
-TEST_F(Loader, wants_an_allow_list_for_everything_but_loopback) {
+TEST_F(Loader, WantsAnAllowListForEverythingButLoopback) {
   std::string text = minimal_config;
   text.replace(text.find("127.0.0.2"), 9, "10.61.19.200");
   EXPECT_THAT(complaints(text),
@@ -693,7 +693,7 @@ TEST_F(Loader, wants_an_allow_list_for_everything_but_loopback) {
       ElementsAre(HasSubstr("heads[0].network.allow[0]: is '127.0.0.1/8' (expected an address block")));
 }
 
-TEST_F(Loader, reads_where_status_packets_go) {
+TEST_F(Loader, ReadsWhereStatusPacketsGo) {
   const auto status = [&](const std::string& text) {
     return gemini_of(load(minimal_config + "      status: " + text + "\n").config).status;
   };
@@ -704,7 +704,7 @@ TEST_F(Loader, reads_where_status_packets_go) {
               ElementsAre(HasSubstr("'multicast' is not understood (expected one of limited_broadcast")));
 }
 
-TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
+TEST_F(Loader, WarnsOfWhatCannotWorkButMayBeMeant) {
   EXPECT_THAT(load(minimal_config + "      bind: 127.0.0.7\n").warning_lines(),
               ElementsAre(HasSubstr("config.yaml:11:13: heads[0].network.bind: clients send to the alternate "
                                     "address 127.0.0.2, but the head listens only on 127.0.0.7")));
@@ -712,7 +712,7 @@ TEST_F(Loader, warns_of_what_cannot_work_but_may_be_meant) {
               ElementsAre(HasSubstr("10.0.0.1 receives status packets but is not in `allow`")));
 }
 
-TEST_F(Loader, warns_of_keys_that_have_no_effect_here) {
+TEST_F(Loader, WarnsOfKeysThatHaveNoEffectHere) {
   const auto warnings = [&](const std::string& text) { return load(minimal_config + text).warning_lines(); };
   EXPECT_THAT(warnings("engine: cpu\ngpu: {device: 0}\n"),
               ElementsAre(HasSubstr("gpu: has no effect: the engine is `cpu`")));
@@ -728,7 +728,7 @@ TEST_F(Loader, warns_of_keys_that_have_no_effect_here) {
   EXPECT_THAT(acoustics("{physical: {volume_scattering_db: -80}}"), IsEmpty());
 }
 
-TEST_F(Loader, reads_mavlink) {
+TEST_F(Loader, ReadsMavlink) {
   const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
   const auto with = [&](const std::string& mavlink) {
     std::string text = minimal_config;
@@ -756,7 +756,7 @@ TEST_F(Loader, reads_mavlink) {
   EXPECT_NEAR((full.T_world_local.orientation * glm::dvec3(0, 1, 0)).x, 1, 1e-12);
 }
 
-TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
+TEST_F(Loader, TellsTheHeadsWhoseTimePingsKeep) {
   const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
   const std::string world = "world: {file: w.sdf}\n";
   const auto loaded = [&](const std::string& clock) {
@@ -773,7 +773,7 @@ TEST_F(Loader, tells_the_heads_whose_time_pings_keep) {
               ElementsAre(HasSubstr("poses.clock: requires poses with time stamps")));
 }
 
-TEST_F(Loader, takes_open_water_for_a_world) {
+TEST_F(Loader, TakesOpenWaterForAWorld) {
   const std::string rest = minimal_config.substr(minimal_config.find("poses:"));
   for (const char* world : {"world: empty\n", "world: {empty: true}\n"}) {
     const LoadedConfig loaded = load(world + rest);
@@ -796,7 +796,7 @@ TEST_F(Loader, takes_open_water_for_a_world) {
                   "empty for open water)"));
 }
 
-TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
+TEST_F(Loader, LeavesTheVehicleOfGazeboToTheWorld) {
   const std::string initial = "  initial: {position_m: [1, 2, 3]}\n";
   const auto with = [&](const std::string& ignition) {
     std::string text = minimal_config;
@@ -811,7 +811,7 @@ TEST_F(Loader, leaves_the_vehicle_of_gazebo_to_the_world) {
               ElementsAre(HasSubstr("poses.gazebo.parents: missing")));
 }
 
-TEST_F(Loader, leaves_a_mount_to_the_world) {
+TEST_F(Loader, LeavesAMountToTheWorld) {
   const HeadConfig head =
       load(minimal_config + "    mount: {from_world: bow}\n    hides_vehicle: true\n").config.heads.at(0);
   EXPECT_EQ(head.mount_from_world, "bow");
@@ -820,7 +820,7 @@ TEST_F(Loader, leaves_a_mount_to_the_world) {
               ElementsAre(HasSubstr("heads[0].mount.rpy_deg: cannot be combined with from_world")));
 }
 
-TEST_F(Loader, wants_a_source_of_poses) {
+TEST_F(Loader, WantsASourceOfPoses) {
   const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
   const std::string world = "world: {file: w.sdf}\n";
   EXPECT_THAT(complaints(world + "poses: {stale: silence}\n" + heads),
@@ -833,7 +833,7 @@ TEST_F(Loader, wants_a_source_of_poses) {
               ElementsAre(HasSubstr("poses.tcp.allow: missing")));
 }
 
-TEST_F(Loader, refuses_heads_that_overlap) {
+TEST_F(Loader, RefusesHeadsThatOverlap) {
   const std::string same =
       "  - name: front\n"
       "    type: gemini_720i\n"
@@ -848,7 +848,7 @@ TEST_F(Loader, refuses_heads_that_overlap) {
                   HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 is already used")));
 }
 
-TEST_F(Loader, knows_that_a_socket_on_all_addresses_overlaps_every_other) {
+TEST_F(Loader, KnowsThatASocketOnAllAddressesOverlapsEveryOther) {
   const std::string any =
       "  - name: back\n"
       "    type: gemini_720i\n"
@@ -865,7 +865,7 @@ std::string micron_of(const std::string& name, int node, const std::string& seri
          "}, device: {node: " + std::to_string(node) + "}}\n";
 }
 
-TEST_F(Loader, lets_heads_of_two_kinds_have_the_same_id) {
+TEST_F(Loader, LetsHeadsOfTwoKindsHaveTheSameId) {
   std::string text = minimal_config + micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
   text.replace(text.find("513"), 3, "2");
   const DaemonConfig config = load(text).config;
@@ -878,7 +878,7 @@ TEST_F(Loader, lets_heads_of_two_kinds_have_the_same_id) {
       << "names are those of the daemon";
 }
 
-TEST_F(Loader, lets_heads_of_two_lines_be_the_same_node_but_not_have_the_same_terminal) {
+TEST_F(Loader, LetsHeadsOfTwoLinesBeTheSameNodeButNotHaveTheSameTerminal) {
   EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
                          micron_of("b", 2, "pty: [{link: b}, {}]")),
               IsEmpty());
@@ -888,7 +888,7 @@ TEST_F(Loader, lets_heads_of_two_lines_be_the_same_node_but_not_have_the_same_te
                                     "' is already used by heads[1] (expected a unique value)")));
 }
 
-TEST_F(Loader, knows_the_sockets_of_all_inputs_and_heads_by_their_transport) {
+TEST_F(Loader, KnowsTheSocketsOfAllInputsAndHeadsByTheirTransport) {
   const std::string text =
       "world: {file: world.sdf}\n"
       "poses: {tcp: {bind: 127.0.0.1:1}, mavlink: {bind: 127.0.0.1:2}, udp: {bind: 127.0.0.1:3}}\n" +
@@ -911,7 +911,7 @@ TEST_F(Loader, knows_the_sockets_of_all_inputs_and_heads_by_their_transport) {
                            std::tuple(Transport::tcp, at(5), "heads[1].serial.tcp[1].bind")));
 }
 
-TEST_F(Loader, refuses_a_socket_of_a_head_that_an_input_has) {
+TEST_F(Loader, RefusesASocketOfAHeadThatAnInputHas) {
   const std::string poses = "world: {file: w.sdf}\nposes: {tcp: {bind: 127.0.0.9:4001}}\nheads:\n";
   EXPECT_THAT(
       complaints(poses + micron_of("mast", 2, "tcp: [{bind: 0.0.0.0:4001, allow: [127.0.0.0/8]}]")),
@@ -919,7 +919,7 @@ TEST_F(Loader, refuses_a_socket_of_a_head_that_an_input_has) {
                             "poses.tcp.bind")));
 }
 
-TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
+TEST_F(Loader, NamesTheTypesThatAHeadCanBeOf) {
   std::vector<std::string_view> types;
   for (const HeadKind* kind : head_kinds()) {
     types.push_back(kind->type());
@@ -940,7 +940,7 @@ TEST_F(Loader, names_the_types_that_a_head_can_be_of) {
 }
 
 // The valid keys of an unknown type are unknown, so the head's other keys are not reported.
-TEST_F(Loader, ends_the_complaints_about_a_head_with_its_unknown_type) {
+TEST_F(Loader, EndsTheComplaintsAboutAHeadWithItsUnknownType) {
   const auto complaint = [this](const std::string& type) {
     std::string text = minimal_config + "    wibble: 1\n    serial: {}\n";
     text.replace(text.find("gemini_720i"), 11, type);
@@ -970,7 +970,7 @@ TEST_F(Loader, ends_the_complaints_about_a_head_with_its_unknown_type) {
               ElementsAre(HasSubstr("heads[0].type: 'norbit' is not understood (expected one of ")));
 }
 
-TEST_F(Loader, says_which_word_was_probably_meant) {
+TEST_F(Loader, SaysWhichWordWasProbablyMeant) {
   EXPECT_THAT(
       complaints(minimal_config + "engine: CPU\n"),
       ElementsAre("config.yaml:11:9: engine: 'CPU' is not understood, did you mean 'cpu'? (expected one of "
@@ -983,7 +983,7 @@ TEST_F(Loader, says_which_word_was_probably_meant) {
 }
 
 // The parser gives an empty value the place of the next token.
-TEST_F(Loader, places_an_empty_value_at_its_key) {
+TEST_F(Loader, PlacesAnEmptyValueAtItsKey) {
   EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m:\n  ph: 8\n"),
               ElementsAre(StartsWith("config.yaml:12:3: water.depth_m: is empty (expected a number")));
   EXPECT_THAT(complaints(minimal_config + "engine:\nlog: {level: info}\n"),
@@ -1001,7 +1001,7 @@ TEST_F(Loader, places_an_empty_value_at_its_key) {
 }
 
 // Places were counted by hand; columns count from 1.
-TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
+TEST_F(Loader, NamesAQuoteOrBracketThatNothingClosesWhereItBegins) {
   const std::string rest = "poses: {initial: {}}\nheads:\n  - name: \"bow\"\n    type: micron\n";
   const std::string quote = "the quote that begins here is not closed (expected another ";
   EXPECT_THAT(complaints("world:\n  file: \"w.sdf\n" + rest),
@@ -1027,7 +1027,7 @@ TEST_F(Loader, names_a_quote_or_bracket_that_nothing_closes_where_it_begins) {
               ElementsAre("config.yaml:1:8: " + bracket + "})"));
 }
 
-TEST_F(Loader, blames_no_quote_that_is_closed) {
+TEST_F(Loader, BlamesNoQuoteThatIsClosed) {
   // Quotes over two lines, in a comment and within a word. The error is the indent of the last line.
   EXPECT_THAT(complaints("world:\n  file: \"a\n    b.sdf\" # it's\n  missing: don't\n   x: 1\n"),
               ElementsAre(StartsWith("config.yaml:5:4: this line is indented by 3 space(s)")));
@@ -1035,7 +1035,7 @@ TEST_F(Loader, blames_no_quote_that_is_closed) {
               ElementsAre(testing::Not(HasSubstr("not closed"))));
 }
 
-TEST_F(Loader, takes_no_other_types_than_it_is_given) {
+TEST_F(Loader, TakesNoOtherTypesThanItIsGiven) {
   const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
   load(minimal_config + micron);  // load() writes the file
   const HeadKind* const kinds[] = {&gemini_kind()};
@@ -1050,7 +1050,7 @@ TEST_F(Loader, takes_no_other_types_than_it_is_given) {
   }
 }
 
-TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
+TEST_F(Loader, CollectsEveryProblemInTheOrderOfTheFile) {
   std::string text = minimal_config + "sampling: {preset: grid, views: 0}\nwater: {ph: 15}\nbogus: 1\n";
   text.replace(text.find("513"), 3, "1");
   EXPECT_THAT(complaints(text),
@@ -1058,7 +1058,7 @@ TEST_F(Loader, collects_every_problem_in_the_order_of_the_file) {
                           HasSubstr(":12:13: water.ph"), HasSubstr(":13:1: bogus")));
 }
 
-TEST_F(Loader, reads_the_error_that_is_aimed_at) {
+TEST_F(Loader, ReadsTheErrorThatIsAimedAt) {
   const auto preset = [&](const std::string& section) {
     return load(minimal_config + section).config.heads.at(0).acoustics.sampling.preset;
   };
@@ -1077,7 +1077,7 @@ TEST_F(Loader, reads_the_error_that_is_aimed_at) {
               ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
 }
 
-TEST_F(Loader, points_at_malformed_yaml) {
+TEST_F(Loader, PointsAtMalformedYaml) {
   EXPECT_THAT(complaints(minimal_config + "water: {ph: 8\n"),
               ElementsAre("config.yaml:11:8: the bracket that begins here is not closed (expected })"));
   EXPECT_THAT(complaints("world: [\n"),
@@ -1086,7 +1086,7 @@ TEST_F(Loader, points_at_malformed_yaml) {
 }
 
 // Places were counted by hand; columns count from 1.
-TEST_F(Loader, names_tabs_and_wrong_indents) {
+TEST_F(Loader, NamesTabsAndWrongIndents) {
   EXPECT_THAT(
       complaints("a: 1\n\tb: 2\n"),
       ElementsAre("config.yaml:2:1: a tab indents this line (expected spaces; YAML allows no tabs there)"));
@@ -1103,7 +1103,7 @@ TEST_F(Loader, names_tabs_and_wrong_indents) {
                                 HasSubstr("(expected 0 or 2 or 4)"))));
 }
 
-TEST_F(Loader, names_decimal_commas) {
+TEST_F(Loader, NamesDecimalCommas) {
   EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m: 20,5\n"),
               ElementsAre(AllOf(
                   StartsWith("config.yaml:12:12: water.depth_m: '20,5' has a decimal comma, write 20.5"),
@@ -1113,7 +1113,7 @@ TEST_F(Loader, names_decimal_commas) {
                              HasSubstr("decimals need a point"))));
 }
 
-TEST_F(Loader, says_which_keys_take_an_interface) {
+TEST_F(Loader, SaysWhichKeysTakeAnInterface) {
   const std::vector<InterfaceAddress> interfaces = interface_addresses();
   if (interfaces.empty()) {
     GTEST_SKIP() << "no interface has an address";
@@ -1128,7 +1128,7 @@ TEST_F(Loader, says_which_keys_take_an_interface) {
                       one.interface, address_text(one.address)))));
 }
 
-TEST_F(Loader, names_ipv6_addresses) {
+TEST_F(Loader, NamesIpv6Addresses) {
   const std::string udp = "world: {file: w}\nposes:\n  udp:\n";
   EXPECT_THAT(complaints(udp + "    bind: ::1\n"),
               Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: '::1' is an IPv6 address"),
@@ -1143,7 +1143,7 @@ TEST_F(Loader, names_ipv6_addresses) {
               Contains(StartsWith("config.yaml:5:13: poses.udp.allow[0]: 'fe80::1/64' is an IPv6 address")));
 }
 
-TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
+TEST_F(Loader, SaysLittleAboutFilesThatAreFarTooLong) {
   std::string keys = minimal_config;
   for (int key = 0; key < 100'000; ++key) {
     keys += fmt::format("k{}: 1\n", key);
@@ -1166,7 +1166,7 @@ TEST_F(Loader, says_little_about_files_that_are_far_too_long) {
               ElementsAre("config.yaml: is 5000000 bytes long (expected at most 4194304)"));
 }
 
-TEST_F(Loader, wants_one_document_that_is_a_mapping) {
+TEST_F(Loader, WantsOneDocumentThatIsAMapping) {
   // For this text, yaml-cpp returns documents without end.
   EXPECT_THAT(complaints("# a comment\n, world\n"),
               ElementsAre("config.yaml:2:1: this character cannot begin a value (expected valid YAML)"));
@@ -1176,7 +1176,7 @@ TEST_F(Loader, wants_one_document_that_is_a_mapping) {
   EXPECT_THAT(complaints("- 1\n")[0], HasSubstr("is a list (expected a mapping"));
 }
 
-TEST_F(Loader, says_why_a_file_cannot_be_read) {
+TEST_F(Loader, SaysWhyAFileCannotBeRead) {
   try {
     load_config(folder_ / "absent.yaml", head_kinds());
     FAIL() << "loaded a file that is not there";

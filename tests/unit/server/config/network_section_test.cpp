@@ -38,7 +38,7 @@ struct SerialSection : testing::Test {
   }
 };
 
-TEST_F(SerialSection, reads_several_transports) {
+TEST_F(SerialSection, ReadsSeveralTransports) {
   const SerialLinkConfig link = read(
       "tcp:\n"
       "  - {bind: 127.0.0.1:4001}\n"
@@ -62,12 +62,12 @@ TEST_F(SerialSection, reads_several_transports) {
   EXPECT_EQ(link.baud, 115200);
 }
 
-TEST_F(SerialSection, is_as_fast_as_it_goes_unless_a_speed_is_given) {
+TEST_F(SerialSection, IsAsFastAsItGoesUnlessASpeedIsGiven) {
   EXPECT_EQ(read("pty: [{}]\n").baud, 0);
   EXPECT_THAT(findings.problems, IsEmpty());
 }
 
-TEST_F(SerialSection, refuses_a_link_that_nobody_could_reach) {
+TEST_F(SerialSection, RefusesALinkThatNobodyCouldReach) {
   const std::string message =
       "heads[0].serial.tcp: no client could reach the device (expected tcp, udp or pty with at least one "
       "item)";
@@ -75,7 +75,7 @@ TEST_F(SerialSection, refuses_a_link_that_nobody_could_reach) {
   EXPECT_THAT(complaints("tcp: []\n"), ElementsAre("1:6: " + message));
 }
 
-TEST_F(SerialSection, names_the_place_of_each_mistake) {
+TEST_F(SerialSection, NamesThePlaceOfEachMistake) {
   EXPECT_THAT(complaints("tcp: [{}]\n"),
               ElementsAre("1:7: heads[0].serial.tcp[0].bind: missing (expected an address and port such as "
                           "127.0.0.1:4001)"));
@@ -96,7 +96,7 @@ TEST_F(SerialSection, names_the_place_of_each_mistake) {
   EXPECT_THAT(complaints("{pty: [{}], bauds: 9600}\n"), ElementsAre(HasSubstr("did you mean 'baud'?")));
 }
 
-TEST_F(SerialSection, refuses_two_of_one_kind) {
+TEST_F(SerialSection, RefusesTwoOfOneKind) {
   EXPECT_THAT(
       complaints("tcp:\n  - {bind: 127.0.0.1:4001}\n  - {bind: 127.0.0.1:4001}\n"),
       ElementsAre(
@@ -109,7 +109,7 @@ TEST_F(SerialSection, refuses_two_of_one_kind) {
       << "TCP and UDP ports are apart, and so are ptys";
 }
 
-TEST_F(SerialSection, takes_only_a_speed_that_a_line_has) {
+TEST_F(SerialSection, TakesOnlyASpeedThatALineHas) {
   for (const char* bad : {"0", "299", "4000001", "-9600", "9600.5", "fast", "'9600'"}) {
     EXPECT_THAT(complaints(fmt::format("{{pty: [{{}}], baud: {}}}\n", bad)),
                 ElementsAre(HasSubstr("heads[0].serial.baud: is '")))

@@ -24,7 +24,7 @@ using testing::IsEmpty;
 
 const std::filesystem::path configs = std::filesystem::path(SONARD_SOURCE_DIR) / "configs";
 
-TEST(ShippedConfigs, load_without_warnings) {
+TEST(ShippedConfigs, LoadWithoutWarnings) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(configs)) {
     if (entry.path().extension() == ".yaml") {
@@ -35,7 +35,7 @@ TEST(ShippedConfigs, load_without_warnings) {
   EXPECT_GE(files, 4);
 }
 
-TEST(ShippedConfigs, tell_editors_their_schema) {
+TEST(ShippedConfigs, TellEditorsTheirSchema) {
   for (const auto& entry : std::filesystem::directory_iterator(configs)) {
     if (entry.path().extension() == ".yaml") {
       std::string first;
@@ -56,7 +56,7 @@ void find_silent(const std::vector<KeyReference>& keys, const std::string& path,
   }
 }
 
-TEST(ShippedConfigs, every_key_of_the_schema_has_its_sentence) {
+TEST(ShippedConfigs, EveryKeyOfTheSchemaHasItsSentence) {
   for (const HeadKind* kind : head_kinds()) {
     std::vector<std::string> silent;
     find_silent(describe_config(*kind), "", silent);
@@ -64,7 +64,7 @@ TEST(ShippedConfigs, every_key_of_the_schema_has_its_sentence) {
   }
 }
 
-TEST(ShippedConfigs, trajectories_load) {
+TEST(ShippedConfigs, TrajectoriesLoad) {
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(configs / "trajectories")) {
     ++files;
@@ -91,7 +91,7 @@ void expect_demo_head(const DaemonConfig& config) {
   EXPECT_NEAR((head.T_vehicle_sonar.orientation * glm::dvec3(1, 0, 0)).z, -std::sin(20 * pi / 180), 1e-12);
 }
 
-TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
+TEST(ShippedConfigs, DemoStartsWhereItsTrajectoryStarts) {
   const pose::Transform first =
       pose::load_trajectory(configs / "trajectories" / "docking_demo.csv").points().front().T_world_vehicle;
   for (const char* file : {"demo.yaml", "gemini-netns.yaml", "paper.yaml"}) {
@@ -103,7 +103,7 @@ TEST(ShippedConfigs, demo_starts_where_its_trajectory_starts) {
   }
 }
 
-TEST(ShippedConfigs, demo_serves_loopback) {
+TEST(ShippedConfigs, DemoServesLoopback) {
   const DaemonConfig config = shipped("demo.yaml");
   expect_demo_head(config);
   const GeminiConfig& head = gemini_config(config.heads[0]);
@@ -114,7 +114,7 @@ TEST(ShippedConfigs, demo_serves_loopback) {
   EXPECT_THAT(head.status.hosts, ElementsAre(0x7F000001U));
 }
 
-TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
+TEST(ShippedConfigs, GeminiNetnsIsFoundByBroadcast) {
   const DaemonConfig config = shipped("gemini-netns.yaml");
   expect_demo_head(config);
   const GeminiConfig& head = gemini_config(config.heads[0]);
@@ -125,7 +125,7 @@ TEST(ShippedConfigs, gemini_netns_is_found_by_broadcast) {
   EXPECT_THAT(head.allow, ElementsAre(Cidr{0x0A3D1300, 24}));
 }
 
-TEST(ShippedConfigs, two_vehicles_run_side_by_side) {
+TEST(ShippedConfigs, TwoVehiclesRunSideBySide) {
   const DaemonConfig a = shipped("two-vehicles-a.yaml");
   const DaemonConfig b = shipped("two-vehicles-b.yaml");
   ASSERT_EQ(a.heads.size(), 2U);
@@ -138,7 +138,7 @@ TEST(ShippedConfigs, two_vehicles_run_side_by_side) {
   EXPECT_NE(gemini_a.status.hosts, gemini_b.status.hosts);
 }
 
-TEST(ShippedConfigs, paper_uses_the_model_of_the_paper) {
+TEST(ShippedConfigs, PaperUsesTheModelOfThePaper) {
   EXPECT_EQ(shipped("paper.yaml").heads.at(0).acoustics.model, render::Model::paper);
 }
 

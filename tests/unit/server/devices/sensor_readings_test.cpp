@@ -27,7 +27,7 @@ void expect_deg(const render::Pose& T_world_mount, double heading, double pitch,
   EXPECT_NEAR(std::remainder(readings.roll_rad / degree - roll, 360.0), 0.0, 1e-3);
 }
 
-TEST(SensorReadings, heading_grows_clockwise_from_north) {
+TEST(SensorReadings, HeadingGrowsClockwiseFromNorth) {
   expect_deg(turned(0, 0, 0), 90, 0, 0);
   expect_deg(turned(0, 0, 30), 60, 0, 0);
   expect_deg(turned(0, 0, 90), 0, 0, 0);
@@ -36,21 +36,21 @@ TEST(SensorReadings, heading_grows_clockwise_from_north) {
   expect_deg(turned(0, 0, -90), 180, 0, 0);
 }
 
-TEST(SensorReadings, heading_is_below_a_whole_turn_however_little_is_west_of_north) {
+TEST(SensorReadings, HeadingIsBelowAWholeTurnHoweverLittleIsWestOfNorth) {
   const double half = std::sqrt(0.5);
   for (const double z : {std::nextafter(half, 0.0), half, std::nextafter(half, 1.0)}) {
     expect_deg({{}, {half, 0.0, 0.0, z}}, 0, 0, 0);
   }
 }
 
-TEST(SensorReadings, pitch_is_positive_nose_up_and_roll_starboard_down) {
+TEST(SensorReadings, PitchIsPositiveNoseUpAndRollStarboardDown) {
   expect_deg(turned(0, 20, 30), 60, -20, 0);
   expect_deg(turned(0, -10, 30), 60, 10, 0);
   expect_deg(turned(3, 0, 30), 60, 0, 3);
   expect_deg(turned(-3, 20, 30), 60, -20, -3);
 }
 
-TEST(SensorReadings, are_those_of_the_mount) {
+TEST(SensorReadings, AreThoseOfTheMount) {
   // Close to the sums of the angles, but not equal, because the mount pitches about an axis that has rolled.
   expect_deg(turned(3, 5, 30) * turned(0, 10, 0), 59.461, -14.986, 3.094);
   expect_deg(turned(0, 5, 0) * turned(0, 0, -90), 180, 0, -5);  // looks to starboard of a nose-down vehicle
@@ -58,12 +58,12 @@ TEST(SensorReadings, are_those_of_the_mount) {
   expect_deg(turned(0, 20, 30) * turned(180, 0, 0), 60, -20, 180);
 }
 
-TEST(SensorReadings, looking_straight_down_or_up_has_a_heading_and_no_roll) {
+TEST(SensorReadings, LookingStraightDownOrUpHasAHeadingAndNoRoll) {
   expect_deg(turned(0, 0, 30) * turned(0, 90, 0), 60, -90, 0);
   expect_deg(turned(0, 0, 30) * turned(0, -90, 0), 60, 90, 0);
 }
 
-TEST(SensorReadings, depth_is_below_the_surface) {
+TEST(SensorReadings, DepthIsBelowTheSurface) {
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), 0.0).depth_m, 20.0);
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), 5.0).depth_m, 25.0);
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, 1.5}), 0.0).depth_m, -1.5);

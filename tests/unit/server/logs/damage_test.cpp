@@ -197,20 +197,20 @@ void expect_at_most(std::size_t most_lost, const std::string& suffix, const Byte
   EXPECT_GT(flips_that_lose, 2 * whole.size()) << "most bytes are those of pings";
 }
 
-TEST(Damage, a_flipped_bit_in_an_mcap_costs_its_chunk) {
+TEST(Damage, AFlippedBitInAnMcapCostsItsChunk) {
   expect_at_most(2, ".mcap", mcap_log(6, false, true), pings_written(6));
 }
 
-TEST(Damage, a_flipped_bit_in_a_compressed_mcap_costs_its_chunk) {
+TEST(Damage, AFlippedBitInACompressedMcapCostsItsChunk) {
   expect_at_most(2, ".mcap", mcap_log(6, true, true), pings_written(6));
 }
 
-TEST(Damage, a_flipped_bit_in_an_mcap_that_was_not_closed_costs_its_chunk) {
+TEST(Damage, AFlippedBitInAnMcapThatWasNotClosedCostsItsChunk) {
   expect_at_most(2, ".mcap", mcap_log(7, false, false), pings_written(7));
   expect_at_most(2, ".mcap", mcap_log(6, true, false), pings_written(6));
 }
 
-TEST(Damage, each_bit_in_the_type_of_an_index_of_an_mcap_that_was_not_closed_costs_no_ping) {
+TEST(Damage, EachBitInTheTypeOfAnIndexOfAnMcapThatWasNotClosedCostsNoPing) {
   const Bytes whole = mcap_log(6, false, false);
   constexpr std::uint8_t message_index = 7;
   const Bytes front{message_index, 6 + 2 * 16, 0, 0, 0, 0, 0, 0, 0};
@@ -225,11 +225,11 @@ TEST(Damage, each_bit_in_the_type_of_an_index_of_an_mcap_that_was_not_closed_cos
   }
 }
 
-TEST(Damage, a_flipped_bit_in_a_dat_costs_its_record) {
+TEST(Damage, AFlippedBitInADatCostsItsRecord) {
   expect_at_most(1, ".dat", dat_log(5), pings_written(5));
 }
 
-TEST(Damage, a_flipped_bit_in_a_glf_costs_its_record) {
+TEST(Damage, AFlippedBitInAGlfCostsItsRecord) {
   expect_at_most(1, ".glf", glf_log(5), pings_written(5));
 }
 
@@ -291,7 +291,7 @@ void expect_at_most_with_any_byte_more(std::size_t most_lost, const Bytes& whole
 }
 
 // The length of an index of two messages, read one byte too early, is 9735: many chunks of this log.
-TEST(Damage, a_byte_too_many_in_a_long_mcap_costs_the_chunk_there) {
+TEST(Damage, AByteTooManyInALongMcapCostsTheChunkThere) {
   constexpr int images = 64;
   for (const bool finished : {true, false}) {
     const Bytes whole = mcap_log(images, false, finished);
@@ -304,16 +304,16 @@ TEST(Damage, a_byte_too_many_in_a_long_mcap_costs_the_chunk_there) {
   }
 }
 
-TEST(Damage, bytes_too_many_or_missing_in_a_glf_cost_the_pings_there) {
+TEST(Damage, BytesTooManyOrMissingInAGlfCostThePingsThere) {
   expect_at_most_when_moved(2, ".glf", glf_log(5), pings_written(5));
   expect_at_most_when_moved(2, ".glf", glf_log(5, 150), pings_written(5));
 }
 
-TEST(Damage, bytes_too_many_or_missing_in_a_dat_cost_the_pings_there) {
+TEST(Damage, BytesTooManyOrMissingInADatCostThePingsThere) {
   expect_at_most_when_moved(2, ".dat", dat_log(5), pings_written(5));
 }
 
-TEST(Damage, bytes_too_many_or_missing_in_an_mcap_cost_the_chunks_there) {
+TEST(Damage, BytesTooManyOrMissingInAnMcapCostTheChunksThere) {
   expect_at_most_when_moved(4, ".mcap", mcap_log(8, false, true), pings_written(8));
   expect_at_most_when_moved(4, ".mcap", mcap_log(8, true, false), pings_written(8));
 }
@@ -328,7 +328,7 @@ Bytes with_flipped_bit(Bytes bytes, std::size_t at) {
   return bytes;
 }
 
-TEST(Damage, a_damaged_start_of_an_mcap_is_told_and_costs_no_ping) {
+TEST(Damage, ADamagedStartOfAnMcapIsToldAndCostsNoPing) {
   constexpr std::size_t first_chunk = magic_size + 9 + 12;  // after the magic and a header that holds "test"
   for (const bool finished : {true, false}) {
     for (const bool compressed : {false, true}) {
@@ -353,7 +353,7 @@ TEST(Damage, a_damaged_start_of_an_mcap_is_told_and_costs_no_ping) {
   }
 }
 
-TEST(Damage, a_text_with_the_name_of_a_log_is_called_no_log) {
+TEST(Damage, ATextWithTheNameOfALogIsCalledNoLog) {
   const std::string text = "this is the text of somebody, and not a log at all\n";
   const Bytes bytes(text.begin(), text.end());
   EXPECT_THAT(outcome_of(".mcap", bytes, {}).problems, ElementsAre(HasSubstr("is not an .mcap log")));
@@ -362,7 +362,7 @@ TEST(Damage, a_text_with_the_name_of_a_log_is_called_no_log) {
   EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }), LogError);
 }
 
-TEST(Damage, a_glf_without_blocks_after_a_place_says_how_many_bytes_are_not_read) {
+TEST(Damage, AGlfWithoutBlocksAfterAPlaceSaysHowManyBytesAreNotRead) {
   Bytes bytes = glf_log(5, 150);
   const Bytes entry{'P', 'K', 1, 2};  // of the directory
   ASSERT_NE(std::search(bytes.begin(), bytes.end(), entry.begin(), entry.end()), bytes.end());
@@ -372,7 +372,7 @@ TEST(Damage, a_glf_without_blocks_after_a_place_says_how_many_bytes_are_not_read
   EXPECT_THAT(outcome.problems, Contains(AllOf(HasSubstr("bytes at the end of the file are not read"))));
 }
 
-TEST(Damage, info_says_where_a_chunk_is_damaged_and_how_many_pings_are_lost) {
+TEST(Damage, InfoSaysWhereAChunkIsDamagedAndHowManyPingsAreLost) {
   Bytes bytes = mcap_log(6, false, true);
   const auto place = place_of(samples_of(2), bytes);
   ASSERT_NE(place, bytes.end());
@@ -384,7 +384,7 @@ TEST(Damage, info_says_where_a_chunk_is_damaged_and_how_many_pings_are_lost) {
   EXPECT_THAT(outcome.problems, Not(Contains(HasSubstr("what follows"))));
 }
 
-TEST(Damage, replay_and_info_tell_an_image_that_does_not_unpack_when_they_open_the_log) {
+TEST(Damage, ReplayAndInfoTellAnImageThatDoesNotUnpackWhenTheyOpenTheLog) {
   Bytes dat;
   for (int number = 0; number < 3; ++number) {
     glf::ImageRecord image = glf_image(number);
@@ -405,7 +405,7 @@ TEST(Damage, replay_and_info_tell_an_image_that_does_not_unpack_when_they_open_t
               ElementsAre(AllOf(HasSubstr("damaged: "), HasSubstr("; 1 ping is lost"))));
 }
 
-TEST(Damage, a_wrong_byte_among_raw_pixels_of_a_glf_shows_in_its_checksum) {
+TEST(Damage, AWrongByteAmongRawPixelsOfAGlfShowsInItsChecksum) {
   Bytes bytes = glf_log(5);
   const auto place = place_of(samples_of(2), bytes);
   ASSERT_NE(place, bytes.end()) << "zlib makes 60 such bytes no shorter";
@@ -442,7 +442,7 @@ LogSummary summary_of_capture(Bytes bytes, std::size_t at, int bit) {
   return summary_of_capture(bytes);
 }
 
-TEST(Damage, bytes_too_many_or_missing_in_a_capture_cost_the_packets_there) {
+TEST(Damage, BytesTooManyOrMissingInACaptureCostThePacketsThere) {
   const Bytes whole = capture("sonard 0.1.0");
   for (const int moved : {1, 7, 512, -1, -5, -40}) {
     for (std::size_t at = magic_size; at < whole.size(); at += 3) {
@@ -456,7 +456,7 @@ TEST(Damage, bytes_too_many_or_missing_in_a_capture_cost_the_packets_there) {
   }
 }
 
-TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
+TEST(Damage, AFlippedBitInACaptureCostsItsPacket) {
   const Bytes whole = capture("sonard 0.1.0");
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -470,7 +470,7 @@ TEST(Damage, a_flipped_bit_in_a_capture_costs_its_packet) {
   }
 }
 
-TEST(Damage, info_says_where_a_block_type_of_a_capture_is_damaged) {
+TEST(Damage, InfoSaysWhereABlockTypeOfACaptureIsDamaged) {
   for (const std::string_view application : {"sonard 0.1.0", "another program"}) {
     const Bytes whole = capture(application);
     const std::size_t at = whole.size() - 3 * captured_block;
@@ -484,14 +484,14 @@ TEST(Damage, info_says_where_a_block_type_of_a_capture_is_damaged) {
   }
 }
 
-TEST(Damage, info_tells_a_packet_of_an_interface_that_is_not_there) {
+TEST(Damage, InfoTellsAPacketOfAnInterfaceThatIsNotThere) {
   const Bytes whole = capture("another program");
   const LogSummary log = summary_of_capture(whole, whole.size() - 3 * captured_block + 8, 1);
   EXPECT_EQ(log.heads.at(0).pings(), captured_pings);
   EXPECT_THAT(log.problems, Contains(HasSubstr("1 packet names an interface")));
 }
 
-TEST(Damage, a_damaged_start_of_a_capture_is_told_and_costs_no_packet) {
+TEST(Damage, ADamagedStartOfACaptureIsToldAndCostsNoPacket) {
   const Bytes whole = capture("sonard 0.1.0");
   constexpr std::size_t section = 12 + 16 + 16 + 4;  // with an option of 12 bytes, and the end of options
   const std::map<std::size_t, Bytes> starts{{5, with_moved_bytes(whole, 0, 5)},
@@ -507,7 +507,7 @@ TEST(Damage, a_damaged_start_of_a_capture_is_told_and_costs_no_packet) {
   }
 }
 
-TEST(Damage, info_tells_a_damaged_byte_order_magic_of_a_capture) {
+TEST(Damage, InfoTellsADamagedByteOrderMagicOfACapture) {
   EXPECT_THAT(summary_of_capture(capture("sonard 0.1.0"), 8, 3).problems,
               Contains(HasSubstr("byte_order_magic")));
 }

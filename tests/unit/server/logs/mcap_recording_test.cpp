@@ -83,7 +83,7 @@ std::vector<std::uint8_t> bytes_of(McapLog& log) {
   return log.writer.take().append;
 }
 
-TEST(McapRecording, has_every_image_in_the_order_of_time) {
+TEST(McapRecording, HasEveryImageInTheOrderOfTime) {
   McapLog log = small_log();
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
@@ -109,7 +109,7 @@ TEST(McapRecording, has_every_image_in_the_order_of_time) {
   EXPECT_TRUE(recording.problems().empty());
 }
 
-TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
+TEST(McapRecording, ImagesThatMakeNoSenseAreLeftOutAndTold) {
   McapLog log = small_log();
   log::SonarImage wrong = image(9);
   wrong.set_range_lines(4);  // 6 pixels instead of 8
@@ -121,7 +121,7 @@ TEST(McapRecording, images_that_make_no_sense_are_left_out_and_told) {
   EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 images cannot be decoded and are left out"}));
 }
 
-TEST(McapRecording, summary_counts_all_kinds) {
+TEST(McapRecording, SummaryCountsAllKinds) {
   McapLog log = small_log();
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
@@ -141,7 +141,7 @@ TEST(McapRecording, summary_counts_all_kinds) {
   EXPECT_EQ(summary.span_ns, (std::pair{start_ns, start_ns + 900'000'000}));
 }
 
-TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
+TEST(McapRecording, HasEveryScanLineAndHowItTravelled) {
   McapLog log;
   micron::HeadData travelled;
   travelled.control = 0x2304;
@@ -187,7 +187,7 @@ TEST(McapRecording, has_every_scan_line_and_how_it_travelled) {
             (std::vector<std::string>{"1 scan lines cannot be decoded and are left out"}));
 }
 
-TEST(McapRecording, says_which_devices_its_heads_were) {
+TEST(McapRecording, SaysWhichDevicesItsHeadsWere) {
   McapLog log;
   log::SonarImage said = image(0);
   said.set_device("gemini_720i");
@@ -222,7 +222,7 @@ TEST(McapRecording, says_which_devices_its_heads_were) {
 }
 
 // Names are unique within one daemon, but logs of other programs may hold duplicates.
-TEST(McapRecording, keeps_a_fan_and_a_line_of_one_name_and_id_apart) {
+TEST(McapRecording, KeepsAFanAndALineOfOneNameAndIdApart) {
   McapLog log;
   log::SonarImage fan = image(0);
   fan.set_head("mast");
@@ -240,7 +240,7 @@ TEST(McapRecording, keeps_a_fan_and_a_line_of_one_name_and_id_apart) {
   EXPECT_EQ(summarise(file, &ping_in).heads.size(), 2U);
 }
 
-TEST(McapRecording, an_unfinished_one_has_its_whole_chunks) {
+TEST(McapRecording, AnUnfinishedOneHasItsWholeChunks) {
   McapLog log = small_log();
   log.writer.end_chunk();
   std::vector<std::uint8_t> bytes = log.writer.take().append;

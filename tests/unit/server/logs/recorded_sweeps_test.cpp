@@ -28,7 +28,7 @@ LoggedHead scan_of(const std::vector<int>& bearings) {
   return scan;
 }
 
-TEST(RecordedSweeps, all_round_a_sweep_ends_where_it_began) {
+TEST(RecordedSweeps, AllRoundASweepEndsWhereItBegan) {
   LoggedHead scan;
   for (int line = 0; line < 450; ++line) {
     scan.pings.push_back(at((3000 + 32 * line) % 6400));  // 200 lines per turn
@@ -48,7 +48,7 @@ TEST(RecordedSweeps, all_round_a_sweep_ends_where_it_began) {
   EXPECT_EQ(turns[2].shape.width, 49 * 32);
 }
 
-TEST(RecordedSweeps, in_a_sector_a_sweep_ends_where_the_head_turns_back) {
+TEST(RecordedSweeps, InASectorASweepEndsWhereTheHeadTurnsBack) {
   const auto turns = sweeps_of(scan_of({6300, 6350, 0, 50, 100, 50, 0, 6350, 6300, 6350}));
   ASSERT_EQ(turns.size(), 3U);
   EXPECT_EQ(turns[0].end, 5U);
@@ -59,14 +59,14 @@ TEST(RecordedSweeps, in_a_sector_a_sweep_ends_where_the_head_turns_back) {
   EXPECT_EQ(turns[1].shape.width, 150);
 }
 
-TEST(RecordedSweeps, a_missing_line_is_a_gap_and_no_other_step) {
+TEST(RecordedSweeps, AMissingLineIsAGapAndNoOtherStep) {
   const auto turns = sweeps_of(scan_of({3200, 3232, 3264, 3328, 3360}));
   ASSERT_EQ(turns.size(), 1U);
   EXPECT_EQ(turns[0].shape.step, 32);
   EXPECT_EQ(turns[0].shape.width, 160);
 }
 
-TEST(RecordedSweeps, other_bins_begin_another_sweep) {
+TEST(RecordedSweeps, OtherBinsBeginAnotherSweep) {
   LoggedHead scan = scan_of({3200, 3232, 3264});
   scan.pings.push_back(at(3296, 200));
   const auto turns = sweeps_of(scan);
@@ -75,7 +75,7 @@ TEST(RecordedSweeps, other_bins_begin_another_sweep) {
   EXPECT_EQ(turns[1].shape.bins, 200);
 }
 
-TEST(RecordedSweeps, a_head_that_stands_still_has_sweeps_too) {
+TEST(RecordedSweeps, AHeadThatStandsStillHasSweepsToo) {
   const auto turns = sweeps_of(scan_of(std::vector<int>(7000, 1600)));
   ASSERT_EQ(turns.size(), 2U);
   EXPECT_EQ(turns[0].end, 6400U);
@@ -83,7 +83,7 @@ TEST(RecordedSweeps, a_head_that_stands_still_has_sweeps_too) {
   EXPECT_GT(turns[0].shape.width, 0);
 }
 
-TEST(RecordedSweeps, bearings_go_there_and_back) {
+TEST(RecordedSweeps, BearingsGoThereAndBack) {
   for (const int bearing : {0, 1, 1600, 3199, 3200, 3201, 4800, 6399}) {
     EXPECT_EQ(picture_bearing(at(bearing)), bearing);
   }

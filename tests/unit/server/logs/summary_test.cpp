@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr std::int64_t ms = 1'000'000;
 
-TEST(PingRate, median_and_gaps) {
+TEST(PingRate, MedianAndGaps) {
   // The intervals are 100, 100, 200, 201, 100, 500 ms. Their median is 200 ms, so only 500 ms is a gap.
   const PingRate rate = ping_rate({0, 100 * ms, 200 * ms, 400 * ms, 601 * ms, 701 * ms, 1201 * ms});
   EXPECT_DOUBLE_EQ(rate.median_interval_s, 0.2);
@@ -28,21 +28,21 @@ TEST(PingRate, median_and_gaps) {
   EXPECT_DOUBLE_EQ(rate.longest_gap_s, 0.5);
 }
 
-TEST(PingRate, twice_the_median_is_no_gap) {
+TEST(PingRate, TwiceTheMedianIsNoGap) {
   EXPECT_EQ(ping_rate({0, 100 * ms, 200 * ms, 300 * ms, 500 * ms}).gaps, 0U);
 }
 
-TEST(PingRate, one_ping_has_none) {
+TEST(PingRate, OnePingHasNone) {
   EXPECT_EQ(ping_rate({5}).rate_hz(), 0.0);
   EXPECT_EQ(ping_rate({}).rate_hz(), 0.0);
 }
 
-TEST(IsoTime, also_before_1970) {
+TEST(IsoTime, AlsoBefore1970) {
   EXPECT_EQ(iso_time(1'000'000'000'123'999'999, true), "2001-09-09T01:46:40.123Z");
   EXPECT_EQ(iso_time(-1, false), "1969-12-31T23:59:59.999");
 }
 
-TEST(InfoJson, text_of_logs_is_escaped) {
+TEST(InfoJson, TextOfLogsIsEscaped) {
   LogSummary log;
   log.path = "a\"b\\c\nd";
   EXPECT_NE(info_json(log, 0).find(R"("file":"a\"b\\c\nd")"), std::string::npos);
@@ -66,7 +66,7 @@ Said said_of(LogKind kind, const std::string& name, const std::string& device, s
   return {info_text(log, 0), info_json(log, 0)};
 }
 
-TEST(InfoText, heads_have_the_title_of_their_kind) {
+TEST(InfoText, HeadsHaveTheTitleOfTheirKind) {
   const Said bow = said_of(LogKind::mcap, "bow", "gemini_720i", 513, false);
   EXPECT_THAT(bow.text, HasSubstr("\nhead     Gemini 720i 513 'bow': 1 pings\n"));
   EXPECT_THAT(bow.text, HasSubstr(" 1x 400 lines of 256 beams, range 10.00 m"));
@@ -77,7 +77,7 @@ TEST(InfoText, heads_have_the_title_of_their_kind) {
   EXPECT_THAT(stern.json, HasSubstr(R"([{"device":"micron","scanning":true,"name":"stern","id":2,)"));
 }
 
-TEST(InfoText, what_nobody_knows_is_a_sonar) {
+TEST(InfoText, WhatNobodyKnowsIsASonar) {
   const Said fan = said_of(LogKind::mcap, "bow", "", 600, false);
   EXPECT_THAT(fan.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
   EXPECT_THAT(fan.json, HasSubstr(R"([{"device":null,"scanning":false,)"));
@@ -89,7 +89,7 @@ TEST(InfoText, what_nobody_knows_is_a_sonar) {
   EXPECT_THAT(other.json, HasSubstr(R"([{"device":"other_900","scanning":false,)")) << "the log knows";
 }
 
-TEST(InfoText, the_format_of_a_log_says_whose_it_is) {
+TEST(InfoText, TheFormatOfALogSaysWhoseItIs) {
   for (const LogKind kind : {LogKind::glf, LogKind::dat}) {
     const Said said = said_of(kind, "", "", 600, false);
     EXPECT_THAT(said.text, HasSubstr("\nhead     Gemini 720i 600: 1 pings\n"));
@@ -97,7 +97,7 @@ TEST(InfoText, the_format_of_a_log_says_whose_it_is) {
   }
 }
 
-TEST(Capture, pings_are_counted_by_their_heads) {
+TEST(Capture, PingsAreCountedByTheirHeads) {
   pcapng::Writer writer("test");
   const std::uint32_t bow = writer.add_interface("bow");
   const pcapng::Endpoint head_end{0x7F000002, 52901};
@@ -148,7 +148,7 @@ std::vector<std::uint8_t> capture_of(const std::vector<std::vector<std::uint8_t>
   return writer.take();
 }
 
-TEST(Capture, has_the_pings_that_a_kind_of_device_finds) {
+TEST(Capture, HasThePingsThatAKindOfDeviceFinds) {
   // One byte is a ping of a multibeam head with this ID. Two bytes are a line. Other lengths are no pings.
   const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
     if (datagram.empty() || datagram.size() > 2) {
@@ -176,7 +176,7 @@ TEST(Capture, has_the_pings_that_a_kind_of_device_finds) {
             (std::vector<std::pair<std::string, std::uint64_t>>{{"interfaces", 1}, {"UDP packets", 6}}));
 }
 
-TEST(Capture, keeps_devices_of_one_id_apart) {
+TEST(Capture, KeepsDevicesOfOneIdApart) {
   const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
     PingSeen seen{datagram[0] == 1 ? "one" : "other", 7, {}};
     seen.settings.beams = 64;
@@ -190,7 +190,7 @@ TEST(Capture, keeps_devices_of_one_id_apart) {
   EXPECT_EQ(summary.heads[1].device, "other");
 }
 
-TEST(Capture, of_a_line_of_a_micron_only_the_packet_is_counted) {
+TEST(Capture, OfALineOfAMicronOnlyThePacketIsCounted) {
   micron::HeadData line;
   const std::vector<std::uint8_t> bins(100, 1);
   line.data = bins;

@@ -57,7 +57,7 @@ struct FrameWriterTest : testing::Test {
   const Bytes xyz{'x', 'y', 'z'};
 };
 
-TEST_F(FrameWriterTest, writes_a_frame_with_one_call) {
+TEST_F(FrameWriterTest, WritesAFrameWithOneCall) {
   stream.room = 100;
   EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   EXPECT_EQ(stream.taken, abcd);
@@ -65,14 +65,14 @@ TEST_F(FrameWriterTest, writes_a_frame_with_one_call) {
   EXPECT_FALSE(stream.when_writable);
 }
 
-TEST_F(FrameWriterTest, drops_a_frame_of_which_nothing_fits) {
+TEST_F(FrameWriterTest, DropsAFrameOfWhichNothingFits) {
   EXPECT_EQ(writer.send(abcd, owner), FrameFate::no_room);
   stream.gain_room(100);
   EXPECT_EQ(writer.send(xyz, owner), FrameFate::sent);
   EXPECT_EQ(stream.taken, xyz) << "what was dropped does not come later";
 }
 
-TEST_F(FrameWriterTest, finishes_what_it_has_begun_and_drops_what_comes_meanwhile) {
+TEST_F(FrameWriterTest, FinishesWhatItHasBegunAndDropsWhatComesMeanwhile) {
   for (std::size_t first = 1; first < abcd.size(); ++first) {
     stream = {};
     stream.room = first;
@@ -88,12 +88,12 @@ TEST_F(FrameWriterTest, finishes_what_it_has_begun_and_drops_what_comes_meanwhil
   }
 }
 
-TEST_F(FrameWriterTest, a_reader_that_is_gone_is_no_slow_reader) {
+TEST_F(FrameWriterTest, AReaderThatIsGoneIsNoSlowReader) {
   stream.gone = true;
   EXPECT_EQ(writer.send(abcd, owner), FrameFate::no_reader);
 }
 
-TEST_F(FrameWriterTest, forgets_the_rest_when_told_to) {
+TEST_F(FrameWriterTest, ForgetsTheRestWhenToldTo) {
   stream.room = 2;
   EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   writer.clear();
@@ -102,7 +102,7 @@ TEST_F(FrameWriterTest, forgets_the_rest_when_told_to) {
   EXPECT_EQ(stream.taken, (Bytes{'a', 'b', 'x', 'y', 'z'}));
 }
 
-TEST_F(FrameWriterTest, waits_once_however_often_it_begins_anew) {
+TEST_F(FrameWriterTest, WaitsOnceHoweverOftenItBeginsAnew) {
   for (int i = 0; i < 3; ++i) {
     stream.room = 1;
     EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
@@ -114,7 +114,7 @@ TEST_F(FrameWriterTest, waits_once_however_often_it_begins_anew) {
   EXPECT_EQ(stream.taken, (Bytes{'a', 'a', 'a', 'x', 'y', 'z'}));
 }
 
-TEST_F(FrameWriterTest, keeps_its_owner_only_while_it_waits) {
+TEST_F(FrameWriterTest, KeepsItsOwnerOnlyWhileItWaits) {
   stream.room = 2;
   EXPECT_EQ(writer.send(abcd, owner), FrameFate::sent);
   EXPECT_EQ(owner.use_count(), 2);

@@ -14,7 +14,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Pacer = LinePacer<std::string>;
 
-TEST(LinePacer, a_byte_takes_ten_bits) {
+TEST(LinePacer, AByteTakesTenBits) {
   Pacer pacer(10'000, 1000);  // one byte per millisecond
   ASSERT_TRUE(pacer.push(seconds{5}, "ab", 2));
   EXPECT_EQ(pacer.next_due(), seconds{5} + milliseconds{2});
@@ -23,7 +23,7 @@ TEST(LinePacer, a_byte_takes_ten_bits) {
   EXPECT_FALSE(pacer.next_due());
 }
 
-TEST(LinePacer, agrees_with_the_times_of_the_document) {
+TEST(LinePacer, AgreesWithTheTimesOfTheDocument) {
   // docs/protocols/micron.md 8.4: T_tx of 245, 445 and 545 bytes at 115200 baud is 21.3, 38.6 and 47.3 ms.
   for (const auto& [size, expected_us] : {std::pair{245U, 21'300}, {445U, 38'600}, {545U, 47'300}}) {
     Pacer pacer(115'200, 1000);
@@ -32,7 +32,7 @@ TEST(LinePacer, agrees_with_the_times_of_the_document) {
   }
 }
 
-TEST(LinePacer, items_follow_each_other) {
+TEST(LinePacer, ItemsFollowEachOther) {
   Pacer pacer(10'000, 1000);
   pacer.push(milliseconds{0}, "first", 10);
   pacer.push(milliseconds{4}, "second", 5);
@@ -43,7 +43,7 @@ TEST(LinePacer, items_follow_each_other) {
   EXPECT_EQ(pacer.next_due(), milliseconds{101}) << "the line was idle";
 }
 
-TEST(LinePacer, an_event_keeps_its_place_between_bytes) {
+TEST(LinePacer, AnEventKeepsItsPlaceBetweenBytes) {
   Pacer pacer(10'000, 10);
   pacer.push(milliseconds{0}, "bytes", 10);
   EXPECT_TRUE(pacer.push(milliseconds{1}, "event", 0)) << "takes no room";
@@ -51,7 +51,7 @@ TEST(LinePacer, an_event_keeps_its_place_between_bytes) {
   EXPECT_EQ(pacer.pop_due(milliseconds{10}), "event");
 }
 
-TEST(LinePacer, rounding_does_not_add_up) {
+TEST(LinePacer, RoundingDoesNotAddUp) {
   Pacer pacer(115'200, 1'000'000);
   for (int i = 0; i < 11'520; ++i) {
     pacer.push(TimePoint{0}, "", 1);
@@ -65,7 +65,7 @@ TEST(LinePacer, rounding_does_not_add_up) {
   EXPECT_LE(last, seconds{1} + microseconds{12}) << "at most a nanosecond for each item";
 }
 
-TEST(LinePacer, refuses_what_would_have_to_wait_too_long) {
+TEST(LinePacer, RefusesWhatWouldHaveToWaitTooLong) {
   Pacer pacer(10'000, 10);
   EXPECT_TRUE(pacer.push(milliseconds{0}, "six", 6));
   EXPECT_FALSE(pacer.push(milliseconds{0}, "five", 5));
@@ -75,7 +75,7 @@ TEST(LinePacer, refuses_what_would_have_to_wait_too_long) {
   EXPECT_EQ(pacer.waiting(), 2U);
 }
 
-TEST(LinePacer, is_idle_when_cleared) {
+TEST(LinePacer, IsIdleWhenCleared) {
   Pacer pacer(10'000, 10);
   pacer.push(milliseconds{0}, "gone", 10);
   pacer.clear();
@@ -84,7 +84,7 @@ TEST(LinePacer, is_idle_when_cleared) {
   EXPECT_EQ(pacer.next_due(), milliseconds{11});
 }
 
-TEST(LinePacer, without_a_speed_everything_is_there_at_once) {
+TEST(LinePacer, WithoutASpeedEverythingIsThereAtOnce) {
   Pacer pacer(0, 1000);
   pacer.push(milliseconds{7}, "a", 500);
   pacer.push(milliseconds{7}, "b", 500);

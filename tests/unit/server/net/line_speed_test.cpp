@@ -38,7 +38,7 @@ class LineSpeed : public LinkTest {
   std::unique_ptr<Client> client_;
 };
 
-TEST_F(LineSpeed, a_frame_arrives_whole_when_its_last_byte_would) {
+TEST_F(LineSpeed, AFrameArrivesWholeWhenItsLastByteWould) {
   link_->send(alive);
   step(milliseconds{22} - TimePoint{1});
   EXPECT_THAT(client_->heard(), IsEmpty());
@@ -48,7 +48,7 @@ TEST_F(LineSpeed, a_frame_arrives_whole_when_its_last_byte_would) {
   EXPECT_EQ(client_->read_once(), alive);
 }
 
-TEST_F(LineSpeed, frames_follow_each_other) {
+TEST_F(LineSpeed, FramesFollowEachOther) {
   link_->send(numbered_frame(1, 100));
   link_->send(numbered_frame(2, 100));
   step(milliseconds{100});
@@ -61,7 +61,7 @@ TEST_F(LineSpeed, frames_follow_each_other) {
   EXPECT_THAT(frame_numbers(client_->heard(), 100), ElementsAre(1, 2));
 }
 
-TEST_F(LineSpeed, a_command_takes_its_time_too) {
+TEST_F(LineSpeed, ACommandTakesItsTimeToo) {
   write(send_version);
   step(milliseconds{14} - TimePoint{1});
   EXPECT_THAT(heard_, IsEmpty());
@@ -69,14 +69,14 @@ TEST_F(LineSpeed, a_command_takes_its_time_too) {
   EXPECT_EQ(heard_, send_version);
 }
 
-TEST_F(LineSpeed, the_directions_do_not_wait_for_each_other) {
+TEST_F(LineSpeed, TheDirectionsDoNotWaitForEachOther) {
   link_->send(numbered_frame(1, 1000));
   write(send_version);
   step(milliseconds{14});
   EXPECT_EQ(heard_, send_version);
 }
 
-TEST_F(LineSpeed, a_client_leaves_after_what_it_said) {
+TEST_F(LineSpeed, AClientLeavesAfterWhatItSaid) {
   write(send_version);
   client_->close();
   ASSERT_TRUE(run_until([&] { return !link_->connected(); }));
@@ -87,7 +87,7 @@ TEST_F(LineSpeed, a_client_leaves_after_what_it_said) {
   EXPECT_EQ(left_.size(), 1U);
 }
 
-TEST_F(LineSpeed, what_is_on_its_way_to_nobody_is_discarded) {
+TEST_F(LineSpeed, WhatIsOnItsWayToNobodyIsDiscarded) {
   link_->send(numbered_frame(1, 100));
   client_->close();
   ASSERT_TRUE(run_until_left(1));
@@ -100,7 +100,7 @@ TEST_F(LineSpeed, what_is_on_its_way_to_nobody_is_discarded) {
   EXPECT_TRUE(run_until_hears(next, alive));
 }
 
-TEST_F(LineSpeed, what_the_line_cannot_carry_is_dropped_whole) {
+TEST_F(LineSpeed, WhatTheLineCannotCarryIsDroppedWhole) {
   for (int i = 0; i < 20; ++i) {
     link_->send(numbered_frame(i, 1000));
   }
@@ -113,7 +113,7 @@ TEST_F(LineSpeed, what_the_line_cannot_carry_is_dropped_whole) {
   ASSERT_TRUE(run_until([&] { return client_->heard().size() == 9000; }));
 }
 
-TEST_F(LineSpeed, a_client_that_says_too_much_loses_it) {
+TEST_F(LineSpeed, AClientThatSaysTooMuchLosesIt) {
   write(Bytes(20'000, 0x55));
   const std::uint64_t overrun = link_->counters().bytes_overrun;
   EXPECT_GE(overrun, 20'000U - 8192U);
@@ -126,7 +126,7 @@ TEST_F(LineSpeed, a_client_that_says_too_much_loses_it) {
 }
 
 // Callbacks that are due run one after the other, and never inside each other.
-TEST_F(LineSpeed, callbacks_that_answer_do_not_pile_up) {
+TEST_F(LineSpeed, CallbacksThatAnswerDoNotPileUp) {
   int depth = 0;
   int deepest = 0;
   link_ = std::make_unique<SerialLink>(io_, SerialLinkConfig{{}, {any_udp}, {}, 10'000}, stepped_);
@@ -148,7 +148,7 @@ TEST_F(LineSpeed, callbacks_that_answer_do_not_pile_up) {
   EXPECT_EQ(deepest, 1);
 }
 
-TEST_F(LineSpeed, may_be_destroyed_by_a_callback_that_a_send_has_caused) {
+TEST_F(LineSpeed, MayBeDestroyedByACallbackThatASendHasCaused) {
   link_ = std::make_unique<SerialLink>(io_, SerialLinkConfig{{}, {any_udp}, {}, 10'000}, stepped_);
   link_->start([&](std::span<const std::uint8_t>, const std::string&) { link_.reset(); },
                [](const std::string&) {});
@@ -160,7 +160,7 @@ TEST_F(LineSpeed, may_be_destroyed_by_a_callback_that_a_send_has_caused) {
   EXPECT_EQ(link_, nullptr);
 }
 
-TEST_F(LinkTest, the_line_keeps_real_time) {
+TEST_F(LinkTest, TheLineKeepsRealTime) {
   open({{any_tcp}, {}, {}, 9600});
   Client client = tcp_client();
   ASSERT_TRUE(run_until_connections(1));

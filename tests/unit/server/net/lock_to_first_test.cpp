@@ -18,7 +18,7 @@ class LockedLink : public LinkTest {
   SteppedClock stepped_;
 };
 
-TEST_F(LockedLink, drops_what_others_send_and_lets_them_hear) {
+TEST_F(LockedLink, DropsWhatOthersSendAndLetsThemHear) {
   Client first = tcp_client();
   Client second = tcp_client(other_address);
   Client terminal = tty_client();
@@ -36,7 +36,7 @@ TEST_F(LockedLink, drops_what_others_send_and_lets_them_hear) {
   EXPECT_EQ(heard_, Bytes{1});
 }
 
-TEST_F(LockedLink, does_not_turn_replies_of_udp_to_others) {
+TEST_F(LockedLink, DoesNotTurnRepliesOfUdpToOthers) {
   Client first = udp_client();
   first.write(Bytes{1});
   ASSERT_TRUE(run_until_heard({1}));
@@ -48,7 +48,7 @@ TEST_F(LockedLink, does_not_turn_replies_of_udp_to_others) {
   EXPECT_TRUE(second.heard().empty());
 }
 
-TEST_F(LockedLink, is_free_when_the_first_is_silent_for_its_timeout) {
+TEST_F(LockedLink, IsFreeWhenTheFirstIsSilentForItsTimeout) {
   Client first = tcp_client();
   Client second = tcp_client(other_address);
   first.write(Bytes{1});
@@ -63,7 +63,7 @@ TEST_F(LockedLink, is_free_when_the_first_is_silent_for_its_timeout) {
   EXPECT_TRUE(run_until_locked_out(2));
 }
 
-TEST_F(LockedLink, has_all_clients_of_one_address_for_one) {
+TEST_F(LockedLink, HasAllClientsOfOneAddressForOne) {
   Client first = tcp_client();
   first.write(Bytes{1});
   ASSERT_TRUE(run_until_heard({1}));

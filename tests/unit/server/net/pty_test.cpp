@@ -37,7 +37,7 @@ Bytes all_bytes() {
   return all;
 }
 
-TEST_F(PtyLink, passes_every_byte_both_ways_unchanged_and_without_echo) {
+TEST_F(PtyLink, PassesEveryByteBothWaysUnchangedAndWithoutEcho) {
   EXPECT_THAT(link_->addresses().pty.at(0), StartsWith("/dev/pts/"));
   Client client = tty_client();
   client.write(all_bytes());
@@ -47,7 +47,7 @@ TEST_F(PtyLink, passes_every_byte_both_ways_unchanged_and_without_echo) {
   EXPECT_EQ(link_->counters().ports.connections, 1U);
 }
 
-TEST_F(PtyLink, each_frame_arrives_in_one_piece) {
+TEST_F(PtyLink, EachFrameArrivesInOnePiece) {
   Client client = tty_client();
   ASSERT_TRUE(run_until_occupied());
   for (const std::size_t size : {22U, 264U, 445U, 1545U}) {
@@ -58,7 +58,7 @@ TEST_F(PtyLink, each_frame_arrives_in_one_piece) {
   }
 }
 
-TEST_F(PtyLink, clients_may_close_at_any_byte) {
+TEST_F(PtyLink, ClientsMayCloseAtAnyByte) {
   for (std::size_t cut = 0; cut <= send_version.size(); ++cut) {
     heard_.clear();
     left_.clear();
@@ -80,7 +80,7 @@ TEST_F(PtyLink, clients_may_close_at_any_byte) {
   EXPECT_TRUE(run_until_hears(next, alive));
 }
 
-TEST_F(PtyLink, hears_who_wrote_and_closed_before_it_looked) {
+TEST_F(PtyLink, HearsWhoWroteAndClosedBeforeItLooked) {
   Client client = tty_client();
   client.write(send_version);
   client.close();
@@ -89,7 +89,7 @@ TEST_F(PtyLink, hears_who_wrote_and_closed_before_it_looked) {
   EXPECT_EQ(link_->counters().ports.connections, 1U);
 }
 
-TEST_F(PtyLink, what_nobody_hears_is_never_sent_later) {
+TEST_F(PtyLink, WhatNobodyHearsIsNeverSentLater) {
   link_->send(numbered_frame(0, 50));
   EXPECT_EQ(link_->counters().frames_unheard, 1U);
   Client first = tty_client();
@@ -104,7 +104,7 @@ TEST_F(PtyLink, what_nobody_hears_is_never_sent_later) {
   EXPECT_TRUE(run_until_hears(second, alive));
 }
 
-TEST_F(PtyLink, a_full_terminal_of_one_client_is_empty_for_the_next) {
+TEST_F(PtyLink, AFullTerminalOfOneClientIsEmptyForTheNext) {
   Client first = tty_client();
   ASSERT_TRUE(run_until_occupied());
   while (link_->counters().ports.frames_dropped == 0) {
@@ -118,7 +118,7 @@ TEST_F(PtyLink, a_full_terminal_of_one_client_is_empty_for_the_next) {
   EXPECT_TRUE(run_until_hears(second, alive)) << "nor is there the rest of a frame";
 }
 
-TEST_F(PtyLink, who_does_not_read_loses_whole_frames) {
+TEST_F(PtyLink, WhoDoesNotReadLosesWholeFrames) {
   constexpr std::size_t size = 445;
   constexpr int frames = 200;
   Client slow = tty_client();
@@ -136,7 +136,7 @@ TEST_F(PtyLink, who_does_not_read_loses_whole_frames) {
   EXPECT_EQ(frame_numbers(slow.heard(), size).back(), frames);
 }
 
-TEST_F(PtyLink, is_raw_again_after_a_client_that_set_it_otherwise) {
+TEST_F(PtyLink, IsRawAgainAfterAClientThatSetItOtherwise) {
   Client first = tty_client();
   termios cooked{};
   ASSERT_EQ(tcgetattr(first.fd(), &cooked), 0);
@@ -155,7 +155,7 @@ TEST_F(PtyLink, is_raw_again_after_a_client_that_set_it_otherwise) {
   EXPECT_TRUE(run_until_hears(second, all_bytes()));
 }
 
-TEST_F(PtyLink, several_may_have_it_open) {
+TEST_F(PtyLink, SeveralMayHaveItOpen) {
   Client one = tty_client();
   ASSERT_TRUE(run_until_occupied());
   {
@@ -170,7 +170,7 @@ TEST_F(PtyLink, several_may_have_it_open) {
   EXPECT_TRUE(run_until_left(1));
 }
 
-TEST_F(PtyLink, serves_a_hundred_clients_one_after_the_other) {
+TEST_F(PtyLink, ServesAHundredClientsOneAfterTheOther) {
   for (std::size_t i = 1; i <= 100; ++i) {
     Client client = tty_client();
     client.write(send_version);
@@ -200,7 +200,7 @@ class PtyLinkName : public LinkTest {
   fs::path link_name_ = folder_.path() / "micron";
 };
 
-TEST_F(PtyLinkName, leads_to_the_slave_until_it_stops) {
+TEST_F(PtyLinkName, LeadsToTheSlaveUntilItStops) {
   open_named();
   const std::string slave = link_->addresses().pty.at(0);
   EXPECT_EQ(fs::read_symlink(link_name_), slave);
@@ -212,13 +212,13 @@ TEST_F(PtyLinkName, leads_to_the_slave_until_it_stops) {
   EXPECT_FALSE(fs::exists(fs::symlink_status(link_name_)));
 }
 
-TEST_F(PtyLinkName, replaces_one_that_a_crash_left_behind) {
+TEST_F(PtyLinkName, ReplacesOneThatACrashLeftBehind) {
   fs::create_symlink("/dev/pts/987654", link_name_);
   open_named();
   EXPECT_EQ(fs::read_symlink(link_name_), link_->addresses().pty.at(0));
 }
 
-TEST_F(PtyLinkName, spares_a_file) {
+TEST_F(PtyLinkName, SparesAFile) {
   std::ofstream(link_name_) << "precious";
   EXPECT_THAT(complaint(),
               "cannot create the link " + link_name_.string() +
@@ -229,7 +229,7 @@ TEST_F(PtyLinkName, spares_a_file) {
   EXPECT_EQ(content.str(), "precious");
 }
 
-TEST_F(PtyLinkName, spares_a_folder_and_other_links) {
+TEST_F(PtyLinkName, SparesAFolderAndOtherLinks) {
   fs::create_directory(link_name_);
   EXPECT_THAT(complaint(), HasSubstr("does not replace it"));
   fs::remove(link_name_);
@@ -241,14 +241,14 @@ TEST_F(PtyLinkName, spares_a_folder_and_other_links) {
   }
 }
 
-TEST_F(PtyLinkName, names_the_path_that_cannot_be_made) {
+TEST_F(PtyLinkName, NamesThePathThatCannotBeMade) {
   link_name_ = folder_.path() / "no" / "such" / "folder";
   EXPECT_THAT(complaint(),
               testing::AllOf(StartsWith("cannot create the link " + link_name_.string() + " to /dev/"),
                              HasSubstr("No such file or directory")));
 }
 
-TEST_F(PtyLinkName, says_which_of_several_links_cannot_be_made) {
+TEST_F(PtyLinkName, SaysWhichOfSeveralLinksCannotBeMade) {
   const fs::path missing = folder_.path() / "no" / "such" / "folder";
   try {
     open({{}, {}, {{link_name_}, {missing}}, 0});
@@ -258,7 +258,7 @@ TEST_F(PtyLinkName, says_which_of_several_links_cannot_be_made) {
   }
 }
 
-TEST_F(PtyLinkName, leaves_alone_what_somebody_else_has_put_there) {
+TEST_F(PtyLinkName, LeavesAloneWhatSomebodyElseHasPutThere) {
   open_named();
   fs::remove(link_name_);
   fs::create_symlink("/dev/pts/987654", link_name_);
@@ -266,7 +266,7 @@ TEST_F(PtyLinkName, leaves_alone_what_somebody_else_has_put_there) {
   EXPECT_EQ(fs::read_symlink(link_name_), "/dev/pts/987654");
 }
 
-TEST_F(PtyLinkName, is_gone_when_another_port_cannot_be_opened) {
+TEST_F(PtyLinkName, IsGoneWhenAnotherPortCannotBeOpened) {
   const fs::path bad = folder_.path() / "missing" / "name";
   EXPECT_THROW(open({{}, {}, {{link_name_}, {bad}}, 0}), SocketError);
   EXPECT_FALSE(fs::exists(fs::symlink_status(link_name_)));

@@ -31,7 +31,7 @@ class AllPorts : public LinkTest {
   }
 };
 
-TEST_F(AllPorts, share_one_line) {
+TEST_F(AllPorts, ShareOneLine) {
   open(everything);
   const SerialAddresses where = link_->addresses();
   ASSERT_EQ(where.tcp.size(), 2U);
@@ -60,7 +60,7 @@ TEST_F(AllPorts, share_one_line) {
   }
 }
 
-TEST_F(AllPorts, a_callback_may_answer) {
+TEST_F(AllPorts, ACallbackMayAnswer) {
   link_ = std::make_unique<SerialLink>(io_, everything, clock_);
   link_->start(
       [&](std::span<const std::uint8_t> bytes, const std::string&) {
@@ -72,7 +72,7 @@ TEST_F(AllPorts, a_callback_may_answer) {
   EXPECT_TRUE(run_until_hears(client, send_version));
 }
 
-TEST_F(AllPorts, stop_ends_everything_under_way) {
+TEST_F(AllPorts, StopEndsEverythingUnderWay) {
   SerialLinkConfig slow_line = everything;
   slow_line.baud = 300;
   for (const SerialLinkConfig& config : {everything, slow_line}) {
@@ -95,12 +95,12 @@ TEST_F(AllPorts, stop_ends_everything_under_way) {
   }
 }
 
-TEST_F(AllPorts, may_be_stopped_before_its_start) {
+TEST_F(AllPorts, MayBeStoppedBeforeItsStart) {
   link_ = std::make_unique<SerialLink>(io_, everything, clock_);
   stop_ends_all_work();
 }
 
-TEST_F(AllPorts, may_be_stopped_by_its_own_callbacks) {
+TEST_F(AllPorts, MayBeStoppedByItsOwnCallbacks) {
   int received = 0;
   link_ = std::make_unique<SerialLink>(io_, everything, clock_);
   link_->start(
@@ -121,7 +121,7 @@ TEST_F(AllPorts, may_be_stopped_by_its_own_callbacks) {
   EXPECT_EQ(received, 1);
 }
 
-TEST_F(AllPorts, may_be_destroyed_by_its_own_callbacks) {
+TEST_F(AllPorts, MayBeDestroyedByItsOwnCallbacks) {
   for (int round = 0; round < 6; ++round) {
     link_ = std::make_unique<SerialLink>(io_, everything, clock_);
     const bool by_departure = round % 2 == 1;
@@ -145,7 +145,7 @@ TEST_F(AllPorts, may_be_destroyed_by_its_own_callbacks) {
   }
 }
 
-TEST_F(AllPorts, may_be_destroyed_with_handlers_waiting) {
+TEST_F(AllPorts, MayBeDestroyedWithHandlersWaiting) {
   for (int i = 0; i < 50; ++i) {
     open(everything);
     Client client = tcp_client();
@@ -176,7 +176,7 @@ void come_and_go(const std::function<Client()>& connect) {
 }
 
 // The I/O runs on its own thread, as in the daemon. This is a test for the thread sanitizer.
-TEST_F(AllPorts, serve_clients_of_other_threads_until_they_are_stopped) {
+TEST_F(AllPorts, ServeClientsOfOtherThreadsUntilTheyAreStopped) {
   auto guard = boost::asio::make_work_guard(io_);
   link_ = std::make_unique<SerialLink>(io_, everything, clock_);
   link_->start(

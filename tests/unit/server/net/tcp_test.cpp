@@ -24,7 +24,7 @@ class TcpLink : public LinkTest {
   TcpLink() { open({{any_tcp}, {}, {}, 0}); }
 };
 
-TEST_F(TcpLink, passes_every_byte_both_ways_unchanged) {
+TEST_F(TcpLink, PassesEveryByteBothWaysUnchanged) {
   Client client = tcp_client();
   ASSERT_TRUE(run_until_connections(1));
   Bytes all(256);
@@ -39,7 +39,7 @@ TEST_F(TcpLink, passes_every_byte_both_ways_unchanged) {
   EXPECT_EQ(link_->counters().ports.bytes_out, 256U);
 }
 
-TEST_F(TcpLink, takes_commands_in_any_pieces) {
+TEST_F(TcpLink, TakesCommandsInAnyPieces) {
   Client client = tcp_client();
   Bytes three;
   for (int i = 0; i < 3; ++i) {
@@ -54,7 +54,7 @@ TEST_F(TcpLink, takes_commands_in_any_pieces) {
   }
 }
 
-TEST_F(TcpLink, each_frame_arrives_in_one_piece) {
+TEST_F(TcpLink, EachFrameArrivesInOnePiece) {
   Client client = tcp_client();
   ASSERT_TRUE(run_until_connections(1));
   for (const std::size_t size : {22U, 264U, 445U, 1545U}) {
@@ -85,7 +85,7 @@ int option(int fd, int level, int name) {
   return value;
 }
 
-TEST_F(TcpLink, small_frames_do_not_wait_and_vanished_clients_are_noticed) {
+TEST_F(TcpLink, SmallFramesDoNotWaitAndVanishedClientsAreNoticed) {
   Client client = tcp_client();
   ASSERT_TRUE(run_until_connections(1));
   const int fd = other_end(client);
@@ -98,7 +98,7 @@ TEST_F(TcpLink, small_frames_do_not_wait_and_vanished_clients_are_noticed) {
   EXPECT_EQ(option(fd, IPPROTO_TCP, TCP_USER_TIMEOUT), 30'000);
 }
 
-TEST_F(TcpLink, clients_may_drop_at_any_byte) {
+TEST_F(TcpLink, ClientsMayDropAtAnyByte) {
   for (std::size_t cut = 0; cut <= send_version.size(); ++cut) {
     for (const bool with_reset : {false, true}) {
       heard_.clear();
@@ -125,7 +125,7 @@ TEST_F(TcpLink, clients_may_drop_at_any_byte) {
   EXPECT_TRUE(run_until_hears(next, alive));
 }
 
-TEST_F(TcpLink, hears_what_was_sent_just_before_leaving) {
+TEST_F(TcpLink, HearsWhatWasSentJustBeforeLeaving) {
   Client client = tcp_client();
   client.write(send_version);
   client.close();
@@ -133,7 +133,7 @@ TEST_F(TcpLink, hears_what_was_sent_just_before_leaving) {
   EXPECT_EQ(heard_, send_version);
 }
 
-TEST_F(TcpLink, what_nobody_hears_is_never_sent_later) {
+TEST_F(TcpLink, WhatNobodyHearsIsNeverSentLater) {
   for (int i = 0; i < 10; ++i) {
     link_->send(numbered_frame(i, 50));
   }
@@ -145,7 +145,7 @@ TEST_F(TcpLink, what_nobody_hears_is_never_sent_later) {
   EXPECT_EQ(link_->counters().ports.bytes_out, alive.size());
 }
 
-TEST_F(TcpLink, all_clients_hear_all) {
+TEST_F(TcpLink, AllClientsHearAll) {
   Client one = tcp_client();
   Client two = tcp_client();
   ASSERT_TRUE(run_until_connections(2));
@@ -164,7 +164,7 @@ TEST_F(TcpLink, all_clients_hear_all) {
   EXPECT_TRUE(link_->connected());
 }
 
-TEST_F(TcpLink, who_does_not_read_loses_whole_frames_and_nobody_else_does) {
+TEST_F(TcpLink, WhoDoesNotReadLosesWholeFramesAndNobodyElseDoes) {
   constexpr std::size_t size = 1545;
   constexpr int frames = 150;
   Client slow = tcp_client(localhost, /*receive_buffer_bytes=*/4096);
@@ -192,7 +192,7 @@ TEST_F(TcpLink, who_does_not_read_loses_whole_frames_and_nobody_else_does) {
   EXPECT_EQ(frame_numbers(slow.heard(), size).back(), frames);
 }
 
-TEST_F(TcpLink, a_client_that_left_without_reading_is_let_go) {
+TEST_F(TcpLink, AClientThatLeftWithoutReadingIsLetGo) {
   Client slow = tcp_client(localhost, /*receive_buffer_bytes=*/4096);
   ASSERT_TRUE(run_until_connections(1));
   while (link_->counters().ports.frames_dropped == 0) {
@@ -203,7 +203,7 @@ TEST_F(TcpLink, a_client_that_left_without_reading_is_let_go) {
   EXPECT_FALSE(link_->connected());
 }
 
-TEST_F(TcpLink, refuses_one_too_many) {
+TEST_F(TcpLink, RefusesOneTooMany) {
   std::vector<std::unique_ptr<Client>> clients;
   for (int i = 0; i < 16; ++i) {
     clients.push_back(std::make_unique<Client>(tcp_client()));
@@ -234,7 +234,7 @@ class FullTcpLink : public LinkTest {
   std::vector<std::unique_ptr<Client>> clients_;
 };
 
-TEST_F(FullTcpLink, the_client_that_is_silent_longest_gives_its_place_to_the_next) {
+TEST_F(FullTcpLink, TheClientThatIsSilentLongestGivesItsPlaceToTheNext) {
   stepped_.time += std::chrono::seconds{10};
   for (std::size_t i = 0; i < clients_.size(); ++i) {
     if (i != 1) {
@@ -260,7 +260,7 @@ TEST_F(FullTcpLink, the_client_that_is_silent_longest_gives_its_place_to_the_nex
   EXPECT_TRUE(run_until_hears(*clients_[0], alive)) << "who speaks stays";
 }
 
-TEST_F(FullTcpLink, silence_alone_ends_no_connection) {
+TEST_F(FullTcpLink, SilenceAloneEndsNoConnection) {
   stepped_.time += std::chrono::hours{24};
   link_->send(alive);
   for (const auto& client : clients_) {
@@ -286,7 +286,7 @@ class NoDescriptors {
   rlimit before_{};
 };
 
-TEST_F(TcpLink, out_of_descriptors_it_waits_and_does_not_spin) {
+TEST_F(TcpLink, OutOfDescriptorsItWaitsAndDoesNotSpin) {
   Client first = tcp_client();
   ASSERT_TRUE(run_until_connections(1));
   Client second = tcp_client();  // connected by the kernel, not accepted yet
@@ -307,7 +307,7 @@ TEST_F(TcpLink, out_of_descriptors_it_waits_and_does_not_spin) {
   EXPECT_TRUE(run_until_heard(send_version));
 }
 
-TEST_F(TcpLink, names_the_address_that_is_taken) {
+TEST_F(TcpLink, NamesTheAddressThatIsTaken) {
   const SerialTcpConfig same{link_->addresses().tcp.at(0), loopback};
   try {
     SerialLink second(io_, {{same}, {}, {}, 0}, clock_);
@@ -317,7 +317,7 @@ TEST_F(TcpLink, names_the_address_that_is_taken) {
   }
 }
 
-TEST_F(TcpLink, listens_again_at_once_after_a_stop_with_clients) {
+TEST_F(TcpLink, ListensAgainAtOnceAfterAStopWithClients) {
   const SerialTcpConfig same{link_->addresses().tcp.at(0), loopback};
   Client client = tcp_client();
   ASSERT_TRUE(run_until_connections(1));
@@ -329,7 +329,7 @@ TEST_F(TcpLink, listens_again_at_once_after_a_stop_with_clients) {
   EXPECT_TRUE(run_until_connections(1));
 }
 
-TEST_F(LinkTest, tcp_serves_only_whom_it_is_allowed_to) {
+TEST_F(LinkTest, TcpServesOnlyWhomItIsAllowedTo) {
   open({{{{localhost, 0}, {{localhost, 32}}}}, {}, {}, 0});
   Client unauthorised = tcp_client(0x7F000009);
   EXPECT_TRUE(run_until([&] { return unauthorised.closed_by_peer(); }));

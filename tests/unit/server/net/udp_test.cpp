@@ -12,7 +12,7 @@ std::string name_of(const Client& client) {
   return "udp " + endpoint_text(client.endpoint());
 }
 
-TEST_F(LinkTest, udp_replies_to_whom_it_heard_last) {
+TEST_F(LinkTest, UdpRepliesToWhomItHeardLast) {
   open({{}, {any_udp}, {}, 0});
   Client one = udp_client();
   Client two = udp_client();
@@ -33,7 +33,7 @@ TEST_F(LinkTest, udp_replies_to_whom_it_heard_last) {
   EXPECT_EQ(link_->counters().ports.connections, 2U);
 }
 
-TEST_F(LinkTest, udp_carries_exactly_one_frame_per_datagram) {
+TEST_F(LinkTest, UdpCarriesExactlyOneFramePerDatagram) {
   open({{}, {any_udp}, {}, 0});
   Client client = udp_client();
   client.write(Bytes{1});
@@ -48,7 +48,7 @@ TEST_F(LinkTest, udp_carries_exactly_one_frame_per_datagram) {
   }
 }
 
-TEST_F(LinkTest, udp_takes_commands_in_any_pieces) {
+TEST_F(LinkTest, UdpTakesCommandsInAnyPieces) {
   open({{}, {any_udp}, {}, 0});
   Client client = udp_client();
   for (const std::uint8_t byte : send_version) {
@@ -58,7 +58,7 @@ TEST_F(LinkTest, udp_takes_commands_in_any_pieces) {
   EXPECT_THAT(left_, IsEmpty());
 }
 
-TEST_F(LinkTest, udp_discards_what_comes_before_anybody_was_heard) {
+TEST_F(LinkTest, UdpDiscardsWhatComesBeforeAnybodyWasHeard) {
   open({{}, {any_udp}, {}, 0});
   link_->send(alive);
   EXPECT_EQ(link_->counters().frames_unheard, 1U);
@@ -69,7 +69,7 @@ TEST_F(LinkTest, udp_discards_what_comes_before_anybody_was_heard) {
   EXPECT_TRUE(run_until_hears(client, numbered_frame(1, 50)));
 }
 
-TEST_F(LinkTest, udp_answers_from_the_address_that_was_asked) {
+TEST_F(LinkTest, UdpAnswersFromTheAddressThatWasAsked) {
   open({{}, {{{0, 0}, loopback}}, {}, 0});
   // A connected socket receives only from the address to which it is connected.
   Client client = Client::udp({0x7F000005, link_->addresses().udp.at(0).port});
@@ -79,7 +79,7 @@ TEST_F(LinkTest, udp_answers_from_the_address_that_was_asked) {
   EXPECT_TRUE(run_until_hears(client, alive));
 }
 
-TEST_F(LinkTest, udp_serves_only_whom_it_is_allowed_to) {
+TEST_F(LinkTest, UdpServesOnlyWhomItIsAllowedTo) {
   open({{}, {{{localhost, 0}, {{localhost, 32}}}}, {}, 0});
   Client unauthorised = udp_client(0x7F000009);
   unauthorised.write(send_version);
@@ -88,7 +88,7 @@ TEST_F(LinkTest, udp_serves_only_whom_it_is_allowed_to) {
   EXPECT_THAT(heard_, IsEmpty());
 }
 
-TEST_F(LinkTest, udp_counts_a_datagram_longer_than_any_command) {
+TEST_F(LinkTest, UdpCountsADatagramLongerThanAnyCommand) {
   open({{}, {any_udp}, {}, 0});
   Client client = udp_client();
   client.write(Bytes(2049));

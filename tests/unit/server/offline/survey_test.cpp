@@ -43,7 +43,7 @@ std::string complaint(const DeviceKind& kind, const SurveyOptions& options) {
   }
 }
 
-TEST(Survey, every_kind_makes_pings_with_what_its_clients_have_at_first) {
+TEST(Survey, EveryKindMakesPingsWithWhatItsClientsHaveAtFirst) {
   for (const DeviceKind* kind : device_kinds()) {
     SCOPED_TRACE(kind->type());
     const std::unique_ptr<Survey> survey = server::survey(*kind);
@@ -66,7 +66,7 @@ TEST(Survey, every_kind_makes_pings_with_what_its_clients_have_at_first) {
 
 // ---- Gemini
 
-TEST(GeminiSurvey, does_what_a_client_would_ask_for) {
+TEST(GeminiSurvey, DoesWhatAClientWouldAskFor) {
   const std::unique_ptr<Survey> plain = survey(gemini_kind());
   EXPECT_EQ(plain->job(0).bins(), 2411);  // 20 m
   EXPECT_FALSE(plain->job(0).sixteen_bit);
@@ -88,7 +88,7 @@ TEST(GeminiSurvey, does_what_a_client_would_ask_for) {
   EXPECT_DOUBLE_EQ(asked->client_bin_m(), 8 * 1480.0 / (2 * 90422.0));
 }
 
-TEST(GeminiSurvey, makes_records_of_its_pings) {
+TEST(GeminiSurvey, MakesRecordsOfItsPings) {
   SurveyOptions options;
   options.range_m = 1.0;
   options.gain_percent = 30.0;
@@ -104,7 +104,7 @@ TEST(GeminiSurvey, makes_records_of_its_pings) {
   EXPECT_EQ(record.bearings_rad, gemini::bearings_rad());
 }
 
-TEST(Survey, every_kind_makes_records_of_its_pings) {
+TEST(Survey, EveryKindMakesRecordsOfItsPings) {
   for (const DeviceKind* kind : device_kinds()) {
     SCOPED_TRACE(kind->type());
     const std::unique_ptr<Survey> survey = server::survey(*kind);
@@ -127,7 +127,7 @@ TEST(Survey, every_kind_makes_records_of_its_pings) {
 }
 
 // docs/protocols/oculus.md 2: an M750d has two frequencies, and the fan of the higher one is narrower.
-TEST(Survey, an_oculus_has_two_frequencies_and_other_heads_refuse_the_option) {
+TEST(Survey, AnOculusHasTwoFrequenciesAndOtherHeadsRefuseTheOption) {
   for (const DeviceKind* kind : device_kinds()) {
     SCOPED_TRACE(kind->type());
     if (kind->type() != "oculus") {
@@ -144,7 +144,7 @@ TEST(Survey, an_oculus_has_two_frequencies_and_other_heads_refuse_the_option) {
   }
 }
 
-TEST(GeminiSurvey, refuses_what_it_does_not_know_or_cannot_do) {
+TEST(GeminiSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
   const DeviceKind& kind = gemini_kind();
   EXPECT_EQ(complaint(kind, {}), "");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 400)), "--bins: not an option for Gemini");
@@ -161,7 +161,7 @@ TEST(GeminiSurvey, refuses_what_it_does_not_know_or_cannot_do) {
 
 // ---- Micron
 
-TEST(MicronSurvey, does_what_a_host_would_ask_for) {
+TEST(MicronSurvey, DoesWhatAHostWouldAskFor) {
   const std::unique_ptr<Survey> plain = survey(micron_kind());
   EXPECT_THAT(plain->frames(401), ElementsAre(0, 200, 400));
   EXPECT_EQ(plain->job(0).bins(), 400);
@@ -188,7 +188,7 @@ TEST(MicronSurvey, does_what_a_host_would_ask_for) {
   EXPECT_NEAR(asked->sector().width_rad, std::numbers::pi, 1e-12);
 }
 
-TEST(MicronSurvey, a_head_that_is_mounted_boot_down_looks_to_the_other_side) {
+TEST(MicronSurvey, AHeadThatIsMountedBootDownLooksToTheOtherSide) {
   HeadConfig head = micron_kind().make_default();
   auto config = std::make_shared<MicronConfig>(micron_config(head));
   config->device.mounted_inverted = true;
@@ -204,7 +204,7 @@ TEST(MicronSurvey, a_head_that_is_mounted_boot_down_looks_to_the_other_side) {
   EXPECT_NEAR(survey->sector().width_rad, 3 * eighth, 1e-12);
 }
 
-TEST(MicronSurvey, refuses_what_it_does_not_know_or_cannot_do) {
+TEST(MicronSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
   const DeviceKind& kind = micron_kind();
   EXPECT_EQ(complaint(kind, {}), "");
   EXPECT_EQ(complaint(kind, with(&SurveyOptions::compression_log2, 1)),

@@ -41,7 +41,7 @@ struct PeerLogTest : testing::Test {
   ~PeerLogTest() override { spdlog::set_default_logger(before); }
 };
 
-TEST_F(PeerLogTest, lets_a_burst_through_and_leaves_the_rest_out) {
+TEST_F(PeerLogTest, LetsABurstThroughAndLeavesTheRestOut) {
   for (int i = 0; i < 1000; ++i) {
     log.info("client {} came", i);
   }
@@ -49,7 +49,7 @@ TEST_F(PeerLogTest, lets_a_burst_through_and_leaves_the_rest_out) {
   EXPECT_EQ(lines->texts.back(), "client 9 came");
 }
 
-TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
+TEST_F(PeerLogTest, SaysWithTheNextLineHowManyAreMissing) {
   for (int i = 0; i < 30; ++i) {
     log.info("{}", i);
   }
@@ -60,7 +60,7 @@ TEST_F(PeerLogTest, says_with_the_next_line_how_many_are_missing) {
   EXPECT_THAT(lines->texts.back(), HasSubstr("again (20 earlier lines"));
 }
 
-TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
+TEST_F(PeerLogTest, OneLineForEachRefillGoesOnForEver) {
   for (int i = 0; i < 1000; ++i) {
     clock.time += std::chrono::nanoseconds{PeerLog::refill} / 4;
     log.info("{}", i);
@@ -68,7 +68,7 @@ TEST_F(PeerLogTest, one_line_for_each_refill_goes_on_for_ever) {
   EXPECT_NEAR(static_cast<double>(lines->texts.size()), 10 + 250, 2);
 }
 
-TEST_F(PeerLogTest, the_first_line_of_each_reason_comes_through) {
+TEST_F(PeerLogTest, TheFirstLineOfEachReasonComesThrough) {
   for (int i = 0; i < 100; ++i) {
     log.warn("datagram {} is too short", i);
   }
@@ -81,7 +81,7 @@ TEST_F(PeerLogTest, the_first_line_of_each_reason_comes_through) {
   EXPECT_EQ(lines->texts[11], "client 10.0.0.7:4000 is not in the allow list");
 }
 
-TEST_F(PeerLogTest, rest_fills_it_up_and_no_further) {
+TEST_F(PeerLogTest, RestFillsItUpAndNoFurther) {
   for (int i = 0; i < 10; ++i) {
     log.info("{}", i);
   }

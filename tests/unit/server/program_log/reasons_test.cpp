@@ -8,7 +8,7 @@
 namespace sonard::server {
 namespace {
 
-TEST(Reasons, are_texts_without_numbers_and_names) {
+TEST(Reasons, AreTextsWithoutNumbersAndNames) {
   Reasons reasons;
   EXPECT_EQ(reasons.count("datagram of 12 bytes from 10.0.0.1:4000"), 1U);
   EXPECT_EQ(reasons.count("datagram of 7 bytes from 10.0.0.23:51234"), 2U);
@@ -18,7 +18,7 @@ TEST(Reasons, are_texts_without_numbers_and_names) {
   EXPECT_EQ(reasons.count("datagram of 9 bytes from 10.0.0.1:4000"), 3U);
 }
 
-TEST(Reasons, that_a_peer_invents_share_a_count) {
+TEST(Reasons, ThatAPeerInventsShareACount) {
   Reasons reasons;
   std::string word;
   for (std::size_t i = 0; i < Reasons::most; ++i) {

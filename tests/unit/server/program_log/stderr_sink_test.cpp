@@ -61,14 +61,14 @@ class StderrSinkTest : public testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(kinds, StderrSinkTest, testing::Bool(),
                          [](const auto& kind) { return std::string(kind.param ? "socket" : "pipe"); });
 
-TEST_P(StderrSinkTest, writes_lines) {
+TEST_P(StderrSinkTest, WritesLines) {
   spdlog::logger logger = logger_on(ends.write);
   logger.info("one");
   logger.info("two");
   EXPECT_EQ(ends.take(), "one\ntwo\n");
 }
 
-TEST_P(StderrSinkTest, a_reader_that_stops_blocks_nobody_and_is_told_what_it_missed) {
+TEST_P(StderrSinkTest, AReaderThatStopsBlocksNobodyAndIsToldWhatItMissed) {
   spdlog::logger logger = logger_on(ends.write);
   constexpr int lines = 20'000;  // far more than the buffer holds
   for (int i = 0; i < lines; ++i) {
@@ -83,14 +83,14 @@ TEST_P(StderrSinkTest, a_reader_that_stops_blocks_nobody_and_is_told_what_it_mis
                              " lines were dropped, because stderr was blocked\nlast\n");
 }
 
-TEST_P(StderrSinkTest, the_descriptor_itself_stays_as_it_was) {
+TEST_P(StderrSinkTest, TheDescriptorItselfStaysAsItWas) {
   const int before = fcntl(ends.write, F_GETFL);
   logger_on(ends.write).info("x");
   EXPECT_EQ(fcntl(ends.write, F_GETFL), before) << "a shell may share it";
   EXPECT_EQ(before & O_NONBLOCK, 0);
 }
 
-TEST(StderrSinkFile, appends_where_others_write_too) {
+TEST(StderrSinkFile, AppendsWhereOthersWriteToo) {
   std::string name = "/tmp/sonard_stderr_sink_XXXXXX";
   const int file = mkstemp(name.data());
   ASSERT_GE(file, 0);

@@ -67,7 +67,7 @@ PingJob answering(const RecordedPing& ping, TimePoint transmit_time) {
   return job;
 }
 
-TEST(LogPlayback, feeds_pings_as_they_were_recorded) {
+TEST(LogPlayback, FeedsPingsAsTheyWereRecorded) {
   const LoggedHead bow = fan({1000 * ms, 1100 * ms});
   const LoggedHead mast = scan();
   LogPlayback playback({{"bow", &bow}, {"mast", &mast}}, {.as_asked = true}, 0ns);
@@ -93,7 +93,7 @@ TEST(LogPlayback, feeds_pings_as_they_were_recorded) {
   EXPECT_FALSE(playback.next_ping(1, 1s));
 }
 
-TEST(LogPlayback, says_when_pings_are_due) {
+TEST(LogPlayback, SaysWhenPingsAreDue) {
   const LoggedHead bow = fan({1000 * ms, 1100 * ms, 1300 * ms});
   LogPlayback playback({{"bow", &bow}}, {}, 0ns);
   EXPECT_EQ(playback.next_ping(0, 7s)->due, std::nullopt);
@@ -103,7 +103,7 @@ TEST(LogPlayback, says_when_pings_are_due) {
   EXPECT_EQ(playback.next_ping(0, 7100ms)->due, 7300ms);
 }
 
-TEST(LogPlayback, is_over_when_the_last_ping_has_ended_and_nobody_asks_again) {
+TEST(LogPlayback, IsOverWhenTheLastPingHasEndedAndNobodyAsksAgain) {
   const LoggedHead bow = fan({0, 100 * ms});
   LogPlayback playback({{"bow", &bow}}, {}, 0ns);
   for (std::uint64_t ping = 0; ping < 2; ++ping) {
@@ -122,7 +122,7 @@ TEST(LogPlayback, is_over_when_the_last_ping_has_ended_and_nobody_asks_again) {
   EXPECT_TRUE(playback.finished(31s + LogPlayback::linger));
 }
 
-TEST(LogPlayback, a_ping_that_failed_has_ended_too) {
+TEST(LogPlayback, APingThatFailedHasEndedToo) {
   const LoggedHead bow = fan({0});
   LogPlayback playback({{"bow", &bow}}, {}, 0ns);
   playback.started(0, answering(*playback.next_ping(0, 1s), 1s));
@@ -132,7 +132,7 @@ TEST(LogPlayback, a_ping_that_failed_has_ended_too) {
   EXPECT_TRUE(playback.finished(2s + LogPlayback::linger));
 }
 
-TEST(LogPlayback, waits_for_all_heads) {
+TEST(LogPlayback, WaitsForAllHeads) {
   const LoggedHead bow = fan({0});
   const LoggedHead mast = scan();
   LogPlayback playback({{"bow", &bow}, {"mast", &mast}}, {}, 0ns);
@@ -160,7 +160,7 @@ struct LoggedDifferences : testing::Test {
   std::string taken() { return std::exchange(text, {}).str(); }
 };
 
-TEST_F(LoggedDifferences, each_kind_is_said_once_and_counted) {
+TEST_F(LoggedDifferences, EachKindIsSaidOnceAndCounted) {
   const LoggedHead bow = fan({0, 1, 2});
   LogPlayback playback({{"bow", &bow}}, {.as_asked = true}, 0ns);
   const auto begin = [&](const std::vector<Difference>& differences) {
@@ -179,7 +179,7 @@ TEST_F(LoggedDifferences, each_kind_is_said_once_and_counted) {
   EXPECT_EQ(taken(), "info head=bow: pings that differ from the request: range=3 16_bit=1\n");
 }
 
-TEST_F(LoggedDifferences, of_none_nothing_is_said) {
+TEST_F(LoggedDifferences, OfNoneNothingIsSaid) {
   const LoggedHead bow = fan({0});
   LogPlayback playback({{"bow", &bow}}, {.as_asked = true}, 0ns);
   playback.started(0, answering(*playback.next_ping(0, 1s), 1s));
@@ -203,7 +203,7 @@ class PlacesAsSamples final : public Recording {
   bool closed() const override { return true; }
 };
 
-TEST(LogRenderer, hands_out_the_samples_of_the_record_that_a_ping_answers) {
+TEST(LogRenderer, HandsOutTheSamplesOfTheRecordThatAPingAnswers) {
   const LoggedHead bow = fan({0, 1, 2});
   const LoggedHead stern = fan({0});
   const PlacesAsSamples recording;
@@ -219,7 +219,7 @@ TEST(LogRenderer, hands_out_the_samples_of_the_record_that_a_ping_answers) {
   EXPECT_EQ(renderer->render_ping(request, 1).u8, std::vector<std::uint8_t>(6, 10));
 }
 
-TEST(LogRenderer, what_cannot_be_read_is_a_ping_that_cannot_be_made) {
+TEST(LogRenderer, WhatCannotBeReadIsAPingThatCannotBeMade) {
   const LoggedHead mast = scan();
   const PlacesAsSamples recording;
   const auto renderer = make_log_renderer(recording, {{"mast", &mast}})();

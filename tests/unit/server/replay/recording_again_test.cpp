@@ -153,7 +153,7 @@ void expect_same(glf::ImageRecord again, const glf::ImageRecord& written) {
   EXPECT_EQ(again, written);
 }
 
-TEST(RecordingAgain, gives_the_same_images) {
+TEST(RecordingAgain, GivesTheSameImages) {
   const std::vector<glf::ImageRecord> written = images();
   const test::TemporaryLog log(".dat", dat_of(written));
   const LogFile file(log.path());

@@ -101,7 +101,7 @@ struct ReplayConfigTest : testing::Test {
   }
 };
 
-TEST_F(ReplayConfigTest, heads_find_their_recording_by_id) {
+TEST_F(ReplayConfigTest, HeadsFindTheirRecordingById) {
   config.heads = {gemini("a", 600), gemini("b", 513), micron_kind().make_default()};
   const std::vector<LoggedHead> logged{fan(513), fan(600)};
   const ReplayConfig replay = this->replay(logged);
@@ -113,7 +113,7 @@ TEST_F(ReplayConfigTest, heads_find_their_recording_by_id) {
   EXPECT_EQ(replay.daemon.heads[0].name, "a");
 }
 
-TEST_F(ReplayConfigTest, a_name_says_more_than_an_id) {
+TEST_F(ReplayConfigTest, ANameSaysMoreThanAnId) {
   config.heads = {gemini("a", 600), gemini("b", 513)};
   const std::vector<LoggedHead> logged{fan(600, "b"), fan(513, "a")};
   const ReplayConfig replay = this->replay(logged);
@@ -122,7 +122,7 @@ TEST_F(ReplayConfigTest, a_name_says_more_than_an_id) {
   EXPECT_EQ(replay.played[1].logged, &logged[0]);
 }
 
-TEST_F(ReplayConfigTest, heads_are_held_to_their_recording_and_keep_the_rest) {
+TEST_F(ReplayConfigTest, HeadsAreHeldToTheirRecordingAndKeepTheRest) {
   config.heads = {gemini("a", 600), gemini("b", 601)};
   config.poses.udp.emplace();
   const ReplayConfig replay = this->replay({fan(600), fan(601)});
@@ -140,7 +140,7 @@ TEST_F(ReplayConfigTest, heads_are_held_to_their_recording_and_keep_the_rest) {
   EXPECT_TRUE(replay.daemon.poses.T_world_vehicle_initial);
 }
 
-TEST_F(ReplayConfigTest, one_head_plays_one_recording_whatever_the_ids) {
+TEST_F(ReplayConfigTest, OneHeadPlaysOneRecordingWhateverTheIds) {
   config.heads = {gemini("a", 600)};
   const std::vector<LoggedHead> logged{fan(513)};
   const ReplayConfig replay = this->replay(logged);
@@ -148,12 +148,12 @@ TEST_F(ReplayConfigTest, one_head_plays_one_recording_whatever_the_ids) {
   EXPECT_EQ(gemini_config(replay.daemon.heads.at(0)).device.sonar_id, 600);
 }
 
-TEST_F(ReplayConfigTest, no_head_at_all_is_an_error) {
+TEST_F(ReplayConfigTest, NoHeadAtAllIsAnError) {
   config.heads = {gemini("a", 600), gemini("b", 601)};
   EXPECT_EQ(configured_complaint({fan(513)}), "has no pings for the heads to serve");
 }
 
-TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
+TEST_F(ReplayConfigTest, ImagesOfOtherHeadsAreAnErrorThatSaysSo) {
   std::vector<LoggedHead> logged{fan(513)};
   logged[0].pings[0].settings.beams = 512;
   const std::string why =
@@ -164,7 +164,7 @@ TEST_F(ReplayConfigTest, images_of_other_heads_are_an_error_that_says_so) {
   EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why);
 }
 
-TEST_F(ReplayConfigTest, times_that_make_no_sense_are_an_error) {
+TEST_F(ReplayConfigTest, TimesThatMakeNoSenseAreAnError) {
   std::vector<LoggedHead> logged{fan(513)};
   logged[0].pings.push_back(
       {.time_ns = std::int64_t{91} * 86'400 * 1'000'000'000, .settings = settings(), .wire = {}});
@@ -198,7 +198,7 @@ HeadConfig micron(const std::string& name, std::uint8_t node) {
   return head;
 }
 
-TEST_F(ReplayConfigTest, microns_find_their_recording_by_name_and_else_by_node) {
+TEST_F(ReplayConfigTest, MicronsFindTheirRecordingByNameAndElseByNode) {
   config.heads = {micron("a", 2), micron("b", 2), micron("c", 9), micron("d", 3)};
   const std::vector<LoggedHead> logged{scan("b", 2), scan("a", 2), scan("elsewhere", 9)};
   const ReplayConfig replay = this->replay(logged);
@@ -210,7 +210,7 @@ TEST_F(ReplayConfigTest, microns_find_their_recording_by_name_and_else_by_node) 
   EXPECT_FALSE(micron_config(replay.daemon.heads[2]).device.waits_for_permission);
 }
 
-TEST_F(ReplayConfigTest, one_of_each_kind_play_one_of_each_kind) {
+TEST_F(ReplayConfigTest, OneOfEachKindPlayOneOfEachKind) {
   config.heads = {gemini("a", 600), micron("mast", 7)};
   const std::vector<LoggedHead> logged{scan("stern", 2), fan(513)};
   const ReplayConfig replay = this->replay(logged);
@@ -219,7 +219,7 @@ TEST_F(ReplayConfigTest, one_of_each_kind_play_one_of_each_kind) {
   EXPECT_EQ(replay.played[1].logged, &logged[0]);
 }
 
-TEST_F(ReplayConfigTest, heads_of_two_kinds_with_one_id_each_play_their_own) {
+TEST_F(ReplayConfigTest, HeadsOfTwoKindsWithOneIdEachPlayTheirOwn) {
   config.heads = {micron("a", 2), gemini("b", 2), micron("c", 3), gemini("d", 3)};
   const std::vector<LoggedHead> logged{fan(3), scan("", 3), fan(2), scan("", 2)};
   const ReplayConfig replay = this->replay(logged);
@@ -230,7 +230,7 @@ TEST_F(ReplayConfigTest, heads_of_two_kinds_with_one_id_each_play_their_own) {
   EXPECT_EQ(replay.played[3].logged, &logged[0]);
 }
 
-TEST_F(ReplayConfigTest, without_a_configuration_microns_are_behind_the_geminis_on_loopback) {
+TEST_F(ReplayConfigTest, WithoutAConfigurationMicronsAreBehindTheGeminisOnLoopback) {
   const std::vector<LoggedHead> logged{scan("", 7), fan(513), scan("mast", 255), fan(1, "bow")};
   const DaemonConfig loopback = this->loopback(logged);
   ASSERT_EQ(loopback.heads.size(), 4U);
@@ -262,7 +262,7 @@ TEST_F(ReplayConfigTest, without_a_configuration_microns_are_behind_the_geminis_
   EXPECT_EQ(micron_config(loopback.heads[3]).device.node, micron::DeviceConfig{}.node) << "255 is the host";
 }
 
-TEST_F(ReplayConfigTest, lines_that_do_not_say_how_they_travelled_are_an_error) {
+TEST_F(ReplayConfigTest, LinesThatDoNotSayHowTheyTravelledAreAnError) {
   config.heads = {micron("a", 2)};
   std::vector<LoggedHead> logged{scan("a", 2)};
   const std::string why = "scan lines of node 2 lack their wire format (expected wire_line)";
@@ -274,7 +274,7 @@ TEST_F(ReplayConfigTest, lines_that_do_not_say_how_they_travelled_are_an_error) 
   EXPECT_EQ(configured_complaint(logged), "head 'a' cannot play it: " + why) << "that is no line";
 }
 
-TEST_F(ReplayConfigTest, lines_that_are_too_long_are_an_error) {
+TEST_F(ReplayConfigTest, LinesThatAreTooLongAreAnError) {
   config.heads = {micron("a", 2)};
   std::vector<LoggedHead> logged{scan("a", 2)};
   logged[0].pings[0].settings.bins = 1500;
@@ -288,7 +288,7 @@ TEST_F(ReplayConfigTest, lines_that_are_too_long_are_an_error) {
 
 // ---- Logs that name the device
 
-TEST_F(ReplayConfigTest, a_log_says_of_which_kind_its_heads_are) {
+TEST_F(ReplayConfigTest, ALogSaysOfWhichKindItsHeadsAre) {
   std::vector<LoggedHead> logged{fan(513), scan("", 7)};
   logged[0].device = "gemini_720i";
   logged[1].device = "micron";
@@ -299,7 +299,7 @@ TEST_F(ReplayConfigTest, a_log_says_of_which_kind_its_heads_are) {
   EXPECT_EQ(complaint(logged), "it is played");
 }
 
-TEST_F(ReplayConfigTest, a_kind_that_a_log_names_is_asked_whether_it_can_play_it) {
+TEST_F(ReplayConfigTest, AKindThatALogNamesIsAskedWhetherItCanPlayIt) {
   std::vector<LoggedHead> logged{fan(513)};
   logged[0].device = "gemini_720i";
   logged[0].pings[0].settings.beams = 512;
@@ -307,7 +307,7 @@ TEST_F(ReplayConfigTest, a_kind_that_a_log_names_is_asked_whether_it_can_play_it
                                        HasSubstr("(expected 256 beams)")));
 }
 
-TEST_F(ReplayConfigTest, heads_of_a_device_that_nobody_knows_are_an_error) {
+TEST_F(ReplayConfigTest, HeadsOfADeviceThatNobodyKnowsAreAnError) {
   LoggedHead wide = fan(513, "bow");
   wide.pings[0].settings.beams = 512;  // a width that a Gemini would refuse
   for (LoggedHead head : {fan(513, "bow"), wide, scan("bow", 7)}) {

@@ -28,7 +28,7 @@ std::pair<std::size_t, TimePoint> play(ReplaySchedule& schedule, TimePoint wante
 
 using PlayedAt = std::pair<std::size_t, TimePoint>;
 
-TEST(ReplaySchedule, the_first_ping_wanted_starts_the_clock) {
+TEST(ReplaySchedule, TheFirstPingWantedStartsTheClock) {
   ReplaySchedule schedule({four}, {}, 0ns);
   EXPECT_EQ(schedule.next(0, 7s)->due, std::nullopt);
   EXPECT_EQ(play(schedule, 7s), (PlayedAt{0, 7s}));
@@ -40,14 +40,14 @@ TEST(ReplaySchedule, the_first_ping_wanted_starts_the_clock) {
   EXPECT_FALSE(schedule.next(0, 8s));
 }
 
-TEST(ReplaySchedule, speed_divides_all_offsets) {
+TEST(ReplaySchedule, SpeedDividesAllOffsets) {
   ReplaySchedule schedule({four}, {.speed = 2.0}, 0ns);
   play(schedule, 1s);
   EXPECT_EQ(play(schedule, 1s).second, 1050ms);
   EXPECT_EQ(play(schedule, 1s).second, 1125ms);
 }
 
-TEST(ReplaySchedule, a_little_late_is_caught_up) {
+TEST(ReplaySchedule, ALittleLateIsCaughtUp) {
   ReplaySchedule schedule({four}, {}, 0ns);
   play(schedule, 0s);
   EXPECT_EQ(play(schedule, 180ms), (PlayedAt{1, 180ms}));
@@ -55,14 +55,14 @@ TEST(ReplaySchedule, a_little_late_is_caught_up) {
   EXPECT_EQ(schedule.skipped(), 0U);
 }
 
-TEST(ReplaySchedule, the_clock_waits_for_a_client_that_was_away) {
+TEST(ReplaySchedule, TheClockWaitsForAClientThatWasAway) {
   ReplaySchedule schedule({four}, {}, 0ns);
   play(schedule, 0s);
   EXPECT_EQ(play(schedule, 10s), (PlayedAt{1, 10s}));
   EXPECT_EQ(play(schedule, 10s), (PlayedAt{2, 10150ms}));
 }
 
-TEST(ReplaySchedule, as_asked_knows_no_times) {
+TEST(ReplaySchedule, AsAskedKnowsNoTimes) {
   ReplaySchedule schedule({four}, {.as_asked = true}, 0ns);
   for (std::size_t image = 0; image < 4; ++image) {
     const auto ping = schedule.next(0, 1s);
@@ -74,7 +74,7 @@ TEST(ReplaySchedule, as_asked_knows_no_times) {
   EXPECT_TRUE(schedule.over(1s));
 }
 
-TEST(ReplaySchedule, a_loop_goes_on_after_the_usual_interval) {
+TEST(ReplaySchedule, ALoopGoesOnAfterTheUsualInterval) {
   // The intervals are 100, 150 and 50 ms, and their median is 100 ms.
   ReplaySchedule schedule({four}, {.loop = true}, 0ns);
   for (int i = 0; i < 4; ++i) {
@@ -85,7 +85,7 @@ TEST(ReplaySchedule, a_loop_goes_on_after_the_usual_interval) {
   EXPECT_FALSE(schedule.over(1h));
 }
 
-TEST(ReplaySchedule, heads_keep_in_step) {
+TEST(ReplaySchedule, HeadsKeepInStep) {
   const std::vector<std::int64_t> later{1150 * one_ms, 1350 * one_ms};
   ReplaySchedule schedule({four, later}, {}, 0ns);
   EXPECT_EQ(play(schedule, 5s, 1), (PlayedAt{0, 5s})) << "the first one wanted is that of the second head";
@@ -94,7 +94,7 @@ TEST(ReplaySchedule, heads_keep_in_step) {
   EXPECT_FALSE(schedule.over(5s));
 }
 
-TEST(ReplaySchedule, a_clock_that_runs_from_the_start_skips_what_nobody_wants_in_time) {
+TEST(ReplaySchedule, AClockThatRunsFromTheStartSkipsWhatNobodyWantsInTime) {
   ReplaySchedule schedule({four}, {.start_now = true}, 2s);
   EXPECT_EQ(schedule.next(0, 2s)->due, 2s);
   EXPECT_EQ(schedule.next(0, 2099ms)->image, 0U);
@@ -106,13 +106,13 @@ TEST(ReplaySchedule, a_clock_that_runs_from_the_start_skips_what_nobody_wants_in
   EXPECT_EQ(schedule.skipped(), 3U);
 }
 
-TEST(ReplaySchedule, one_ping_alone_can_be_looped) {
+TEST(ReplaySchedule, OnePingAloneCanBeLooped) {
   ReplaySchedule schedule({{5 * one_ms}}, {.loop = true}, 0ns);
   play(schedule, 0s);
   EXPECT_EQ(play(schedule, 0s), (PlayedAt{0, 1s}));
 }
 
-TEST(ReplaySchedule, a_loop_of_pings_without_times_gets_on) {
+TEST(ReplaySchedule, ALoopOfPingsWithoutTimesGetsOn) {
   ReplaySchedule schedule({{5 * one_ms, 5 * one_ms}}, {.loop = true, .start_now = true}, 0ns);
   EXPECT_TRUE(schedule.next(0, 10s));
 }

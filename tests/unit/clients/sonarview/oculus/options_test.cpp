@@ -32,7 +32,7 @@ std::string complaint(const std::vector<const char*>& words) {
   }
 }
 
-TEST(OculusOptions, without_any_it_fires_for_512_beams_at_the_low_frequency) {
+TEST(OculusOptions, WithoutAnyItFiresFor512BeamsAtTheLowFrequency) {
   const OculusOptions usual = options({});
   EXPECT_EQ(usual.head, "");
   EXPECT_EQ(usual.port, 52100);
@@ -50,7 +50,7 @@ TEST(OculusOptions, without_any_it_fires_for_512_beams_at_the_low_frequency) {
 }
 
 // docs/protocols/oculus.md 3.2 and 3.3.
-TEST(OculusOptions, words_become_flags_and_codes) {
+TEST(OculusOptions, WordsBecomeFlagsAndCodes) {
   const OculusOptions wide = options(
       {"--frequency", "high",          "--beams", "256",    "--bits",  "32",      "--row-gains", "--rate",
        "40",          "--range",       "5",       "--gain", "70",      "--gamma", "255",         "--salinity",
@@ -73,7 +73,7 @@ TEST(OculusOptions, words_become_flags_and_codes) {
   EXPECT_EQ(options({"--seconds", "1.5"}).run.duration, std::chrono::milliseconds{1500});
 }
 
-TEST(OculusOptions, refuses_what_no_fire_can_say) {
+TEST(OculusOptions, RefusesWhatNoFireCanSay) {
   EXPECT_THAT(complaint({"--rate", "20"}), HasSubstr("--rate"));
   EXPECT_THAT(complaint({"--beams", "128"}), HasSubstr("--beams"));
   EXPECT_THAT(complaint({"--bits", "24"}), HasSubstr("--bits"));

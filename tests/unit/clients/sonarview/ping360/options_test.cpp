@@ -32,7 +32,7 @@ std::string complaint(const std::vector<const char*>& words) {
 }
 
 // docs/protocols/ping360.md 2.3: clients cover 20 m with 1200 samples of 888 ticks and a pulse of 107 us.
-TEST(Ping360Options, a_range_becomes_the_samples_that_clients_choose) {
+TEST(Ping360Options, ARangeBecomesTheSamplesThatClientsChoose) {
   const Ping360Options scan = options({"--range", "20"});
   EXPECT_EQ(scan.line.text(), "udp 127.0.0.1:12345");
   EXPECT_EQ(scan.scan.number_of_samples, 1200);
@@ -44,7 +44,7 @@ TEST(Ping360Options, a_range_becomes_the_samples_that_clients_choose) {
   EXPECT_TRUE(scan.all_round);
 }
 
-TEST(Ping360Options, a_short_range_has_fewer_samples) {
+TEST(Ping360Options, AShortRangeHasFewerSamples) {
   const Ping360Options scan = options({"--range", "1"});
   EXPECT_EQ(scan.scan.number_of_samples, 666);
   EXPECT_EQ(scan.scan.sample_period, 80);
@@ -52,7 +52,7 @@ TEST(Ping360Options, a_short_range_has_fewer_samples) {
       << "480 samples of 80 units, in whole numbers";
 }
 
-TEST(Ping360Options, a_sector_is_in_degrees_from_ahead) {
+TEST(Ping360Options, ASectorIsInDegreesFromAhead) {
   const Ping360Options scan = options({"--sector", "-45", "45", "--ahead", "200", "--step", "2"});
   EXPECT_EQ(scan.scan.start_angle, 150);
   EXPECT_EQ(scan.scan.stop_angle, 250);
@@ -61,7 +61,7 @@ TEST(Ping360Options, a_sector_is_in_degrees_from_ahead) {
   EXPECT_FALSE(scan.all_round);
 }
 
-TEST(Ping360Options, what_no_head_can_do_is_refused) {
+TEST(Ping360Options, WhatNoHeadCanDoIsRefused) {
   EXPECT_THAT(complaint({"--range", "1", "--samples", "1200"}), HasSubstr("too fine"));
   EXPECT_THAT(complaint({"--samples", "1201"}), HasSubstr("--samples"));
   EXPECT_THAT(complaint({"--sector", "0", "360"}), HasSubstr("are equal"));

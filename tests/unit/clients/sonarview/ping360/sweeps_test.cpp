@@ -35,12 +35,12 @@ std::vector<int> all_round(int step, int turns, int first = 0) {
   return angles;
 }
 
-TEST(Ping360Sweeps, a_turn_ends_where_the_head_has_come_round) {
+TEST(Ping360Sweeps, ATurnEndsWhereTheHeadHasComeRound) {
   EXPECT_THAT(turns(true, all_round(1, 3)), ElementsAre(400, 400));
   EXPECT_THAT(turns(true, all_round(10, 3, 395)), ElementsAre(40, 40));
 }
 
-TEST(Ping360Sweeps, a_lost_ping_costs_the_turn_one_ping) {
+TEST(Ping360Sweeps, ALostPingCostsTheTurnOnePing) {
   std::vector<int> angles = all_round(10, 3);
   angles.erase(angles.begin() + 20);
   EXPECT_THAT(turns(true, angles), ElementsAre(39, 40));
@@ -48,7 +48,7 @@ TEST(Ping360Sweeps, a_lost_ping_costs_the_turn_one_ping) {
   EXPECT_THAT(turns(true, angles), ElementsAre(39, 40));
 }
 
-TEST(Ping360Sweeps, a_sector_ends_where_the_head_turns_back) {
+TEST(Ping360Sweeps, ASectorEndsWhereTheHeadTurnsBack) {
   EXPECT_THAT(turns(false, {390, 395, 0, 5, 10, 5, 0, 395, 390, 395, 0}), ElementsAre(5, 4));
 }
 

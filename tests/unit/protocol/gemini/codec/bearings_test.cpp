@@ -17,7 +17,7 @@ double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
 }
 
-TEST(Bearings, printed_degrees) {
+TEST(Bearings, PrintedDegrees) {
   constexpr double half_of_last_digit = 0.0005;
   EXPECT_NEAR(degrees(bearing_rad(0)), -59.615, half_of_last_digit);
   EXPECT_NEAR(degrees(bearing_rad(1)), -58.857, half_of_last_digit);
@@ -27,13 +27,13 @@ TEST(Bearings, printed_degrees) {
   EXPECT_NEAR(degrees(bearing_rad(255)), +59.615, half_of_last_digit);
 }
 
-TEST(Bearings, printed_radians) {
+TEST(Bearings, PrintedRadians) {
   EXPECT_NEAR(bearing_rad(0), -1.040470839, single_precision);
   EXPECT_NEAR(bearing_rad(127), -0.003382918, 5e-10);
   EXPECT_NEAR(bearing_rad(128), +0.003382918, 5e-10);
 }
 
-TEST(Bearings, table_rises_from_port_to_starboard_and_mirrors) {
+TEST(Bearings, TableRisesFromPortToStarboardAndMirrors) {
   const auto bearings = bearings_rad();
   ASSERT_EQ(bearings.size(), 256U);
   EXPECT_NEAR(bearings.front(), -1.040470839, single_precision);
@@ -43,7 +43,7 @@ TEST(Bearings, table_rises_from_port_to_starboard_and_mirrors) {
   }
 }
 
-TEST(Bearings, edges_span_the_sector_in_equal_steps_of_the_sine) {
+TEST(Bearings, EdgesSpanTheSectorInEqualStepsOfTheSine) {
   const auto edges = beam_edges_sin();
   ASSERT_EQ(edges.size(), 257U);
   EXPECT_NEAR(degrees(std::asin(edges.front())), -60.0, 1e-12);

@@ -20,24 +20,24 @@ std::string example_name(const ::testing::TestParamInfo<Example>& info) {
 class CommandExampleTest : public ::testing::TestWithParam<CommandExample> {};
 class ReportExampleTest : public ::testing::TestWithParam<ReportExample> {};
 
-TEST_P(CommandExampleTest, bytes_mean_the_value) {
+TEST_P(CommandExampleTest, BytesMeanTheValue) {
   const auto decoded = decode_command(load_fixture(GetParam().fixture));
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(CommandExampleTest, value_becomes_the_bytes) {
+TEST_P(CommandExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
 }
 
-TEST_P(ReportExampleTest, bytes_mean_the_value) {
+TEST_P(ReportExampleTest, BytesMeanTheValue) {
   const Bytes bytes = load_fixture(GetParam().fixture);
   const auto decoded = decode_report(bytes);
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(ReportExampleTest, value_becomes_the_bytes) {
+TEST_P(ReportExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
 }
 
@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(all, CommandExampleTest, ::testing::ValuesIn(command_ex
 INSTANTIATE_TEST_SUITE_P(all, ReportExampleTest, ::testing::ValuesIn(report_examples()),
                          example_name<ReportExample>);
 
-TEST(Examples, cover_every_message_of_both_directions) {
+TEST(Examples, CoverEveryMessageOfBothDirections) {
   std::set<std::size_t> commands;
   for (const auto& example : command_examples()) {
     commands.insert(example.value.index());
@@ -60,7 +60,7 @@ TEST(Examples, cover_every_message_of_both_directions) {
   EXPECT_EQ(reports.size(), std::variant_size_v<Report> - 1);
 }
 
-TEST(Examples, last_and_resent_lines_differ_from_the_first_in_two_fields) {
+TEST(Examples, LastAndResentLinesDifferFromTheFirstInTwoFields) {
   PingLine line = std::get<PingLine>(report_examples().at(2).value);
   line.line_id = 482;
   line.line_info = make_line_info(line.data.size(), true, 0x0204);
@@ -75,20 +75,20 @@ TEST(Examples, last_and_resent_lines_differ_from_the_first_in_two_fields) {
   EXPECT_EQ(start, load_fixture("ping_line_resent_start"));
 }
 
-TEST(Examples, production_test_of_a_32_bit_topside_means_the_same) {
+TEST(Examples, ProductionTestOfA32BitTopsideMeansTheSame) {
   const auto short_form = decode_command(load_fixture("production_test_32_bit"));
   const auto long_form = decode_command(load_fixture("production_test"));
   ASSERT_TRUE(short_form && long_form);
   EXPECT_TRUE(*short_form == *long_form);
 }
 
-TEST(Examples, header_is_readable_without_the_rest) {
+TEST(Examples, HeaderIsReadableWithoutTheRest) {
   const auto header = decode_header(load_fixture("observed_ping_config_mk2"));
   ASSERT_TRUE(header);
   EXPECT_EQ(*header, (Header{.sonar_id = 1234, .version = 1, .destination = 0x1E, .source = 1}));
 }
 
-TEST(Examples, appending_keeps_what_is_there) {
+TEST(Examples, AppendingKeepsWhatIsThere) {
   Bytes out{0xAA};
   encode(PingTail{Header{.sonar_id = 601}, 5, 0}, out);
   Bytes expected{0xAA};
@@ -97,7 +97,7 @@ TEST(Examples, appending_keeps_what_is_there) {
   EXPECT_EQ(out, expected);
 }
 
-TEST(Examples, type_and_header_are_known_for_every_alternative) {
+TEST(Examples, TypeAndHeaderAreKnownForEveryAlternative) {
   EXPECT_EQ(type_of(Command{GoingOffline{}}), 0xC8);
   EXPECT_EQ(type_of(Report{PingLine{}}), 0x42);
   EXPECT_EQ(type_of(Report{Unknown{Header{}, 0x46}}), 0x46);

@@ -35,7 +35,7 @@ Message message_in(Result<Variant, WireError> decoded) {
   return std::get<Message>(decoded.value());
 }
 
-TEST(Layout, header) {
+TEST(Layout, Header) {
   const Bytes bytes = counting_datagram(MessageType::status_request, 8);
   const auto header = decode_header(bytes);
   ASSERT_TRUE(header);
@@ -47,7 +47,7 @@ TEST(Layout, header) {
   EXPECT_EQ(encode(*decode_command(bytes)), bytes);
 }
 
-TEST(Layout, ping_config_of_section_5) {
+TEST(Layout, PingConfigOfSection5) {
   const Bytes bytes = counting_datagram(MessageType::ping_config, 68);
   const auto config = message_in<PingConfig>(decode_command(bytes));
   EXPECT_EQ(config.idents[0], at(8, 2));
@@ -84,7 +84,7 @@ TEST(Layout, ping_config_of_section_5) {
   EXPECT_EQ(encode(config), bytes);
 }
 
-TEST(Layout, status_of_section_3_3) {
+TEST(Layout, StatusOfSection3_3) {
   const Bytes bytes = counting_datagram(MessageType::status, 110);
   const auto status = message_in<Status>(decode_report(bytes));
   EXPECT_EQ(status.firmware_version, at(8, 2));
@@ -131,7 +131,7 @@ TEST(Layout, status_of_section_3_3) {
   EXPECT_EQ(encode(status), bytes);
 }
 
-TEST(Layout, ping_head_of_section_6_2) {
+TEST(Layout, PingHeadOfSection6_2) {
   Bytes bytes = counting_datagram(MessageType::ping_head, 48);
   const auto head = message_in<PingHead>(decode_report(bytes));
   EXPECT_EQ(head.ping_id, at(8, 2));
@@ -156,7 +156,7 @@ TEST(Layout, ping_head_of_section_6_2) {
   EXPECT_EQ(encode(head), bytes);
 }
 
-TEST(Layout, ping_line_and_tail_of_sections_6_4_and_6_9) {
+TEST(Layout, PingLineAndTailOfSections6_4And6_9) {
   Bytes line_bytes = counting_datagram(MessageType::ping_line, 16);
   const std::size_t words = at(14, 2) >> 7;
   line_bytes.resize(16 + 4 * words, 0xCD);
@@ -174,7 +174,7 @@ TEST(Layout, ping_line_and_tail_of_sections_6_4_and_6_9) {
   EXPECT_EQ(tail.flags, 9);
 }
 
-TEST(Layout, network_config_of_section_3_6) {
+TEST(Layout, NetworkConfigOfSection3_6) {
   const Bytes bytes = counting_datagram(MessageType::network_config, 22);
   const auto config = message_in<NetworkConfig>(decode_command(bytes));
   EXPECT_EQ(config.ethernet_ifg, 8);
@@ -189,7 +189,7 @@ TEST(Layout, network_config_of_section_3_6) {
   EXPECT_EQ(encode(config), bytes);
 }
 
-TEST(Layout, retry_request_of_section_3_5) {
+TEST(Layout, RetryRequestOfSection3_5) {
   const auto retry =
       message_in<RetryRequest>(decode_command(counting_datagram(MessageType::retry_request, 16)));
   EXPECT_EQ(static_cast<std::uint16_t>(retry.kind), at(8, 2)) << "an unknown kind is kept as it came";
@@ -197,7 +197,7 @@ TEST(Layout, retry_request_of_section_3_5) {
   EXPECT_EQ(retry.line_count, at(12, 2));
 }
 
-TEST(Layout, test_result_of_section_3_10) {
+TEST(Layout, TestResultOfSection3_10) {
   const Bytes bytes = counting_datagram(MessageType::test_result, 54);
   const auto result = message_in<TestResult>(decode_report(bytes));
   EXPECT_EQ(result.marks[0], at(8, 2));
@@ -212,7 +212,7 @@ TEST(Layout, test_result_of_section_3_10) {
   EXPECT_EQ(encode(result), bytes);
 }
 
-TEST(Layout, acknowledge_and_diagnostic) {
+TEST(Layout, AcknowledgeAndDiagnostic) {
   const auto acknowledge =
       message_in<Acknowledge>(decode_report(counting_datagram(MessageType::acknowledge, 24)));
   EXPECT_EQ(acknowledge.receipt_us, at(12, 4) << 32 | at(8, 4));

@@ -25,7 +25,7 @@ Bytes cut(const Bytes& bytes, std::size_t length) {
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
 }
 
-TEST(Malformed, commands_cut_anywhere_are_refused) {
+TEST(Malformed, CommandsCutAnywhereAreRefused) {
   for (const auto& example : command_examples()) {
     const Bytes bytes = load_fixture(example.fixture);
     for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
@@ -39,7 +39,7 @@ TEST(Malformed, commands_cut_anywhere_are_refused) {
   }
 }
 
-TEST(Malformed, reports_cut_anywhere_are_refused) {
+TEST(Malformed, ReportsCutAnywhereAreRefused) {
   for (const auto& example : report_examples()) {
     const Bytes bytes = load_fixture(example.fixture);
     for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
@@ -51,7 +51,7 @@ TEST(Malformed, reports_cut_anywhere_are_refused) {
   }
 }
 
-TEST(Malformed, short_forms_are_taken_and_what_is_absent_keeps_its_default) {
+TEST(Malformed, ShortFormsAreTakenAndWhatIsAbsentKeepsItsDefault) {
   const Bytes network_config = load_fixture("network_config");
   for (const std::size_t length : {20U, 21U}) {
     const auto decoded = decode_command(cut(network_config, length));
@@ -75,7 +75,7 @@ TEST(Malformed, short_forms_are_taken_and_what_is_absent_keeps_its_default) {
   }
 }
 
-TEST(Malformed, trailing_bytes_change_nothing) {
+TEST(Malformed, TrailingBytesChangeNothing) {
   for (const auto& example : command_examples()) {
     if (example.fixture == "network_config_early") {
       continue;  // two more bytes make it the long form
@@ -100,13 +100,13 @@ TEST(Malformed, trailing_bytes_change_nothing) {
   }
 }
 
-TEST(Malformed, error_names_the_first_field_that_is_not_there) {
+TEST(Malformed, ErrorNamesTheFirstFieldThatIsNotThere) {
   const auto decoded = decode_command(cut(load_fixture("ping_config"), 31));
   ASSERT_FALSE(decoded);
   EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 30, "tx_angle"}));
 }
 
-TEST(Malformed, each_direction_takes_the_other_for_unknown) {
+TEST(Malformed, EachDirectionTakesTheOtherForUnknown) {
   for (const auto& example : report_examples()) {
     const Bytes bytes = load_fixture(example.fixture);
     const auto decoded = decode_command(bytes);
@@ -123,7 +123,7 @@ TEST(Malformed, each_direction_takes_the_other_for_unknown) {
   }
 }
 
-TEST(Malformed, exactly_the_documented_types_are_known) {
+TEST(Malformed, ExactlyTheDocumentedTypesAreKnown) {
   const std::map<bool, std::vector<int>> documented{
       {true, {0x20, 0x21, 0x22, 0x23, 0x24, 0x25, 0x2A, 0x2B, 0x2C, 0x2D,
               0x2E, 0x2F, 0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0xC8}},
@@ -145,7 +145,7 @@ TEST(Malformed, exactly_the_documented_types_are_known) {
   EXPECT_EQ(known, documented);
 }
 
-TEST(Malformed, odd_and_impossible_mdio_lengths_are_refused) {
+TEST(Malformed, OddAndImpossibleMdioLengthsAreRefused) {
   for (const std::uint8_t length : {0, 1, 9, 11}) {
     Bytes bytes = load_fixture("mdio_commands");
     bytes[8] = length;
@@ -161,7 +161,7 @@ TEST(Malformed, odd_and_impossible_mdio_lengths_are_refused) {
   EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 10, "words"}));
 }
 
-TEST(Malformed, info_block_banks_beyond_2_are_refused) {
+TEST(Malformed, InfoBlockBanksBeyond2AreRefused) {
   Bytes bytes = load_fixture("observed_info_block_write");
   for (const std::uint8_t bank : {3, 255}) {
     bytes[8] = bank;
@@ -171,7 +171,7 @@ TEST(Malformed, info_block_banks_beyond_2_are_refused) {
   }
 }
 
-TEST(Malformed, short_identity_block_does_not_pass_for_a_long_bank) {
+TEST(Malformed, ShortIdentityBlockDoesNotPassForALongBank) {
   Bytes bytes = load_fixture("info_block_write_identity");
   bytes[8] = 2;
   const auto decoded = decode_command(bytes);
@@ -179,7 +179,7 @@ TEST(Malformed, short_identity_block_does_not_pass_for_a_long_bank) {
   EXPECT_EQ(decoded.error(), (WireError{WireErrorReason::truncated, 24, "filler"}));
 }
 
-TEST(Malformed, serial_data_with_a_broken_block_is_refused) {
+TEST(Malformed, SerialDataWithABrokenBlockIsRefused) {
   Bytes bytes = load_fixture("serial_data");
   bytes.pop_back();
   const auto decoded = decode_report(bytes);
@@ -187,7 +187,7 @@ TEST(Malformed, serial_data_with_a_broken_block_is_refused) {
   EXPECT_EQ(decoded.error().reason, WireErrorReason::bad_length);
 }
 
-TEST(Malformed, line_data_follow_the_word_count) {
+TEST(Malformed, LineDataFollowTheWordCount) {
   Bytes bytes = load_fixture("ping_line");
   bytes[14] = 0x84;  // one word more than the datagram holds
   const auto longer = decode_report(bytes);

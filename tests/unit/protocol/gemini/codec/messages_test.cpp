@@ -7,7 +7,7 @@
 namespace sonard::gemini {
 namespace {
 
-TEST(Temperature, codes_of_the_status_example) {
+TEST(Temperature, CodesOfTheStatusExample) {
   EXPECT_EQ(temperature_code(21.25), 0x8055);
   EXPECT_EQ(temperature_code(21.5), 0x8056);
   EXPECT_EQ(temperature_code(22.0), 0x8058);
@@ -16,7 +16,7 @@ TEST(Temperature, codes_of_the_status_example) {
   EXPECT_EQ(temperature_code(70.0), 0x8118);
 }
 
-TEST(Temperature, is_ten_bit_twos_complement_in_quarters) {
+TEST(Temperature, IsTenBitTwosComplementInQuarters) {
   EXPECT_EQ(temperature_code(0.0), 0x8000);
   EXPECT_EQ(temperature_code(-0.25), 0x83FF);
   EXPECT_EQ(temperature_code(-128.0), 0x8200);
@@ -26,18 +26,18 @@ TEST(Temperature, is_ten_bit_twos_complement_in_quarters) {
   EXPECT_EQ(temperature_code(20.1), 0x8050) << "80.4 quarters round to 80";
 }
 
-TEST(Temperature, decodes_every_quarter_it_encodes) {
+TEST(Temperature, DecodesEveryQuarterItEncodes) {
   for (int quarters = -512; quarters <= 511; ++quarters) {
     EXPECT_EQ(temperature_celsius(temperature_code(quarters * 0.25)), quarters * 0.25);
   }
 }
 
-TEST(Temperature, sensor_not_fitted) {
+TEST(Temperature, SensorNotFitted) {
   EXPECT_EQ(temperature_celsius(0), std::nullopt);
   EXPECT_EQ(temperature_celsius(0x0055), std::nullopt);
 }
 
-TEST(Temperature, die_has_a_scale_of_its_own) {
+TEST(Temperature, DieHasAScaleOfItsOwn) {
   EXPECT_EQ(die_temperature_code(45.0), 646);
   EXPECT_EQ(die_temperature_code(85.0), 728);
   EXPECT_NEAR(die_temperature_celsius(646), 44.79, 0.01);
@@ -45,7 +45,7 @@ TEST(Temperature, die_has_a_scale_of_its_own) {
   EXPECT_EQ(die_temperature_code(1000.0), 1023);
 }
 
-TEST(PingConfig, run_mode_is_two_bits) {
+TEST(PingConfig, RunModeIsTwoBits) {
   PingConfig config;
   config.run_mode = 0x8002;
   EXPECT_EQ(config.mode(), RunMode::external_trigger);
@@ -53,7 +53,7 @@ TEST(PingConfig, run_mode_is_two_bits) {
   EXPECT_EQ(config.mode(), RunMode::continuous);
 }
 
-TEST(PingConfig, eight_bit_holds_for_magnitudes_only) {
+TEST(PingConfig, EightBitHoldsForMagnitudesOnly) {
   PingConfig config;
   config.ext_mode = 0x0204;
   EXPECT_TRUE(config.eight_bit());
@@ -66,7 +66,7 @@ TEST(PingConfig, eight_bit_holds_for_magnitudes_only) {
   EXPECT_FALSE(config.eight_bit());
 }
 
-TEST(PingConfig, compression_of_five_and_more_is_none) {
+TEST(PingConfig, CompressionOfFiveAndMoreIsNone) {
   EXPECT_EQ(compression_log2(0), 0);
   EXPECT_EQ(compression_log2(4), 4);
   EXPECT_EQ(compression_log2(5), 0);
@@ -74,7 +74,7 @@ TEST(PingConfig, compression_of_five_and_more_is_none) {
   EXPECT_EQ(compression_log2(0x0102), 2) << "bit 8 asks for peaks and is no part of the factor";
 }
 
-TEST(PingConfig, line_count_is_what_clients_of_both_generations_expect) {
+TEST(PingConfig, LineCountIsWhatClientsOfBothGenerationsExpect) {
   PingConfig config;
   config.end_range = 1206;
   config.range_compression = 1;
@@ -86,7 +86,7 @@ TEST(PingConfig, line_count_is_what_clients_of_both_generations_expect) {
   EXPECT_EQ(config.line_count(), 120) << "the head takes the start as 0";
 }
 
-TEST(PingConfig, rle_thresholds_of_one_and_two_act_as_three) {
+TEST(PingConfig, RleThresholdsOfOneAndTwoActAsThree) {
   PingConfig config;
   config.ext_mode = 0x0004;
   const std::pair<std::uint16_t, int> expected[]{{0, 0},   {1, 3},     {2, 3},    {3, 3},
@@ -100,7 +100,7 @@ TEST(PingConfig, rle_thresholds_of_one_and_two_act_as_three) {
   EXPECT_EQ(config.rle_threshold_applied(), 0) << "no run-length coding of 16-bit samples";
 }
 
-TEST(PingHead, line_count_counts_from_start_and_is_never_negative) {
+TEST(PingHead, LineCountCountsFromStartAndIsNeverNegative) {
   PingHead head;
   head.end_range = 1206;
   head.start_range = 6;
@@ -110,19 +110,19 @@ TEST(PingHead, line_count_counts_from_start_and_is_never_negative) {
   EXPECT_EQ(head.line_count(), 0);
 }
 
-TEST(PingHead, sound_speed_leaves_out_the_source_bit) {
+TEST(PingHead, SoundSpeedLeavesOutTheSourceBit) {
   PingHead head;
   head.sound_speed_used = sound_speed_from_config | 14'992;
   EXPECT_DOUBLE_EQ(head.sound_speed_mps(), 1499.2);
 }
 
-TEST(PingLine, info_word_of_the_document) {
+TEST(PingLine, InfoWordOfTheDocument) {
   EXPECT_EQ(make_line_info(256, false, 0x0204), 0x2004);
   EXPECT_EQ(make_line_info(256, true, 0x0204), 0x2044);
   EXPECT_EQ(make_line_info(512, false, 0x0200), 0x4000) << "16-bit samples";
 }
 
-TEST(PingLine, flags_are_no_part_of_the_number) {
+TEST(PingLine, FlagsAreNoPartOfTheNumber) {
   PingLine line;
   line.line_id = resent_line | 482;
   line.line_info = 0x2044;
@@ -132,18 +132,18 @@ TEST(PingLine, flags_are_no_part_of_the_number) {
   EXPECT_EQ(line.word_count(), 64U);
 }
 
-TEST(PingTail, resent_flag) {
+TEST(PingTail, ResentFlag) {
   EXPECT_TRUE((PingTail{.ping_id = 5, .flags = 0x80}.resent()));
   EXPECT_FALSE((PingTail{.ping_id = 5, .flags = 0x7F}.resent()));
 }
 
-TEST(FlashResult, ready_bit_is_no_failure) {
+TEST(FlashResult, ReadyBitIsNoFailure) {
   EXPECT_TRUE((FlashResult{.result = 0x8000}.success()));
   EXPECT_TRUE((FlashResult{.result = 0x0000}.success()));
   EXPECT_FALSE((FlashResult{.result = 0x8001}.success()));
 }
 
-TEST(Status, default_does_not_read_as_boot_loader) {
+TEST(Status, DefaultDoesNotReadAsBootLoader) {
   const Status status;
   EXPECT_NE(status.boot_status & 0x1FF, 0x001U);
   EXPECT_EQ(status.product_code(), 0);

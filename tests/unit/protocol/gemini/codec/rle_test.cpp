@@ -23,29 +23,29 @@ Bytes decoded(const Bytes& data, std::size_t beams) {
   return out;
 }
 
-TEST(RleEncode, run_of_one_is_01) {
+TEST(RleEncode, RunOfOneIs01) {
   EXPECT_EQ(encoded({5, 0, 7}), (Bytes{5, 1, 7, 0}));
 }
 
-TEST(RleEncode, longer_runs_are_00_and_their_length) {
+TEST(RleEncode, LongerRunsAre00AndTheirLength) {
   EXPECT_EQ(encoded({0, 0}), (Bytes{0, 2, 0, 0}));
   EXPECT_EQ(encoded({9, 0, 0, 0, 9}), (Bytes{9, 0, 3, 9}));
   EXPECT_EQ(encoded(Bytes(255, 0)), (Bytes{0, 255, 0, 0}));
 }
 
-TEST(RleEncode, runs_beyond_255_are_split) {
+TEST(RleEncode, RunsBeyond255AreSplit) {
   EXPECT_EQ(encoded(Bytes(256, 0)), (Bytes{0, 255, 1, 0}));
   EXPECT_EQ(encoded(Bytes(257, 0)), (Bytes{0, 255, 0, 2}));
   EXPECT_EQ(encoded(Bytes(512, 0)), (Bytes{0, 255, 0, 255, 0, 2, 0, 0}));
 }
 
-TEST(RleEncode, values_below_the_threshold_become_zero_and_the_threshold_stays) {
+TEST(RleEncode, ValuesBelowTheThresholdBecomeZeroAndTheThresholdStays) {
   EXPECT_EQ(encoded({49, 50, 51, 0}, 50), (Bytes{1, 50, 51, 1}));
   EXPECT_EQ(encoded({2, 3, 1, 1}, 3), (Bytes{1, 3, 0, 2}));
   EXPECT_EQ(encoded({2, 3, 1, 1}, 1), (Bytes{1, 3, 0, 2})) << "1 and 2 have a meaning of their own";
 }
 
-TEST(RleEncode, least_literal_is_the_smallest_value_that_is_kept) {
+TEST(RleEncode, LeastLiteralIsTheSmallestValueThatIsKept) {
   for (int threshold = 0; threshold <= 255; ++threshold) {
     const auto given = static_cast<std::uint8_t>(threshold);
     const int least = least_literal(given);
@@ -57,59 +57,59 @@ TEST(RleEncode, least_literal_is_the_smallest_value_that_is_kept) {
   }
 }
 
-TEST(RleEncode, nothing_to_code) {
+TEST(RleEncode, NothingToCode) {
   EXPECT_TRUE(encoded({}).empty());
 }
 
-TEST(RleEncode, padding_counts_from_where_the_line_began) {
+TEST(RleEncode, PaddingCountsFromWhereTheLineBegan) {
   Bytes out{0xAA, 0xBB, 0xCC};
   rle_encode(Bytes{200}, 3, out);
   EXPECT_EQ(out, (Bytes{0xAA, 0xBB, 0xCC, 200, 0, 0, 0}));
 }
 
-TEST(RleDecode, literals_singles_and_runs) {
+TEST(RleDecode, LiteralsSinglesAndRuns) {
   EXPECT_EQ(decoded({5, 1, 7, 0, 3, 255}, 7), (Bytes{5, 0, 7, 0, 0, 0, 255}));
 }
 
-TEST(RleDecode, two_is_a_literal) {
+TEST(RleDecode, TwoIsALiteral) {
   EXPECT_EQ(decoded({2, 2}, 2), (Bytes{2, 2}));
 }
 
-TEST(RleDecode, run_of_no_beams_is_nothing) {
+TEST(RleDecode, RunOfNoBeamsIsNothing) {
   EXPECT_EQ(decoded({0, 0, 9}, 1), (Bytes{9}));
 }
 
-TEST(RleDecode, stops_when_all_beams_are_there) {
+TEST(RleDecode, StopsWhenAllBeamsAreThere) {
   Bytes beams(2);
   EXPECT_EQ(rle_decode(Bytes{7, 8, 9, 10}, beams), 2U);
   EXPECT_EQ(beams, (Bytes{7, 8}));
 }
 
-TEST(RleDecode, stops_at_the_end_of_the_data_and_clears_the_rest) {
+TEST(RleDecode, StopsAtTheEndOfTheDataAndClearsTheRest) {
   Bytes beams(4, 0xEE);
   EXPECT_EQ(rle_decode(Bytes{7}, beams), 1U);
   EXPECT_EQ(beams, (Bytes{7, 0, 0, 0}));
 }
 
-TEST(RleDecode, run_beyond_the_beams_is_cut) {
+TEST(RleDecode, RunBeyondTheBeamsIsCut) {
   Bytes beams(3, 0xEE);
   EXPECT_EQ(rle_decode(Bytes{7, 0, 255, 9}, beams), 3U);
   EXPECT_EQ(beams, (Bytes{7, 0, 0}));
 }
 
-TEST(RleDecode, marker_without_its_count_is_nothing) {
+TEST(RleDecode, MarkerWithoutItsCountIsNothing) {
   Bytes beams(3, 0xEE);
   EXPECT_EQ(rle_decode(Bytes{7, 0}, beams), 1U);
   EXPECT_EQ(beams, (Bytes{7, 0, 0}));
 }
 
-TEST(RleDecode, nothing_in_nothing_out) {
+TEST(RleDecode, NothingInNothingOut) {
   EXPECT_EQ(rle_decode(Bytes{}, {}), 0U);
   EXPECT_EQ(rle_decode(Bytes{1, 0, 5, 9}, {}), 0U);
 }
 
 /// Lines with every density of echoes, from empty to full, at every threshold.
-TEST(RleProperty, decoding_gives_back_the_line_with_small_values_zeroed) {
+TEST(RleProperty, DecodingGivesBackTheLineWithSmallValuesZeroed) {
   std::mt19937 generator{20240501};
   for (int trial = 0; trial < 4000; ++trial) {
     const auto threshold = static_cast<std::uint8_t>(3 + generator() % 253);

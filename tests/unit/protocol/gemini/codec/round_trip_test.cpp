@@ -146,16 +146,16 @@ void round_trip_all(const std::variant<Messages...>*) {
   (one(static_cast<const Messages*>(nullptr)), ...);
 }
 
-TEST(RoundTrip, every_command) {
+TEST(RoundTrip, EveryCommand) {
   round_trip_all<Command>(static_cast<const Command*>(nullptr));
 }
 
-TEST(RoundTrip, every_report) {
+TEST(RoundTrip, EveryReport) {
   round_trip_all<Report>(static_cast<const Report*>(nullptr));
 }
 
 /// If random bytes decode, encoding the result again gives a datagram with the same meaning.
-TEST(RoundTrip, random_bytes_of_every_type) {
+TEST(RoundTrip, RandomBytesOfEveryType) {
   Random random{77};
   int understood = 0;
   for (int round = 0; round < 20'000; ++round) {
@@ -178,14 +178,14 @@ TEST(RoundTrip, random_bytes_of_every_type) {
   EXPECT_GT(understood, 10'000) << "too few to mean anything";
 }
 
-TEST(RoundTrip, unknown_keeps_type_and_header) {
+TEST(RoundTrip, UnknownKeepsTypeAndHeader) {
   const Command unknown = Unknown{Header{.sonar_id = 601, .version = 2}, 0xCB};
   const auto back = decode_command(encode(unknown));
   ASSERT_TRUE(back);
   EXPECT_TRUE(*back == unknown);
 }
 
-TEST(RoundTrip, oversized_variable_parts_are_cut_to_what_fits) {
+TEST(RoundTrip, OversizedVariablePartsAreCutToWhatFits) {
   SerialTransmit serial;
   serial.data.assign(300, 0x55);
   EXPECT_EQ(encode(serial).size(), 9U + 255U);

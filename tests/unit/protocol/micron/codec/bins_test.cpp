@@ -14,19 +14,19 @@ const Bytes packed{0xF8, 0x10, 0x0A, 0x40};
 const Bytes high_first{15, 8, 1, 0, 0, 10, 4, 0};
 const Bytes low_first{8, 15, 0, 1, 10, 0, 0, 4};
 
-TEST(Nibbles, both_orders) {
+TEST(Nibbles, BothOrders) {
   EXPECT_EQ(unpack_nibbles(packed, NibbleOrder::high_first), high_first);
   EXPECT_EQ(unpack_nibbles(packed, NibbleOrder::low_first), low_first);
   EXPECT_EQ(pack_nibbles(high_first, NibbleOrder::high_first), packed);
   EXPECT_EQ(pack_nibbles(low_first, NibbleOrder::low_first), packed);
 }
 
-TEST(Nibbles, odd_number_is_filled_up_with_zero) {
+TEST(Nibbles, OddNumberIsFilledUpWithZero) {
   EXPECT_EQ(pack_nibbles(Bytes{1, 2, 3}, NibbleOrder::high_first), (Bytes{0x12, 0x30}));
   EXPECT_EQ(pack_nibbles(Bytes{1, 2, 3}, NibbleOrder::low_first), (Bytes{0x21, 0x03}));
 }
 
-TEST(FourBit, window_from_ad_low_on) {
+TEST(FourBit, WindowFromAdLowOn) {
   // AD low 40 (13 dB), AD span 38 (12 dB): 0 means up to 13 dB, 15 means 25 dB and above.
   EXPECT_EQ(to_four_bit(0, 40, 38), 0);
   EXPECT_EQ(to_four_bit(40, 40, 38), 0);
@@ -38,7 +38,7 @@ TEST(FourBit, window_from_ad_low_on) {
   EXPECT_EQ(to_four_bit(255, 40, 38), 15);
 }
 
-TEST(FourBit, full_span_and_none) {
+TEST(FourBit, FullSpanAndNone) {
   EXPECT_EQ(to_four_bit(255, 0, 255), 15);
   EXPECT_EQ(to_four_bit(127, 0, 255), 7);
   EXPECT_EQ(to_four_bit(10, 10, 0), 0) << "a span of 0 acts as 1";

@@ -230,24 +230,24 @@ std::string example_name(const ::testing::TestParamInfo<Example>& info) {
 class CommandExampleTest : public ::testing::TestWithParam<CommandExample> {};
 class ReportExampleTest : public ::testing::TestWithParam<ReportExample> {};
 
-TEST_P(CommandExampleTest, bytes_mean_the_value) {
+TEST_P(CommandExampleTest, BytesMeanTheValue) {
   const auto decoded = decode_command(load_fixture(GetParam().fixture));
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(CommandExampleTest, value_becomes_the_bytes) {
+TEST_P(CommandExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
 }
 
-TEST_P(ReportExampleTest, bytes_mean_the_value) {
+TEST_P(ReportExampleTest, BytesMeanTheValue) {
   const Bytes bytes = load_fixture(GetParam().fixture);
   const auto decoded = decode_report(bytes);
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(ReportExampleTest, value_becomes_the_bytes) {
+TEST_P(ReportExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
 }
 
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(all, CommandExampleTest, ::testing::ValuesIn(command_ex
 INSTANTIATE_TEST_SUITE_P(all, ReportExampleTest, ::testing::ValuesIn(report_examples()),
                          example_name<ReportExample>);
 
-TEST(Examples, cover_every_message_and_every_fixture) {
+TEST(Examples, CoverEveryMessageAndEveryFixture) {
   std::set<std::size_t> commands;
   std::set<std::size_t> reports;
   std::set<std::string> fixtures;
@@ -275,16 +275,16 @@ TEST(Examples, cover_every_message_and_every_fixture) {
   EXPECT_EQ(fixtures, std::set<std::string>(names.begin(), names.end()));
 }
 
-TEST(Examples, type_is_known_for_every_alternative) {
+TEST(Examples, TypeIsKnownForEveryAlternative) {
   EXPECT_EQ(type_of(Command{ReverseCommand{}}), 19);
   EXPECT_EQ(type_of(Report{Unknown{57}}), 57);
 }
 
-TEST(Examples, ros_driver_asks_for_the_defaults) {
+TEST(Examples, RosDriverAsksForTheDefaults) {
   EXPECT_TRUE(ros_example() == HeadCommand{});
 }
 
-TEST(Examples, half_duplex_is_byte_146_of_a_dst_and_byte_99_of_others) {
+TEST(Examples, HalfDuplexIsByte146OfADstAndByte99OfOthers) {
   Bytes dst = load_fixture("bb_user_data");
   EXPECT_FALSE(std::get<BBUserData>(*decode_report(dst)).half_duplex());
   dst[99] = 1;

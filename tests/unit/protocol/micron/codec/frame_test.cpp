@@ -30,7 +30,7 @@ std::vector<Bytes> frames_in(FrameBuffer& buffer, TimePoint now) {
   return frames;
 }
 
-TEST(NextFrame, keeps_the_contract) {
+TEST(NextFrame, KeepsTheContract) {
   const Bytes frame = load_fixture("send_version");
   EXPECT_EQ(next_frame({}, 1006), 0);
   EXPECT_EQ(next_frame(frame, 1006), 14);
@@ -42,7 +42,7 @@ TEST(NextFrame, keeps_the_contract) {
   }
 }
 
-TEST(NextFrame, drops_one_byte_of_what_is_no_frame) {
+TEST(NextFrame, DropsOneByteOfWhatIsNoFrame) {
   const Bytes frame = load_fixture("send_version");
   const auto with = [&](std::size_t offset, std::uint8_t value) {
     Bytes bytes = frame;
@@ -59,7 +59,7 @@ TEST(NextFrame, drops_one_byte_of_what_is_no_frame) {
   EXPECT_EQ(with(11, 0), 14);
 }
 
-TEST(NextFrame, takes_lengths_from_8_to_the_limit_and_digits_of_either_case) {
+TEST(NextFrame, TakesLengthsFrom8ToTheLimitAndDigitsOfEitherCase) {
   const auto stated = [](const char* digits, std::uint8_t low, std::uint8_t high, std::size_t limit) {
     Bytes bytes{'@'};
     bytes.insert(bytes.end(), digits, digits + 4);
@@ -73,7 +73,7 @@ TEST(NextFrame, takes_lengths_from_8_to_the_limit_and_digits_of_either_case) {
   EXPECT_EQ(stated("03E9", 0xE9, 3, max_report_frame_size), 0);
 }
 
-TEST(FrameBuffer, finds_every_example_in_one_piece_and_byte_by_byte) {
+TEST(FrameBuffer, FindsEveryExampleInOnePieceAndByteByByte) {
   Bytes stream;
   std::vector<Bytes> expected;
   for (const auto& name : fixture_names()) {
@@ -96,7 +96,7 @@ TEST(FrameBuffer, finds_every_example_in_one_piece_and_byte_by_byte) {
   EXPECT_EQ(found, expected);
 }
 
-TEST(FrameBuffer, finds_a_frame_behind_noise_that_looks_like_one) {
+TEST(FrameBuffer, FindsAFrameBehindNoiseThatLooksLikeOne) {
   const Bytes frame = load_fixture("head_command_ros");
   const Bytes noise[] = {{'@'},
                          {'@', '@', 0x0A},
@@ -111,7 +111,7 @@ TEST(FrameBuffer, finds_a_frame_behind_noise_that_looks_like_one) {
   }
 }
 
-TEST(FrameBuffer, survives_noise_in_any_chunks) {
+TEST(FrameBuffer, SurvivesNoiseInAnyChunks) {
   const Bytes frame = load_fixture("send_data");
   for (unsigned seed = 1; seed <= 50; ++seed) {
     std::mt19937 random(seed);
@@ -141,7 +141,7 @@ TEST(FrameBuffer, survives_noise_in_any_chunks) {
 // The reboot command of one public driver states a length of 18 bytes and has 14 (2.4).
 const Bytes cut_reboot{0x40, 0x30, 0x30, 0x30, 0x43, 0x0C, 0x00, 0xFF, 0x02, 0x07, 0x10, 0x80, 0x02, 0x0A};
 
-TEST(FrameBuffer, a_head_command_that_lost_a_byte_costs_no_other_command) {
+TEST(FrameBuffer, AHeadCommandThatLostAByteCostsNoOtherCommand) {
   Bytes stream = load_fixture("head_command_ros");
   stream.erase(stream.begin() + 30);
   const Bytes next = load_fixture("send_version");
@@ -153,7 +153,7 @@ TEST(FrameBuffer, a_head_command_that_lost_a_byte_costs_no_other_command) {
   EXPECT_EQ(Bytes(frame->bytes.begin(), frame->bytes.end()), next);
 }
 
-TEST(FrameBuffer, takes_a_length_of_five_digits_however_the_stream_is_cut) {
+TEST(FrameBuffer, TakesALengthOfFiveDigitsHoweverTheStreamIsCut) {
   for (const std::size_t data_size : {53U, 247U, 248U, 502U, 503U}) {  // lengths of one byte and of two
     const Bytes frame = frame_to_head(0x02, 0x03, Bytes(data_size, 0x55));
     Bytes stream = frame;
@@ -172,7 +172,7 @@ TEST(FrameBuffer, takes_a_length_of_five_digits_however_the_stream_is_cut) {
   }
 }
 
-TEST(FrameBuffer, takes_a_frame_that_was_cut_after_100_ms_of_silence) {
+TEST(FrameBuffer, TakesAFrameThatWasCutAfter100MsOfSilence) {
   FrameBuffer buffer{max_command_frame_size};
   buffer.append(1s, cut_reboot);
   ASSERT_EQ(buffer.next_deadline(), 1100ms);
@@ -186,7 +186,7 @@ TEST(FrameBuffer, takes_a_frame_that_was_cut_after_100_ms_of_silence) {
   EXPECT_EQ(buffer.next_deadline(), std::nullopt);
 }
 
-TEST(FrameBuffer, new_bytes_put_the_silence_off_and_show_what_was_cut) {
+TEST(FrameBuffer, NewBytesPutTheSilenceOffAndShowWhatWasCut) {
   FrameBuffer buffer{max_command_frame_size};
   buffer.append(0ms, cut_reboot);
   const Bytes next = load_fixture("send_version");
@@ -197,7 +197,7 @@ TEST(FrameBuffer, new_bytes_put_the_silence_off_and_show_what_was_cut) {
   EXPECT_EQ(buffer.dropped(), cut_reboot.size());
 }
 
-TEST(FrameBuffer, keeps_an_unfinished_frame_for_ever_unless_it_ends_in_a_line_feed) {
+TEST(FrameBuffer, KeepsAnUnfinishedFrameForEverUnlessItEndsInALineFeed) {
   const Bytes frame = load_fixture("head_command_uxv");
   FrameBuffer buffer{max_command_frame_size};
   buffer.append(0s, std::span{frame}.first(40));
@@ -207,7 +207,7 @@ TEST(FrameBuffer, keeps_an_unfinished_frame_for_ever_unless_it_ends_in_a_line_fe
   EXPECT_EQ(frames_in(buffer, 1h), std::vector<Bytes>{frame});
 }
 
-TEST(FrameBuffer, rejected_frame_loses_one_byte_and_what_is_inside_comes_out) {
+TEST(FrameBuffer, RejectedFrameLosesOneByteAndWhatIsInsideComesOut) {
   const Bytes inner = load_fixture("reboot");
   const Bytes outer = load_fixture("head_command_uxv");
   FrameBuffer buffer{max_command_frame_size};
@@ -222,7 +222,7 @@ TEST(FrameBuffer, rejected_frame_loses_one_byte_and_what_is_inside_comes_out) {
   EXPECT_EQ(Bytes(whole->bytes.begin(), whole->bytes.end()), inner);
 }
 
-TEST(FrameBuffer, forgets_when_told) {
+TEST(FrameBuffer, ForgetsWhenTold) {
   const Bytes frame = load_fixture("send_version");
   FrameBuffer buffer{max_command_frame_size};
   buffer.append(0s, std::span{frame}.first(9));

@@ -43,7 +43,7 @@ void expect_gain_block_at(const GainBlock& block, std::size_t offset) {
   EXPECT_EQ(block.slope_delay[1], at(offset + 14, 2));
 }
 
-TEST(Layout, head_command) {
+TEST(Layout, HeadCommand) {
   Bytes bytes = counting_frame(false, MessageType::head_command, 82);
   bytes[13] = 0x1D;
   const auto command = std::get<HeadCommand>(*decode_command(bytes));
@@ -78,7 +78,7 @@ TEST(Layout, head_command) {
   EXPECT_EQ(encode(command), bytes);
 }
 
-TEST(Layout, short_form_of_the_head_command_may_have_any_length_that_holds_it) {
+TEST(Layout, ShortFormOfTheHeadCommandMayHaveAnyLengthThatHoldsIt) {
   for (const std::size_t size : {66U, 70U, 82U, 120U}) {
     Bytes bytes = counting_frame(false, MessageType::head_command, size);
     bytes[13] = 0x01;
@@ -92,7 +92,7 @@ TEST(Layout, short_form_of_the_head_command_may_have_any_length_that_holds_it) {
 
 // Fields that a head does not need may be absent. In this command these are all fields after the number of
 // bins.
-TEST(Layout, fields_at_the_end_of_a_command_may_be_absent) {
+TEST(Layout, FieldsAtTheEndOfACommandMayBeAbsent) {
   for (const std::size_t size : {56U, 58U, 65U}) {
     Bytes bytes = counting_frame(false, MessageType::head_command, size);
     bytes[13] = 0x01;
@@ -114,18 +114,18 @@ TEST(Layout, fields_at_the_end_of_a_command_may_be_absent) {
             0U);
 }
 
-TEST(Layout, gain_command) {
+TEST(Layout, GainCommand) {
   Bytes bytes = counting_frame(false, MessageType::head_command, 31);
   bytes[13] = 0x1E;
   expect_gain_block_at(std::get<GainCommand>(*decode_command(bytes)).values, 14);
 }
 
-TEST(Layout, send_data) {
+TEST(Layout, SendData) {
   const Bytes bytes = counting_frame(false, MessageType::send_data, 18);
   EXPECT_EQ(std::get<SendData>(*decode_command(bytes)).time_ms, at(13, 4));
 }
 
-TEST(Layout, version_data) {
+TEST(Layout, VersionData) {
   const Bytes bytes = counting_frame(true, MessageType::version_data, 25);
   const auto version = std::get<VersionData>(*decode_report(bytes));
   EXPECT_EQ(version.software_version, at(13, 1));
@@ -137,7 +137,7 @@ TEST(Layout, version_data) {
   EXPECT_EQ(encode(version), bytes);
 }
 
-TEST(Layout, alive) {
+TEST(Layout, Alive) {
   const Bytes bytes = counting_frame(true, MessageType::alive, 22);
   const auto alive = std::get<Alive>(*decode_report(bytes));
   EXPECT_EQ(alive.needs_parameters, at(13, 1));
@@ -147,7 +147,7 @@ TEST(Layout, alive) {
   EXPECT_EQ(encode(alive), bytes);
 }
 
-TEST(Layout, head_data) {
+TEST(Layout, HeadData) {
   Bytes bytes = counting_frame(true, MessageType::head_data, 50);
   bytes[13] = 36;
   bytes[14] = 0;
@@ -174,7 +174,7 @@ TEST(Layout, head_data) {
   EXPECT_EQ(encode(line), bytes);
 }
 
-TEST(Layout, bb_user_data) {
+TEST(Layout, BbUserData) {
   const Bytes bytes = counting_frame(true, MessageType::bb_user_data, 264);
   const auto blocks = std::get<BBUserData>(*decode_report(bytes));
   EXPECT_EQ(blocks.surface_control, at(13, 1));
@@ -209,7 +209,7 @@ TEST(Layout, bb_user_data) {
   }
 }
 
-TEST(Layout, fpga_data_and_aux_data) {
+TEST(Layout, FpgaDataAndAuxData) {
   const Bytes version = counting_frame(true, MessageType::fpga_version_data, 28);
   EXPECT_EQ(encode(*decode_report(version)), version);
   const Bytes calibration = counting_frame(true, MessageType::fpga_cal_data, 80);

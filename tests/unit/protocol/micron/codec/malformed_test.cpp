@@ -11,7 +11,7 @@
 namespace sonard::micron::testing {
 namespace {
 
-TEST(Malformed, every_shortened_example_is_refused_or_means_a_shorter_message) {
+TEST(Malformed, EveryShortenedExampleIsRefusedOrMeansAShorterMessage) {
   for (const auto& name : fixture_names()) {
     const Bytes whole = load_fixture(name);
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -25,7 +25,7 @@ TEST(Malformed, every_shortened_example_is_refused_or_means_a_shorter_message) {
   }
 }
 
-TEST(Malformed, unknown_types_are_told) {
+TEST(Malformed, UnknownTypesAreTold) {
   Bytes bytes = load_fixture("send_version");
   for (const int type : {0, 3, 5, 20, 26, 58, 61, 72, 255}) {
     bytes[10] = static_cast<std::uint8_t>(type);
@@ -34,13 +34,13 @@ TEST(Malformed, unknown_types_are_told) {
   }
 }
 
-TEST(Malformed, head_command_of_unknown_form) {
+TEST(Malformed, HeadCommandOfUnknownForm) {
   Bytes bytes = load_fixture("head_command_ros");
   bytes[13] = 0x02;
   EXPECT_EQ(decode_command(bytes).error(), (WireError{WireErrorReason::bad_value, 13, "form"}));
 }
 
-TEST(Malformed, line_whose_counts_disagree) {
+TEST(Malformed, LineWhoseCountsDisagree) {
   Bytes bytes = load_fixture("head_data");
   bytes[42] = 7;
   EXPECT_EQ(decode_report(bytes).error(), (WireError{WireErrorReason::bad_length, 13, "total_count"}));
@@ -48,13 +48,13 @@ TEST(Malformed, line_whose_counts_disagree) {
   EXPECT_EQ(decode_report(bytes).error(), (WireError{WireErrorReason::truncated, 44, "data"}));
 }
 
-TEST(Malformed, user_blocks_of_another_length) {
+TEST(Malformed, UserBlocksOfAnotherLength) {
   Bytes bytes = load_fixture("bb_user_data");
   bytes.pop_back();
   EXPECT_EQ(decode_report(bytes).error().reason, WireErrorReason::bad_length);
 }
 
-TEST(Malformed, random_frames_decode_to_what_encodes_again) {
+TEST(Malformed, RandomFramesDecodeToWhatEncodesAgain) {
   std::mt19937 random(1);
   for (int i = 0; i < 20'000; ++i) {
     Bytes bytes(random() % 300);

@@ -7,7 +7,7 @@
 namespace sonard::micron {
 namespace {
 
-TEST(Units, bearings_are_clockwise_from_astern) {
+TEST(Units, BearingsAreClockwiseFromAstern) {
   constexpr double quarter = std::numbers::pi / 2;
   EXPECT_DOUBLE_EQ(bearing_rad(3200), 0.0);
   EXPECT_DOUBLE_EQ(bearing_rad(4800), quarter) << "starboard";
@@ -17,7 +17,7 @@ TEST(Units, bearings_are_clockwise_from_astern) {
   EXPECT_NEAR(bearing_rad(3201) * 180.0 / std::numbers::pi, 0.05625, 1e-12);
 }
 
-TEST(Units, turns_take_the_short_way) {
+TEST(Units, TurnsTakeTheShortWay) {
   EXPECT_EQ(shortest_turn(6300, 100), 200);
   EXPECT_EQ(shortest_turn(100, 6300), -200);
   EXPECT_EQ(shortest_turn(0, 3200), 3200);
@@ -26,7 +26,7 @@ TEST(Units, turns_take_the_short_way) {
   EXPECT_EQ(wrapped(6400), 0);
 }
 
-TEST(Units, levels_and_gains) {
+TEST(Units, LevelsAndGains) {
   EXPECT_DOUBLE_EQ(gain_db(210), 80.0);
   EXPECT_DOUBLE_EQ(gain_db(84), 32.0);
   EXPECT_DOUBLE_EQ(level_db(255), 80.0);

@@ -27,7 +27,7 @@ Texts warnings(const Bench& bench) {
   return texts(bench.notices, Notice::Level::warning);
 }
 
-TEST(Notices, tell_of_the_states_from_power_to_a_scan) {
+TEST(Notices, TellOfTheStatesFromPowerToAScan) {
   Bench bench;
   EXPECT_EQ(states(bench), Texts{"without_parameters"});
   bench.run_until(5s);
@@ -39,7 +39,7 @@ TEST(Notices, tell_of_the_states_from_power_to_a_scan) {
   EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready", "scanning"}));
 }
 
-TEST(Notices, tell_of_a_reboot) {
+TEST(Notices, TellOfAReboot) {
   Bench bench;
   bench.make_ready(all_round());
   bench.notices.clear();
@@ -54,7 +54,7 @@ TEST(Notices, tell_of_a_reboot) {
   EXPECT_EQ(states(bench), (Texts{"booting", "centring", "without_parameters"}));
 }
 
-TEST(Notices, tell_of_power_that_fails) {
+TEST(Notices, TellOfPowerThatFails) {
   Bench bench;
   bench.make_ready(all_round());
   bench.notices.clear();
@@ -62,7 +62,7 @@ TEST(Notices, tell_of_power_that_fails) {
   EXPECT_EQ(states(bench), Texts{"booting"});
 }
 
-TEST(Notices, say_ready_when_nothing_has_been_asked_for_in_two_seconds) {
+TEST(Notices, SayReadyWhenNothingHasBeenAskedForInTwoSeconds) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(10);
@@ -78,7 +78,7 @@ TEST(Notices, say_ready_when_nothing_has_been_asked_for_in_two_seconds) {
   EXPECT_EQ(states(bench), (Texts{"without_parameters", "ready", "scanning", "ready"}));
 }
 
-TEST(Notices, say_nothing_of_a_client_that_lets_the_head_be_ready_between_two_lines) {
+TEST(Notices, SayNothingOfAClientThatLetsTheHeadBeReadyBetweenTwoLines) {
   DeviceConfig config;
   config.half_duplex = true;
   Bench bench(config);
@@ -93,7 +93,7 @@ TEST(Notices, say_nothing_of_a_client_that_lets_the_head_be_ready_between_two_li
   EXPECT_EQ(states(bench), Texts{"scanning"});
 }
 
-TEST(Notices, of_another_state_do_not_wait_for_two_seconds) {
+TEST(Notices, OfAnotherStateDoNotWaitForTwoSeconds) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(2);
@@ -104,7 +104,7 @@ TEST(Notices, of_another_state_do_not_wait_for_two_seconds) {
   EXPECT_EQ(states(bench).back(), "booting");
 }
 
-TEST(Warnings, of_a_gain_beyond_the_most_there_is_come_once) {
+TEST(Warnings, OfAGainBeyondTheMostThereIsComeOnce) {
   Bench bench;
   HeadCommand command = all_round();
   command.gain[0] = 210;
@@ -122,7 +122,7 @@ TEST(Warnings, of_a_gain_beyond_the_most_there_is_come_once) {
   EXPECT_EQ(warnings(bench).size(), 1U);
 }
 
-TEST(Warnings, of_equal_limits_come_once) {
+TEST(Warnings, OfEqualLimitsComeOnce) {
   Bench bench;
   bench.command(sector(1600, 1600));
   EXPECT_EQ(warnings(bench), Texts{"the client's sector has equal limits (1600): the head holds still there; "
@@ -132,7 +132,7 @@ TEST(Warnings, of_equal_limits_come_once) {
   EXPECT_EQ(warnings(bench).size(), 1U);
 }
 
-TEST(Warnings, of_equal_limits_are_not_for_a_host_that_means_them) {
+TEST(Warnings, OfEqualLimitsAreNotForAHostThatMeansThem) {
   for (const std::uint16_t control : {0x3305, 0x2315, 0x2307}) {  // stare, motor off, continuous
     Bench bench;
     HeadCommand command = sector(1600, 1600);
@@ -145,7 +145,7 @@ TEST(Warnings, of_equal_limits_are_not_for_a_host_that_means_them) {
   EXPECT_EQ(warnings(whole_turn), Texts{});
 }
 
-TEST(Warnings, of_sides_that_are_swapped_come_once) {
+TEST(Warnings, OfSidesThatAreSwappedComeOnce) {
   for (const bool inverted : {false, true}) {
     DeviceConfig config;
     config.mounted_inverted = inverted;
@@ -168,7 +168,7 @@ TEST(Warnings, of_sides_that_are_swapped_come_once) {
   }
 }
 
-TEST(Warnings, come_together_and_each_for_itself) {
+TEST(Warnings, ComeTogetherAndEachForItself) {
   Bench bench;
   HeadCommand command = sector(1600, 1600);
   command.control |= control_bits::invert;
@@ -177,7 +177,7 @@ TEST(Warnings, come_together_and_each_for_itself) {
   EXPECT_EQ(warnings(bench).size(), 3U);
 }
 
-TEST(Warnings, are_not_for_a_head_that_plays_back) {
+TEST(Warnings, AreNotForAHeadThatPlaysBack) {
   DeviceConfig config;
   config.plays_back = true;
   Bench bench(config);
@@ -188,7 +188,7 @@ TEST(Warnings, are_not_for_a_head_that_plays_back) {
   EXPECT_EQ(warnings(bench), Texts{}) << "it does not heed them";
 }
 
-TEST(NobodyThere, is_what_the_end_of_the_line_says) {
+TEST(NobodyThere, IsWhatTheEndOfTheLineSays) {
   Bench bench;
   bench.make_ready(all_round());
   EXPECT_FALSE(bench.last.nobody_there);
@@ -198,7 +198,7 @@ TEST(NobodyThere, is_what_the_end_of_the_line_says) {
   EXPECT_FALSE(bench.last.nobody_there);
 }
 
-TEST(Cancelled, names_the_job_that_nobody_wants_until_it_is_answered) {
+TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
   Bench bench;
   bench.make_ready(all_round());
   bench.renderer_answers = false;
@@ -218,7 +218,7 @@ TEST(Cancelled, names_the_job_that_nobody_wants_until_it_is_answered) {
   EXPECT_EQ(bench.device.counters().pings_failed, 0U);
 }
 
-TEST(Frames, are_for_everybody_on_the_line) {
+TEST(Frames, AreForEverybodyOnTheLine) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});
@@ -231,7 +231,7 @@ TEST(Frames, are_for_everybody_on_the_line) {
   }
 }
 
-TEST(Jobs, say_what_the_host_has_set) {
+TEST(Jobs, SayWhatTheHostHasSet) {
   Bench bench;
   HeadCommand command = sector(2400, 4000, 16);
   command.ad_low = 40;
@@ -261,7 +261,7 @@ PingJob job_of(const HeadCommand& command, const DeviceConfig& config = {}) {
   return bench.jobs.at(0);
 }
 
-TEST(Jobs, say_how_the_head_scans) {
+TEST(Jobs, SayHowTheHeadScans) {
   const PingJob round = job_of(all_round(0, false));
   EXPECT_EQ(setting(round, "scan"), "all_round");
   EXPECT_EQ(setting(round, "from"), "");
@@ -279,14 +279,14 @@ TEST(Jobs, say_how_the_head_scans) {
   EXPECT_EQ(setting(job_of(command), "scan"), "motor_off");
 }
 
-TEST(Jobs, say_where_the_head_scans_by_the_order_of_limits) {
+TEST(Jobs, SayWhereTheHeadScansByTheOrderOfLimits) {
   DeviceConfig config;
   EXPECT_EQ(setting(job_of(sector(4800, 1600), config), "from"), "90.00deg") << "through astern";
   config.limits_order = LimitsOrder::swapped;
   EXPECT_EQ(setting(job_of(sector(4800, 1600), config), "from"), "-90.00deg");
 }
 
-TEST(Jobs, say_what_is_unusual_about_a_ping) {
+TEST(Jobs, SayWhatIsUnusualAboutAPing) {
   HeadCommand command = all_round();
   EXPECT_EQ(setting(job_of(command), "transmit"), "");
   command.control = 0x2306 | control_bits::invert | control_bits::transmit_off;
@@ -296,7 +296,7 @@ TEST(Jobs, say_what_is_unusual_about_a_ping) {
   EXPECT_EQ(setting(job, "inverted"), "yes");
 }
 
-TEST(Jobs, have_the_time_since_power_came) {
+TEST(Jobs, HaveTheTimeSincePowerCame) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{61'891'786});  // sets the clock of alives, not the clock of jobs
@@ -311,7 +311,7 @@ std::optional<Counter> counter(const Device& device, std::string_view name) {
   return found == counts.end() ? std::nullopt : std::optional(*found);
 }
 
-TEST(Counts, are_those_of_the_head) {
+TEST(Counts, AreThoseOfTheHead) {
   Bench bench;
   bench.command(SendData{});  // before any parameters
   bench.make_ready(all_round());
@@ -333,7 +333,7 @@ TEST(Counts, are_those_of_the_head) {
   EXPECT_EQ(counter(bench.device, "boots").value().shown, Counter::Shown::at_end);
 }
 
-TEST(Counts, come_in_one_order_with_one_warning_for_each_that_warns) {
+TEST(Counts, ComeInOneOrderWithOneWarningForEachThatWarns) {
   Bench bench;
   const std::vector<Counter> before = bench.device.counts();
   bench.make_ready(all_round());
@@ -348,7 +348,7 @@ TEST(Counts, come_in_one_order_with_one_warning_for_each_that_warns) {
   }
 }
 
-TEST(Progress, grows_with_lines_and_with_pings_that_come_to_nothing) {
+TEST(Progress, GrowsWithLinesAndWithPingsThatComeToNothing) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});

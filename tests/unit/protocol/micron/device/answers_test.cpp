@@ -17,7 +17,7 @@ Frames answers(Bench& bench, const Bytes& command) {
   return frames;
 }
 
-TEST(Answers, version_and_fpga_data) {
+TEST(Answers, VersionAndFpgaData) {
   Bench bench;
   bench.run_until(5s);
   EXPECT_EQ(answers(bench, fixture("send_version")), Frames{fixture("version_data")});
@@ -25,7 +25,7 @@ TEST(Answers, version_and_fpga_data) {
   EXPECT_EQ(answers(bench, fixture("send_fpga_cal_data")), Frames{fixture("fpga_cal_data")});
 }
 
-TEST(Answers, user_blocks_are_followed_by_fpga_data_and_set_sent_config) {
+TEST(Answers, UserBlocksAreFollowedByFpgaDataAndSetSentConfig) {
   Bench bench;
   bench.run_until(5s);
   const Frames frames = answers(bench, fixture("send_bb_user"));
@@ -46,7 +46,7 @@ TEST(Answers, user_blocks_are_followed_by_fpga_data_and_set_sent_config) {
   EXPECT_EQ(bench.head_infos().back(), 0xCA) << "asked for, and still without parameters";
 }
 
-TEST(Answers, user_blocks_tell_half_duplex) {
+TEST(Answers, UserBlocksTellHalfDuplex) {
   DeviceConfig config;
   config.half_duplex = true;
   Bench bench(config);
@@ -56,7 +56,7 @@ TEST(Answers, user_blocks_tell_half_duplex) {
   EXPECT_EQ(frames.at(0).at(99), 1);
 }
 
-TEST(Answers, older_user_blocks_are_short_and_come_alone) {
+TEST(Answers, OlderUserBlocksAreShortAndComeAlone) {
   DeviceConfig config;
   config.half_duplex = true;
   config.user_blocks = UserBlocks::older;
@@ -69,7 +69,7 @@ TEST(Answers, older_user_blocks_are_short_and_come_alone) {
   EXPECT_EQ(frames[0][99], 1);
 }
 
-TEST(Answers, come_in_every_state_but_booting) {
+TEST(Answers, ComeInEveryStateButBooting) {
   Bench bench;
   bench.reboot_at(0);
   bench.run_for(600ms);
@@ -81,7 +81,7 @@ TEST(Answers, come_in_every_state_but_booting) {
   EXPECT_EQ(answers(bench, fixture("send_version")).size(), 1U) << "scanning";
 }
 
-TEST(Answers, parameters_are_answered_by_an_alive) {
+TEST(Answers, ParametersAreAnsweredByAnAlive) {
   Bench bench;
   bench.run_until(10s);
   for (const char* name :
@@ -92,7 +92,7 @@ TEST(Answers, parameters_are_answered_by_an_alive) {
   }
 }
 
-TEST(Answers, commands_without_answer_are_taken_in_silence) {
+TEST(Answers, CommandsWithoutAnswerAreTakenInSilence) {
   Bench bench;
   bench.run_until(10s);
   bench.command(all_round());
@@ -102,7 +102,7 @@ TEST(Answers, commands_without_answer_are_taken_in_silence) {
   EXPECT_EQ(bench.device.counters().commands, 5U);
 }
 
-TEST(Answers, unknown_types_are_ignored) {
+TEST(Answers, UnknownTypesAreIgnored) {
   Bench bench;
   bench.run_until(10s);
   for (const int type : {0, 13, 14, 15, 20, 21, 22, 26, 27, 40, 61, 64, 67, 70, 72, 99, 255}) {
@@ -116,7 +116,7 @@ TEST(Answers, unknown_types_are_ignored) {
   EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
 }
 
-TEST(Answers, only_the_own_node_and_broadcasts_are_heard) {
+TEST(Answers, OnlyTheOwnNodeAndBroadcastsAreHeard) {
   Bench bench;
   bench.run_until(10s);
   Bytes request = fixture("send_version");
@@ -129,7 +129,7 @@ TEST(Answers, only_the_own_node_and_broadcasts_are_heard) {
   EXPECT_EQ(answers(bench, request), Frames{fixture("version_data")});
 }
 
-TEST(Answers, node_can_be_set) {
+TEST(Answers, NodeCanBeSet) {
   DeviceConfig config;
   config.node = 20;
   Bench bench(config);
@@ -140,7 +140,7 @@ TEST(Answers, node_can_be_set) {
   EXPECT_EQ(frames, Frames{expected});
 }
 
-TEST(Answers, header_bytes_that_drivers_get_wrong_do_not_matter) {
+TEST(Answers, HeaderBytesThatDriversGetWrongDoNotMatter) {
   Bench bench;
   bench.run_until(10s);
   Bytes request = fixture("send_version");
@@ -151,7 +151,7 @@ TEST(Answers, header_bytes_that_drivers_get_wrong_do_not_matter) {
   EXPECT_EQ(answers(bench, request).size(), 1U);
 }
 
-TEST(Answers, header_bytes_are_what_the_strictest_driver_wants) {
+TEST(Answers, HeaderBytesAreWhatTheStrictestDriverWants) {
   Bench bench;
   bench.make_ready(all_round());
   bench.raw(fixture("send_version"));

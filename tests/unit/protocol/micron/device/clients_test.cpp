@@ -37,7 +37,7 @@ void ros_begin(Driver& driver, bool stale_alive, bool reconfigures) {
 
 // One start in a hundred takes an alive from before the reboot for an answer to it. Then its parameters are
 // lost, and it needs two alives of the centring head. It also needs two if no alive answers its parameters.
-TEST(Clients, ros_gets_two_alives_of_a_centring_head) {
+TEST(Clients, RosGetsTwoAlivesOfACentringHead) {
   for (const bool alive_after_head_command : {false, true}) {
     for (const bool stale_alive : {false, true}) {
       for (const bool reconfigures : {false, true}) {
@@ -50,7 +50,7 @@ TEST(Clients, ros_gets_two_alives_of_a_centring_head) {
   }
 }
 
-TEST_P(Clients, ros) {
+TEST_P(Clients, Ros) {
   {
     Driver driver(GetParam());
     ASSERT_NO_FATAL_FAILURE(ros_begin(driver, /*stale_alive=*/false, /*reconfigures=*/true));
@@ -95,7 +95,7 @@ void expect_echo(const Bytes& command, const Bytes& line) {
 }
 
 // 9.2, in the order of the ROCK component.
-TEST_P(Clients, rock) {
+TEST_P(Clients, Rock) {
   Driver driver(GetParam());
   const Bytes command = fixture("head_command_rock");
   driver.write(command);
@@ -117,7 +117,7 @@ TEST_P(Clients, rock) {
 }
 
 // 9.2, the calls of the ROCK library: reboot, version, duplex, then several configurations.
-TEST_P(Clients, rock_library) {
+TEST_P(Clients, RockLibrary) {
   Driver driver(GetParam());
   driver.write("reboot");
   driver.flush();
@@ -143,7 +143,7 @@ TEST_P(Clients, rock_library) {
 
 // 9.3. The start takes 4.4 s: 0.7 s to the first alive, and 1.7 s for the boot and an alive of the centring
 // head. Two alives later the head has its parameters.
-TEST_P(Clients, uxv) {
+TEST_P(Clients, Uxv) {
   Driver driver(GetParam());
   const TimePoint begin = driver.bench().now;
   ASSERT_TRUE(driver.await_alive(0, 0, 1500ms));
@@ -191,7 +191,7 @@ TEST_P(Clients, uxv) {
 }
 
 // 9.4: reboots, waits for a head that is centred and at rest, repeats requests, keeps requests ahead.
-TEST_P(Clients, cauv) {
+TEST_P(Clients, Cauv) {
   Driver driver(GetParam());
   driver.write("reboot");
   ASSERT_TRUE(driver.await_alive(0x0A, 0x04, 10s));
@@ -211,7 +211,7 @@ TEST_P(Clients, cauv) {
 
 // 9.4: the long form with a gain block, a wait of 5 s, another request after 1.5 s, gain changes while
 // scanning.
-TEST_P(Clients, provider_sonar) {
+TEST_P(Clients, ProviderSonar) {
   Driver driver(GetParam());
   driver.sleep(1s);
   driver.write("reboot");
@@ -242,7 +242,7 @@ TEST_P(Clients, provider_sonar) {
 }
 
 // 9.4: polls at its own pace and never repeats a request.
-TEST_P(Clients, project_rinzler) {
+TEST_P(Clients, ProjectRinzler) {
   Driver driver(GetParam());
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
   driver.write("send_version");
@@ -265,7 +265,7 @@ TEST_P(Clients, project_rinzler) {
 
 // 9.4, the C client of 2024: long pauses, no alives, short lines. It discards all bytes that arrive in a
 // pause.
-TEST_P(Clients, linux_c) {
+TEST_P(Clients, LinuxC) {
   Driver driver(GetParam());
   driver.sleep(5s);
   driver.write("stop_alives");
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(links, FullDuplexClients, ::testing::Values(clean, spli
                          link_name);
 
 // 9.4: reads exactly 264 bytes of user blocks, and sends parameters until byte 13 of an alive is 0.
-TEST_P(FullDuplexClients, miniking_library) {
+TEST_P(FullDuplexClients, MinikingLibrary) {
   Driver driver(GetParam());
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
   driver.write("send_version");
@@ -333,7 +333,7 @@ TEST_P(FullDuplexClients, miniking_library) {
 }
 
 // 9.4: stops the alives and continues without them.
-TEST_P(FullDuplexClients, uwe) {
+TEST_P(FullDuplexClients, Uwe) {
   Driver driver(GetParam());
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
   driver.write("stop_alives");
@@ -354,7 +354,7 @@ TEST_P(FullDuplexClients, uwe) {
 
 // 9.4: a reboot whose stated length is too long, a pause of one second, parameters and a request. The driver
 // never reads an alive, so no command from one second after the reboot may be lost.
-TEST_P(FullDuplexClients, acfr) {
+TEST_P(FullDuplexClients, Acfr) {
   Driver driver(GetParam());
   driver.sleep(1s);
   driver.write(Bytes{0x40, 0x30, 0x30, 0x30, 0x43, 0x0C, 0x00, 0xFF, 0x02, 0x07, 0x10, 0x80, 0x02, 0x0A});
@@ -374,7 +374,7 @@ TEST_P(FullDuplexClients, acfr) {
   }
 }
 
-TEST(Clients, whole_session_in_one_read) {
+TEST(Clients, WholeSessionInOneRead) {
   Bench bench;
   bench.run_until(10s);
   Bytes all;

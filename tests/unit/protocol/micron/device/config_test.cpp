@@ -21,7 +21,7 @@ std::string complaint(const std::function<void(DeviceConfig&)>& change) {
   return "";
 }
 
-TEST(DeviceConfig, names_the_field_that_is_out_of_range) {
+TEST(DeviceConfig, NamesTheFieldThatIsOutOfRange) {
   EXPECT_EQ(complaint([](DeviceConfig&) {}), "");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.node = 0; }), "micron device: node must be 1..254");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.node = 255; }), "micron device: node must be 1..254");

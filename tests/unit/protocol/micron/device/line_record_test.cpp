@@ -13,7 +13,7 @@ HeadData without_data(HeadData line) {
   return line;
 }
 
-TEST(LineRecord, is_the_line_that_was_sent) {
+TEST(LineRecord, IsTheLineThatWasSent) {
   DeviceConfig config;
   config.node = 7;
   Bench bench(config);
@@ -32,7 +32,7 @@ TEST(LineRecord, is_the_line_that_was_sent) {
   }
 }
 
-TEST(LineRecord, its_wire_is_a_whole_frame_of_the_head_without_data) {
+TEST(LineRecord, ItsWireIsAWholeFrameOfTheHeadWithoutData) {
   DeviceConfig config;
   config.node = 7;
   Bench bench(config);
@@ -47,7 +47,7 @@ TEST(LineRecord, its_wire_is_a_whole_frame_of_the_head_without_data) {
   EXPECT_EQ(wire.size(), sent.size() - 20) << "20 bins of 8 bits";
 }
 
-TEST(LineRecord, says_what_the_line_was_made_with) {
+TEST(LineRecord, SaysWhatTheLineWasMadeWith) {
   DeviceConfig config;
   config.water_sound_speed_mps = 1450.0;
   Bench bench(config);
@@ -68,7 +68,7 @@ TEST(LineRecord, says_what_the_line_was_made_with) {
   EXPECT_NEAR(bench.records.at(1).bearings_rad[0], 1.8 * degree, 1e-12) << "to starboard";
 }
 
-TEST(LineRecord, looks_where_the_beam_looked_and_says_what_the_head_said) {
+TEST(LineRecord, LooksWhereTheBeamLookedAndSaysWhatTheHeadSaid) {
   DeviceConfig config;
   config.mounted_inverted = true;  // the host ignores the mounting
   Bench bench(config);
@@ -79,7 +79,7 @@ TEST(LineRecord, looks_where_the_beam_looked_and_says_what_the_head_said) {
   EXPECT_EQ(recorded_line(bench.records.at(0).wire)->bearing, 3520);
 }
 
-TEST(LineRecord, of_4_bits_has_values_up_to_15) {
+TEST(LineRecord, Of4BitsHasValuesUpTo15) {
   Bench bench;
   HeadCommand command = all_round();
   command.control = 0x2306;
@@ -92,7 +92,7 @@ TEST(LineRecord, of_4_bits_has_values_up_to_15) {
   EXPECT_EQ(bench.records.at(0).settings.bins, 5);
 }
 
-TEST(LineRecord, has_the_status_that_the_line_had) {
+TEST(LineRecord, HasTheStatusThatTheLineHad) {
   Bench bench;
   bench.make_ready(all_round());
   bench.device.lose_step();
@@ -100,7 +100,7 @@ TEST(LineRecord, has_the_status_that_the_line_had) {
   EXPECT_EQ(recorded_line(bench.records.at(0).wire)->status, 0x12);
 }
 
-TEST(LineRecord, has_the_settings_that_the_ping_was_made_with) {
+TEST(LineRecord, HasTheSettingsThatThePingWasMadeWith) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});
@@ -113,7 +113,7 @@ TEST(LineRecord, has_the_settings_that_the_ping_was_made_with) {
   EXPECT_EQ(recorded_line(bench.records[1].wire)->gain, 84);
 }
 
-TEST(LineRecord, comes_with_the_line) {
+TEST(LineRecord, ComesWithTheLine) {
   Bench bench;
   bench.make_ready(all_round());
   bench.command(SendData{});
@@ -129,7 +129,7 @@ TEST(LineRecord, comes_with_the_line) {
   }
 }
 
-TEST(LineRecord, there_is_none_of_a_ping_that_fails_or_is_cancelled) {
+TEST(LineRecord, ThereIsNoneOfAPingThatFailsOrIsCancelled) {
   Bench bench;
   bench.make_ready(all_round());
   bench.renderer_fails = true;

@@ -8,7 +8,7 @@
 namespace sonard::micron {
 namespace {
 
-TEST(Line, is_the_published_frame) {
+TEST(Line, IsThePublishedFrame) {
   // Section 10: 8 bins, bearing 3232, the second line of a scan to the right.
   Bench bench;
   HeadCommand command;
@@ -28,7 +28,7 @@ TEST(Line, is_the_published_frame) {
   EXPECT_EQ(bench.records[1].samples, (Bytes{176, 64, 10, 18, 20, 230, 64, 10}));
 }
 
-TEST(Line, of_4_bits_is_the_published_frame) {
+TEST(Line, Of4BitsIsThePublishedFrame) {
   // The right limit of a sector; amplitudes that AD low 40 and AD span 77 map to 15 8 1 0 0 10 4 0.
   Bench bench;
   HeadCommand command = sector(2400, 4000, 16);
@@ -47,7 +47,7 @@ TEST(Line, of_4_bits_is_the_published_frame) {
   EXPECT_EQ(bench.records.back().samples, (Bytes{15, 8, 1, 0, 0, 10, 4, 0}));
 }
 
-TEST(Line, of_the_rock_driver_begins_as_recorded) {
+TEST(Line, OfTheRockDriverBeginsAsRecorded) {
   Bench bench;
   bench.run_until(10s);
   bench.raw(fixture("head_command_rock"));
@@ -64,7 +64,7 @@ TEST(Line, of_the_rock_driver_begins_as_recorded) {
   EXPECT_EQ(bytes[42], 0xC8);
 }
 
-TEST(Line, echoes_whatever_the_host_said) {
+TEST(Line, EchoesWhateverTheHostSaid) {
   HeadCommand command = sector(2500, 3900);
   command.control = 0x2381;
   command.head_type = 2;
@@ -96,7 +96,7 @@ TEST(Line, echoes_whatever_the_host_said) {
   EXPECT_EQ(line.step, 88);
 }
 
-TEST(Line, holds_the_samples_as_rendered_even_where_the_host_sent_a_long_lockout) {
+TEST(Line, HoldsTheSamplesAsRenderedEvenWhereTheHostSentALongLockout) {
   Bench bench;
   bench.run_until(10s);
   bench.raw(fixture("head_command_rock"));  // lockout 13333 us, which would blank 10 m
@@ -109,7 +109,7 @@ TEST(Line, holds_the_samples_as_rendered_even_where_the_host_sent_a_long_lockout
   }
 }
 
-TEST(Line, of_4_bits_with_an_odd_number_of_bins_in_either_order) {
+TEST(Line, Of4BitsWithAnOddNumberOfBinsInEitherOrder) {
   for (const NibbleOrder order : {NibbleOrder::high_first, NibbleOrder::low_first}) {
     DeviceConfig config;
     config.nibble_order = order;
@@ -128,7 +128,7 @@ TEST(Line, of_4_bits_with_an_odd_number_of_bins_in_either_order) {
   }
 }
 
-TEST(Line, gain_command_shows_in_the_next_one_and_stops_nothing) {
+TEST(Line, GainCommandShowsInTheNextOneAndStopsNothing) {
   Bench bench;
   bench.make_ready(all_round());
   const int before = bench.scan(2).back().bearing;
@@ -147,7 +147,7 @@ TEST(Line, gain_command_shows_in_the_next_one_and_stops_nothing) {
   EXPECT_DOUBLE_EQ(bench.jobs.back().gain_db, 32.0);
 }
 
-TEST(Line, tells_a_lost_step_until_new_parameters_come) {
+TEST(Line, TellsALostStepUntilNewParametersCome) {
   Bench bench;
   bench.make_ready(all_round());
   bench.device.lose_step();
@@ -158,7 +158,7 @@ TEST(Line, tells_a_lost_step_until_new_parameters_come) {
   EXPECT_EQ(bench.scan(1)[0].status, 0x10);
 }
 
-TEST(Job, is_the_parameters_in_si_units) {
+TEST(Job, IsTheParametersInSiUnits) {
   Bench bench;
   bench.run_until(10s);
   bench.raw(fixture("head_command_rock"));
@@ -187,7 +187,7 @@ TEST(Job, is_the_parameters_in_si_units) {
   EXPECT_NEAR(bench.jobs.at(1).bearing_rad * 180 / std::numbers::pi, -4.95, 1e-9);
 }
 
-TEST(Job, uses_the_true_speed_of_sound) {
+TEST(Job, UsesTheTrueSpeedOfSound) {
   DeviceConfig config;
   config.water_sound_speed_mps = 1450.0;
   Bench bench(config);
@@ -196,7 +196,7 @@ TEST(Job, uses_the_true_speed_of_sound) {
   EXPECT_DOUBLE_EQ(bench.jobs.at(0).bin_m(), 53 * 640e-9 * 1450.0 / 2);
 }
 
-TEST(Job, asks_for_noise_only_with_the_transmitter_off) {
+TEST(Job, AsksForNoiseOnlyWithTheTransmitterOff) {
   Bench bench;
   HeadCommand command = all_round();
   command.control |= control_bits::transmit_off;
@@ -205,7 +205,7 @@ TEST(Job, asks_for_noise_only_with_the_transmitter_off) {
   EXPECT_FALSE(bench.jobs.at(0).transmit);
 }
 
-TEST(Job, keeps_to_what_a_head_can_do) {
+TEST(Job, KeepsToWhatAHeadCanDo) {
   for (const auto& [bins, interval, jobs_bins] : {std::tuple{0, 0, 1}, std::tuple{60'000, 1, 1500}}) {
     Bench bench;
     HeadCommand command = all_round();

@@ -45,7 +45,7 @@ struct MicronPlayback : ::testing::Test {
   MicronPlayback() { bench.make_ready(all_round()); }
 };
 
-TEST_F(MicronPlayback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
+TEST_F(MicronPlayback, NothingIsSentThatIsNotFedOrNotAskedFor) {
   bench.command(SendData{});
   bench.run_for(3s);
   EXPECT_TRUE(bench.all<HeadData>().empty());
@@ -58,7 +58,7 @@ TEST_F(MicronPlayback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
   EXPECT_TRUE(unasked.all<HeadData>().empty());
 }
 
-TEST_F(MicronPlayback, the_line_is_the_recorded_one_whatever_is_asked_for) {
+TEST_F(MicronPlayback, TheLineIsTheRecordedOneWhateverIsAskedFor) {
   bench.step(PingFed{recorded(5)});
   bench.command(SendData{});
   bench.run_for(100ms);
@@ -78,7 +78,7 @@ TEST_F(MicronPlayback, the_line_is_the_recorded_one_whatever_is_asked_for) {
   EXPECT_EQ(bench.records[0].bearings_rad, std::vector<double>{2.16});
 }
 
-TEST_F(MicronPlayback, the_job_is_what_the_line_was_made_with) {
+TEST_F(MicronPlayback, TheJobIsWhatTheLineWasMadeWith) {
   bench.step(PingFed{recorded(5)});
   bench.command(SendData{});
   ASSERT_EQ(bench.jobs.size(), 1U);
@@ -94,7 +94,7 @@ TEST_F(MicronPlayback, the_job_is_what_the_line_was_made_with) {
   EXPECT_EQ(setting(job, "scan"), "") << "what the host asks for is not what is sent";
 }
 
-TEST_F(MicronPlayback, the_job_says_how_it_differs_from_what_is_asked_for) {
+TEST_F(MicronPlayback, TheJobSaysHowItDiffersFromWhatIsAskedFor) {
   bench.step(PingFed{recorded(5)});
   bench.command(SendData{});
   ASSERT_EQ(bench.jobs.size(), 1U);
@@ -106,7 +106,7 @@ TEST_F(MicronPlayback, the_job_says_how_it_differs_from_what_is_asked_for) {
   EXPECT_EQ(bench.jobs[0].differences.at(1).text, "20 bins requested, 30 sent");
 }
 
-TEST_F(MicronPlayback, a_ping_that_does_not_say_how_it_travelled_is_none) {
+TEST_F(MicronPlayback, APingThatDoesNotSayHowItTravelledIsNone) {
   RecordedPing ping = recorded(5);
   ping.wire.clear();
   bench.step(PingFed{ping});
@@ -116,7 +116,7 @@ TEST_F(MicronPlayback, a_ping_that_does_not_say_how_it_travelled_is_none) {
   EXPECT_TRUE(bench.all<HeadData>().empty());
 }
 
-TEST_F(MicronPlayback, a_ping_is_fed_in_place_of_the_one_before) {
+TEST_F(MicronPlayback, APingIsFedInPlaceOfTheOneBefore) {
   bench.step(PingFed{recorded(5)});
   bench.step(PingFed{recorded(6)});
   bench.step(PingFed{std::nullopt});
@@ -127,7 +127,7 @@ TEST_F(MicronPlayback, a_ping_is_fed_in_place_of_the_one_before) {
   EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
-TEST_F(MicronPlayback, bins_of_4_bits_travel_as_they_did) {
+TEST_F(MicronPlayback, BinsOf4BitsTravelAsTheyDid) {
   HeadData line = recorded_head_data();
   line.control = 0x2300;
   line.status = 0;
@@ -146,7 +146,7 @@ TEST_F(MicronPlayback, bins_of_4_bits_travel_as_they_did) {
   EXPECT_EQ(bench.records[0].bits_per_bin, 4);
 }
 
-TEST_F(MicronPlayback, a_line_is_made_when_it_is_due_and_leaves_when_its_echoes_are_in) {
+TEST_F(MicronPlayback, ALineIsMadeWhenItIsDueAndLeavesWhenItsEchoesAreIn) {
   const TimePoint due = bench.now + 700ms;
   bench.step(PingFed{recorded(0, due)});
   bench.command(SendData{});
@@ -157,7 +157,7 @@ TEST_F(MicronPlayback, a_line_is_made_when_it_is_due_and_leaves_when_its_echoes_
   EXPECT_EQ(lines[0].first, due + 1920us);
 }
 
-TEST_F(MicronPlayback, lines_come_as_close_as_the_host_asks_for_them) {
+TEST_F(MicronPlayback, LinesComeAsCloseAsTheHostAsksForThem) {
   std::uint64_t record = 0;
   bench.step(PingFed{recorded(record)});
   bench.command(SendData{});
@@ -174,7 +174,7 @@ TEST_F(MicronPlayback, lines_come_as_close_as_the_host_asks_for_them) {
   EXPECT_EQ(bench.now - begin, 10 * 1920us) << "neither turning nor a line of 115200 baud takes time";
 }
 
-TEST_F(MicronPlayback, new_parameters_do_not_cost_a_line_that_has_begun) {
+TEST_F(MicronPlayback, NewParametersDoNotCostALineThatHasBegun) {
   bench.renderer_answers = false;
   bench.step(PingFed{recorded(3)});
   bench.command(SendData{});

@@ -7,7 +7,7 @@ namespace {
 
 using Infos = std::vector<int>;
 
-TEST(PowerUp, head_is_there_when_the_daemon_is) {
+TEST(PowerUp, HeadIsThereWhenTheDaemonIs) {
   Bench bench;
   EXPECT_EQ(bench.head_infos(), Infos{0x4A}) << "at once";
   EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
@@ -22,7 +22,7 @@ TEST(PowerUp, head_is_there_when_the_daemon_is) {
   }
 }
 
-TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
+TEST(PowerUp, AlivesTellBootCentringParametersAndScan) {
   DeviceConfig config;
   config.alive_after_head_command = false;
   Bench bench(config);
@@ -53,7 +53,7 @@ TEST(PowerUp, alives_tell_boot_centring_parameters_and_scan) {
   EXPECT_EQ(bench.head_infos(), (Infos{0xAA, 0xAA}));
 }
 
-TEST(PowerUp, alives_are_the_published_frames) {
+TEST(PowerUp, AlivesAreThePublishedFrames) {
   // 4A at 6266 ms with position 3200, CA after a request for user blocks, then 8A (section 10).
   DeviceConfig config;
   config.boot_time = 266ms;
@@ -70,7 +70,7 @@ TEST(PowerUp, alives_are_the_published_frames) {
   EXPECT_EQ(bench.sent.back().bytes, fixture("alive_8a"));
 }
 
-TEST(Reboot, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
+TEST(Reboot, MotorSeeksTheCentreTheShortWayAt90DegreesASecond) {
   DeviceConfig config;
   config.alive_period = 500ms;
   Bench bench(config);
@@ -83,7 +83,7 @@ TEST(Reboot, motor_seeks_the_centre_the_short_way_at_90_degrees_a_second) {
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x4A, 0x4A, 0x4A}));
 }
 
-TEST(Reboot, slow_motor_centres_for_longer) {
+TEST(Reboot, SlowMotorCentresForLonger) {
   DeviceConfig config;
   config.seek_speed_rad_s = std::numbers::pi / 5;
   Bench bench(config);
@@ -91,7 +91,7 @@ TEST(Reboot, slow_motor_centres_for_longer) {
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x5D, 0x5D, 0x5D, 0x5D, 0x4A, 0x4A}));
 }
 
-TEST(Reboot, at_the_centre_it_centres_for_the_least_time) {
+TEST(Reboot, AtTheCentreItCentresForTheLeastTime) {
   for (const auto& [least, infos] :
        {std::pair<std::chrono::nanoseconds, Infos>{0ms, {0x4A, 0x4A, 0x4A, 0x4A}},
         {500ms, {0x4D, 0x4A, 0x4A, 0x4A}},
@@ -106,7 +106,7 @@ TEST(Reboot, at_the_centre_it_centres_for_the_least_time) {
 
 // ROS needs two alives of a centring head. The second is due one period after the boot; a busy machine sends
 // it later.
-TEST(Reboot, two_alives_tell_of_centring_even_if_the_machine_is_late) {
+TEST(Reboot, TwoAlivesTellOfCentringEvenIfTheMachineIsLate) {
   for (const auto late : {0ms, 50ms, 150ms}) {
     Device head(DeviceConfig{}, 0ns);
     head.step(0ns, BytesReceived{{}, SharedBytes(fixture("reboot"))});
@@ -118,7 +118,7 @@ TEST(Reboot, two_alives_tell_of_centring_even_if_the_machine_is_late) {
   }
 }
 
-TEST(Alives, direction_bit_may_stay_after_centring) {
+TEST(Alives, DirectionBitMayStayAfterCentring) {
   DeviceConfig config;
   config.direction_bit_kept = true;
   Bench bench(config);
@@ -131,7 +131,7 @@ TEST(Alives, direction_bit_may_stay_after_centring) {
   EXPECT_EQ(bench.head_infos().back(), 0xBA);
 }
 
-TEST(Reboot, forgets_all_and_centres_again) {
+TEST(Reboot, ForgetsAllAndCentresAgain) {
   Bench bench;
   bench.make_ready(sector(1600, 1600 + 320));
   bench.scan(5);
@@ -155,7 +155,7 @@ TEST(Reboot, forgets_all_and_centres_again) {
   EXPECT_EQ(bench.device.counters().boots, 1U);
 }
 
-TEST(Reboot, in_the_middle_of_a_ping_leaves_its_job_to_be_answered) {
+TEST(Reboot, InTheMiddleOfAPingLeavesItsJobToBeAnswered) {
   Bench bench;
   bench.make_ready(all_round());
   bench.renderer_answers = false;
@@ -170,7 +170,7 @@ TEST(Reboot, in_the_middle_of_a_ping_leaves_its_job_to_be_answered) {
   EXPECT_TRUE(bench.all<HeadData>().empty());
 }
 
-TEST(Reboot, bytes_that_come_while_it_boots_are_lost) {
+TEST(Reboot, BytesThatComeWhileItBootsAreLost) {
   Bench bench;
   bench.run_until(10s);
   bench.command(Reboot{});
@@ -183,7 +183,7 @@ TEST(Reboot, bytes_that_come_while_it_boots_are_lost) {
   EXPECT_EQ(bench.device.counters().unheard_bytes, 80U);
 }
 
-TEST(Reboot, spontaneous_one_shows_as_a_head_without_parameters) {
+TEST(Reboot, SpontaneousOneShowsAsAHeadWithoutParameters) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(3);
@@ -194,7 +194,7 @@ TEST(Reboot, spontaneous_one_shows_as_a_head_without_parameters) {
   EXPECT_EQ(bench.head_infos()[0] & head_info_bits::no_parameters, head_info_bits::no_parameters);
 }
 
-TEST(Alives, stop_until_the_next_reboot) {
+TEST(Alives, StopUntilTheNextReboot) {
   Bench bench;
   bench.run_until(3s);
   const std::size_t before = bench.sent.size();
@@ -208,7 +208,7 @@ TEST(Alives, stop_until_the_next_reboot) {
   EXPECT_FALSE(bench.head_infos(before).empty());
 }
 
-TEST(Alives, go_on_between_lines_of_a_scan_or_not) {
+TEST(Alives, GoOnBetweenLinesOfAScanOrNot) {
   for (const bool on : {true, false}) {
     DeviceConfig config;
     config.alive_while_scanning = on;
@@ -228,7 +228,7 @@ TEST(Alives, go_on_between_lines_of_a_scan_or_not) {
   }
 }
 
-TEST(Alives, one_answers_parameters_at_once_unless_told_not_to) {
+TEST(Alives, OneAnswersParametersAtOnceUnlessToldNotTo) {
   for (const bool answers : {true, false}) {
     DeviceConfig config;
     config.alive_after_head_command = answers;
@@ -244,7 +244,7 @@ TEST(Alives, one_answers_parameters_at_once_unless_told_not_to) {
   }
 }
 
-TEST(Alives, parameters_while_it_centres_show_at_once) {
+TEST(Alives, ParametersWhileItCentresShowAtOnce) {
   Bench bench;
   const TimePoint reboot = bench.reboot_at(0);
   bench.run_until(reboot + 1s);
@@ -253,7 +253,7 @@ TEST(Alives, parameters_while_it_centres_show_at_once) {
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x9D, 0x9D, 0x8A}));
 }
 
-TEST(Clock, follows_the_host_unless_told_not_to) {
+TEST(Clock, FollowsTheHostUnlessToldNotTo) {
   for (const bool follows : {true, false}) {
     DeviceConfig config;
     config.clock_follows_host = follows;
@@ -266,7 +266,7 @@ TEST(Clock, follows_the_host_unless_told_not_to) {
   }
 }
 
-TEST(Clock, wraps) {
+TEST(Clock, Wraps) {
   Bench bench;
   bench.run_until(1500ms);
   bench.command(SendData{0xFFFFFFFF});

@@ -31,7 +31,7 @@ HeadCommand with_limits(std::uint16_t left, std::uint16_t right) {
 // type ends it. It sends its parameters at least once, until byte 13 of the next alive is 0. The node later
 // changes them in this way too. From then on it sends one request for two lines and waits for both, again and
 // again.
-TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
+TEST(PublicDrivers, S1ParametersRepeatedUntilAnAliveIsContent) {
   DeviceConfig config;
   config.user_blocks = UserBlocks::dst_alone;
   Driver driver(steady, config);
@@ -65,7 +65,7 @@ TEST(PublicDrivers, S1_parameters_repeated_until_an_alive_is_content) {
 // iSonar of moos-ivp-enstabretagne. 0.1 s after each message it sends one command: the request for the
 // version or for the user blocks, or its parameters, if it still lacks them. It sends parameters until an
 // alive has bit 7 set and bit 6 clear.
-TEST(PublicDrivers, S1_parameters_sent_after_every_alive_until_one_is_content) {
+TEST(PublicDrivers, S1ParametersSentAfterEveryAliveUntilOneIsContent) {
   Driver driver(steady);
   bool has_version = false, has_blocks = false;
   int commands = 0;
@@ -93,7 +93,7 @@ TEST(PublicDrivers, S1_parameters_sent_after_every_alive_until_one_is_content) {
   }
 }
 
-TEST(PublicDrivers, S1_a_repeated_head_command_changes_nothing_in_what_alives_say) {
+TEST(PublicDrivers, S1ARepeatedHeadCommandChangesNothingInWhatAlivesSay) {
   Driver driver(steady);
   driver.write("head_command_ros");
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
@@ -114,7 +114,7 @@ TEST(PublicDrivers, S1_a_repeated_head_command_changes_nothing_in_what_alives_sa
 
 // A Python script that sends no time. Two forms: as recorded, with one digit too many in the length, and
 // corrected.
-TEST(PublicDrivers, S2_send_data_without_its_time) {
+TEST(PublicDrivers, S2SendDataWithoutItsTime) {
   const Bytes recorded{0x40, 0x30, 0x30, 0x30, 0x38, 0x38, 0x08, 0x00,
                        0xFF, 0x02, 0x03, 0x19, 0x80, 0x02, 0x0A};
   Bytes meant = recorded;
@@ -179,7 +179,7 @@ Bytes longest_lines() {
 }
 
 // With and without an immediate answer of the head, with short and long lines, and with a slow renderer.
-TEST(PublicDrivers, S3_a_watchdog_of_two_seconds_sees_lines_before_it_fires) {
+TEST(PublicDrivers, S3AWatchdogOfTwoSecondsSeesLinesBeforeItFires) {
   for (const bool alive_after_head_command : {false, true}) {
     for (const Bytes& command : {fixture("head_command_ros"), longest_lines()}) {
       for (const auto render_time : {5ms, 500ms}) {
@@ -197,7 +197,7 @@ TEST(PublicDrivers, S3_a_watchdog_of_two_seconds_sees_lines_before_it_fires) {
 }
 
 // A watchdog with a timer, and lines as drivers usually request them.
-TEST(PublicDrivers, S3_a_line_comes_within_two_seconds_of_a_reboot) {
+TEST(PublicDrivers, S3ALineComesWithinTwoSecondsOfAReboot) {
   Driver driver(steady);
   const TimePoint reboot = driver.bench().now;
   Watchdog{driver}.program();
@@ -214,7 +214,7 @@ void leave_at(Driver& driver, int bearing) {
 
 // Both conditions hold: the watchdog does not fire, and two alives show centring. Up to 150 degrees from the
 // centre the motor needs no more than 1.67 s.
-TEST(PublicDrivers, S3_two_alives_of_centring_and_lines_before_a_watchdog_fires) {
+TEST(PublicDrivers, S3TwoAlivesOfCentringAndLinesBeforeAWatchdogFires) {
   for (int bearing = 550; bearing <= 5850; bearing += 530) {
     Driver driver(steady);
     leave_at(driver, bearing);
@@ -234,7 +234,7 @@ TEST(PublicDrivers, S3_two_alives_of_centring_and_lines_before_a_watchdog_fires)
 }
 
 // A motor that seeks twice as fast, from all bearings.
-TEST(PublicDrivers, S3_a_fast_motor_has_lines_before_a_watchdog_fires_from_everywhere) {
+TEST(PublicDrivers, S3AFastMotorHasLinesBeforeAWatchdogFiresFromEverywhere) {
   for (int bearing = 0; bearing < 6400; bearing += 800) {
     DeviceConfig config;
     config.seek_speed_rad_s = std::numbers::pi;
@@ -248,7 +248,7 @@ TEST(PublicDrivers, S3_a_fast_motor_has_lines_before_a_watchdog_fires_from_every
 }
 
 // From all bearings. Half a turn takes two seconds, so the driver may have to begin twice, but no more often.
-TEST(PublicDrivers, S3_the_way_to_the_centre_takes_as_long_as_it_is) {
+TEST(PublicDrivers, S3TheWayToTheCentreTakesAsLongAsItIs) {
   for (int bearing = 0; bearing < 6400; bearing += 400) {
     Driver driver(steady);
     leave_at(driver, bearing);
@@ -282,7 +282,7 @@ Bytes rock_command(int left, int right, double step_deg, bool continuous) {
 
 // A program on the same library (drivers-sonar_tritech) that reboots the head and requests lines at once.
 // Real heads keep it waiting too.
-TEST(PublicDrivers, S4_a_reboot_and_a_line_within_its_second_need_a_short_time_of_centring) {
+TEST(PublicDrivers, S4ARebootAndALineWithinItsSecondNeedAShortTimeOfCentring) {
   for (const auto centring : {500ms, 900ms}) {
     DeviceConfig config;
     config.least_centring_time = centring;
@@ -306,7 +306,7 @@ void rock_ten_beams(Driver& driver) {
 // test/test_micron.cpp of drivers-sonar_tritech: three full scans, then three sectors. Before each sector it
 // waits for a line that it has not requested. Some versions of the driver swap the limits, so the test runs
 // both ways.
-TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
+TEST(PublicDrivers, S4HardwareTestThatTakesAnAliveForTheAnswer) {
   for (const bool swapped : {true, false}) {
     for (const int phase_ms : {0, 150, 300, 450, 600, 750, 900}) {
       Driver driver(steady);
@@ -335,7 +335,7 @@ TEST(PublicDrivers, S4_hardware_test_that_takes_an_alive_for_the_answer) {
 // DelphinROSv3: sends parameters, waits 0.1 s and reads once. It repeats this until it reads an alive,
 // whatever the alive holds. It then discards all bytes received so far. Its commands have 0xFF as the second
 // node number.
-TEST(PublicDrivers, S4_an_alive_is_there_a_tenth_of_a_second_after_parameters) {
+TEST(PublicDrivers, S4AnAliveIsThereATenthOfASecondAfterParameters) {
   Driver driver(steady);
   Bytes command = fixture("head_command_ros");
   command[12] = 0xFF;
@@ -367,7 +367,7 @@ std::vector<int> bearings_asked_for(Driver& driver, std::size_t count) {
 }
 
 // The defaults of one driver: a sector from 0 to 6400.
-TEST(PublicDrivers, S5_a_sector_of_6400_is_a_whole_turn) {
+TEST(PublicDrivers, S5ASectorOf6400IsAWholeTurn) {
   Driver driver(steady);
   driver.write(encode(with_limits(0, 6400)));
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
@@ -387,7 +387,7 @@ TEST(PublicDrivers, S5_a_sector_of_6400_is_a_whole_turn) {
 
 // The defaults of early versions of drivers-sonar_tritech: 6399 twice. By the protocol the head then holds
 // still.
-TEST(PublicDrivers, S5_equal_limits_stare) {
+TEST(PublicDrivers, S5EqualLimitsStare) {
   Driver driver(steady);
   driver.write(encode(with_limits(6399, 6399)));
   ASSERT_TRUE(driver.await_alive(0, 0, 2s));
@@ -401,7 +401,7 @@ TEST(PublicDrivers, S5_equal_limits_stare) {
 // ProjectRinzler, whose reads have a timeout of one second. It waits for an alive, requests the version,
 // reads one message that must be an alive, and sends its parameters. An alive that arrives just at the
 // timeout hangs it, so the period is shorter here.
-TEST(PublicDrivers, S6_a_client_of_one_second_at_the_start_of_the_daemon) {
+TEST(PublicDrivers, S6AClientOfOneSecondAtTheStartOfTheDaemon) {
   DeviceConfig config;
   config.alive_period = 900ms;
   for (const int phase_ms : {0, 1, 400, 890}) {
@@ -419,7 +419,7 @@ TEST(PublicDrivers, S6_a_client_of_one_second_at_the_start_of_the_daemon) {
   }
 }
 
-TEST(PublicDrivers, S6_a_head_that_nobody_rebooted_is_centred_from_the_start) {
+TEST(PublicDrivers, S6AHeadThatNobodyRebootedIsCentredFromTheStart) {
   Bench bench;
   EXPECT_EQ(bench.device.state(bench.now), HeadState::without_parameters);
   ASSERT_EQ(bench.all<Alive>().size(), 1U);
@@ -431,7 +431,7 @@ TEST(PublicDrivers, S6_a_head_that_nobody_rebooted_is_centred_from_the_start) {
 }
 
 // ProjectRinzler multiplies 210 by a factor above 1 and keeps the low byte.
-TEST(PublicDrivers, S8_a_gain_byte_above_210_is_80_dB) {
+TEST(PublicDrivers, S8AGainByteAbove210Is80DB) {
   for (const int gain : {210, 211, 232, 255}) {
     Bench bench;
     HeadCommand command = all_round();
@@ -445,7 +445,7 @@ TEST(PublicDrivers, S8_a_gain_byte_above_210_is_80_dB) {
 
 // libminiking reads 264 bytes of user blocks, and the next message must be an alive. If a head sends FPGA
 // data after the blocks, libminiking ends. If a head sends 175 bytes, the alives that fill the rest are lost.
-TEST(PublicDrivers, user_blocks_of_264_bytes_come_alone_if_so_set) {
+TEST(PublicDrivers, UserBlocksOf264BytesComeAloneIfSoSet) {
   for (const bool half_duplex : {false, true}) {
     DeviceConfig config;
     config.half_duplex = half_duplex;
@@ -463,7 +463,7 @@ TEST(PublicDrivers, user_blocks_of_264_bytes_come_alone_if_so_set) {
 
 // MicronCore of ENSTA: its head command has 82 bytes, states 66 and ends with the line feed of the longer
 // form. It takes the two messages after a request for lines, without checking their type.
-TEST(PublicDrivers, a_head_command_longer_than_it_says_is_taken) {
+TEST(PublicDrivers, AHeadCommandLongerThanItSaysIsTaken) {
   Bytes command = fixture("head_command_uxv");
   command.back() = 0x50;
   command.insert(command.end(), 15, 0x00);

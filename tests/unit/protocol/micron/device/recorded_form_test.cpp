@@ -17,7 +17,7 @@ std::vector<std::string> texts(const std::vector<Difference>& found) {
   return texts;
 }
 
-TEST(RecordedLine, is_read_as_it_was_written) {
+TEST(RecordedLine, IsReadAsItWasWritten) {
   const Bytes bins{1, 2, 3};
   HeadData line;
   line.status = head_status_bits::eight_bit;
@@ -42,7 +42,7 @@ TEST(RecordedLine, is_read_as_it_was_written) {
   EXPECT_EQ(recorded_line(wire), line) << "without its data";
 }
 
-TEST(RecordedLine, is_no_other_message_and_no_piece_of_one) {
+TEST(RecordedLine, IsNoOtherMessageAndNoPieceOfOne) {
   EXPECT_FALSE(recorded_line({}));
   EXPECT_FALSE(recorded_line(fixture("version_data")));
   EXPECT_FALSE(recorded_line(fixture("alive_8a")));
@@ -52,7 +52,7 @@ TEST(RecordedLine, is_no_other_message_and_no_piece_of_one) {
   EXPECT_FALSE(recorded_line(piece));
 }
 
-TEST(RecordedLine, of_a_whole_line_leaves_its_data_out) {
+TEST(RecordedLine, OfAWholeLineLeavesItsDataOut) {
   const Bytes frame = fixture("head_data");
   const auto line = recorded_line(frame);
   ASSERT_TRUE(line);
@@ -60,7 +60,7 @@ TEST(RecordedLine, of_a_whole_line_leaves_its_data_out) {
   EXPECT_EQ(line->bearing, 3232);
 }
 
-TEST(LineDifferences, the_same_is_no_difference_and_each_kind_is_told) {
+TEST(LineDifferences, TheSameIsNoDifferenceAndEachKindIsTold) {
   RecordedPing recorded;
   recorded.settings.bins = 400;
   recorded.settings.sound_speed_mps = 1500.0;

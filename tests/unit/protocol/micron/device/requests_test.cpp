@@ -18,19 +18,19 @@ std::size_t lines_for(bool half_duplex, int requests, int cap = 2) {
   return bench.all<HeadData>().size();
 }
 
-TEST(Requests, bring_two_lines_in_full_duplex_and_one_in_half) {
+TEST(Requests, BringTwoLinesInFullDuplexAndOneInHalf) {
   EXPECT_EQ(lines_for(false, 1), 2U);
   EXPECT_EQ(lines_for(true, 1), 1U);
 }
 
-TEST(Requests, pile_up_to_two) {
+TEST(Requests, PileUpToTwo) {
   EXPECT_EQ(lines_for(false, 2), 4U);
   EXPECT_EQ(lines_for(false, 50), 4U);
   EXPECT_EQ(lines_for(true, 50), 2U);
   EXPECT_EQ(lines_for(false, 50, 5), 10U);
 }
 
-TEST(Requests, beyond_the_cap_are_counted) {
+TEST(Requests, BeyondTheCapAreCounted) {
   Bench bench;
   bench.make_ready(all_round());
   for (int i = 0; i < 5; ++i) {
@@ -39,7 +39,7 @@ TEST(Requests, beyond_the_cap_are_counted) {
   EXPECT_EQ(bench.device.counters().requests_beyond_cap, 6U);
 }
 
-TEST(Requests, one_for_every_reply_never_builds_a_backlog) {
+TEST(Requests, OneForEveryReplyNeverBuildsABacklog) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(300);
@@ -48,7 +48,7 @@ TEST(Requests, one_for_every_reply_never_builds_a_backlog) {
   EXPECT_LE(bench.all<HeadData>().size() - before, 4U);
 }
 
-TEST(Requests, without_parameters_bring_nothing) {
+TEST(Requests, WithoutParametersBringNothing) {
   Bench bench;
   bench.run_until(2s);
   bench.raw(fixture("send_data"));
@@ -63,7 +63,7 @@ TEST(Requests, without_parameters_bring_nothing) {
   EXPECT_TRUE(bench.jobs.empty());
 }
 
-TEST(Requests, wait_until_the_head_is_centred) {
+TEST(Requests, WaitUntilTheHeadIsCentred) {
   Bench bench;
   const TimePoint reboot = bench.reboot_at(0);  // half a turn from the centre: 2 s
   bench.run_until(reboot + 1s);
@@ -78,7 +78,7 @@ TEST(Requests, wait_until_the_head_is_centred) {
   EXPECT_EQ(bench.all<HeadData>().at(0).second.bearing, 3200);
 }
 
-TEST(Requests, survive_new_parameters_and_are_answered_with_them_only) {
+TEST(Requests, SurviveNewParametersAndAreAnsweredWithThemOnly) {
   Bench bench;
   bench.make_ready(all_round());
   bench.renderer_answers = false;
@@ -101,7 +101,7 @@ TEST(Requests, survive_new_parameters_and_are_answered_with_them_only) {
   }
 }
 
-TEST(Requests, line_that_is_ready_but_not_sent_is_done_again_with_new_parameters) {
+TEST(Requests, LineThatIsReadyButNotSentIsDoneAgainWithNewParameters) {
   Bench bench;
   bench.make_ready(all_round());
   bench.raw(fixture("send_data"));
@@ -114,7 +114,7 @@ TEST(Requests, line_that_is_ready_but_not_sent_is_done_again_with_new_parameters
   EXPECT_EQ(bench.device.counters().pings_cancelled, 1U);
 }
 
-TEST(Requests, may_be_forgotten_with_new_parameters) {
+TEST(Requests, MayBeForgottenWithNewParameters) {
   DeviceConfig config;
   config.requests_survive_head_command = false;
   Bench bench(config);

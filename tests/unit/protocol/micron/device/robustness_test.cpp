@@ -14,7 +14,7 @@ Bytes begin_of(const std::string& name, std::size_t size) {
   return bytes;
 }
 
-TEST(Robustness, host_that_vanishes_in_the_middle_of_a_line_leaves_a_running_head) {
+TEST(Robustness, HostThatVanishesInTheMiddleOfALineLeavesARunningHead) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(5);
@@ -30,7 +30,7 @@ TEST(Robustness, host_that_vanishes_in_the_middle_of_a_line_leaves_a_running_hea
   EXPECT_EQ(bench.scan(3).size(), 3U) << "with the parameters of the last one";
 }
 
-TEST(Robustness, half_a_frame_on_a_line_without_connections_costs_one_frame_at_most) {
+TEST(Robustness, HalfAFrameOnALineWithoutConnectionsCostsOneFrameAtMost) {
   Bench bench;
   bench.run_until(10s);
   bench.raw(begin_of("head_command_uxv", 30));
@@ -40,7 +40,7 @@ TEST(Robustness, half_a_frame_on_a_line_without_connections_costs_one_frame_at_m
   EXPECT_EQ(bench.all<VersionData>().size(), 1U) << "found inside after 100 ms of silence";
 }
 
-TEST(Robustness, reboot_that_says_it_is_longer_than_it_is) {
+TEST(Robustness, RebootThatSaysItIsLongerThanItIs) {
   Bench bench;
   bench.run_until(10s);
   const TimePoint asked = bench.now;
@@ -55,7 +55,7 @@ TEST(Robustness, reboot_that_says_it_is_longer_than_it_is) {
   EXPECT_EQ(bench.sent.at(0).at, asked + 100ms + 700ms);
 }
 
-TEST(Robustness, ping_that_cannot_be_rendered_is_a_line_that_does_not_come) {
+TEST(Robustness, PingThatCannotBeRenderedIsALineThatDoesNotCome) {
   Bench bench;
   bench.make_ready(all_round());
   bench.renderer_fails = true;
@@ -67,7 +67,7 @@ TEST(Robustness, ping_that_cannot_be_rendered_is_a_line_that_does_not_come) {
   EXPECT_EQ(bearings_of(bench.scan(2)), (std::vector<int>{3264, 3296})) << "the head has turned on";
 }
 
-TEST(Robustness, line_of_the_wrong_size_counts_as_failed) {
+TEST(Robustness, LineOfTheWrongSizeCountsAsFailed) {
   Bench bench;
   bench.make_ready(all_round());
   bench.render = [](const PingJob& job) { return PingImage{job.number, Bytes(19), {}}; };
@@ -77,7 +77,7 @@ TEST(Robustness, line_of_the_wrong_size_counts_as_failed) {
   EXPECT_EQ(bench.device.counters().pings_failed, 2U);
 }
 
-TEST(Robustness, answers_to_no_job_are_dropped) {
+TEST(Robustness, AnswersToNoJobAreDropped) {
   Bench bench;
   bench.make_ready(all_round());
   bench.answer(PingImage{0, Bytes(20), {}});
@@ -92,7 +92,7 @@ TEST(Robustness, answers_to_no_job_are_dropped) {
   EXPECT_EQ(bench.all<HeadData>().size(), 1U);
 }
 
-TEST(Robustness, flood_of_commands_is_bounded_in_output) {
+TEST(Robustness, FloodOfCommandsIsBoundedInOutput) {
   Bench bench;
   bench.make_ready(all_round());
   for (int i = 0; i < 20'000; ++i) {
@@ -110,7 +110,7 @@ TEST(Robustness, flood_of_commands_is_bounded_in_output) {
   EXPECT_EQ(bench.all<HeadData>().size(), 8U);
 }
 
-TEST(Robustness, random_bytes_at_random_times) {
+TEST(Robustness, RandomBytesAtRandomTimes) {
   const char* names[] = {"send_data",
                          "send_data",
                          "send_data",
@@ -155,7 +155,7 @@ TEST(Robustness, random_bytes_at_random_times) {
   }
 }
 
-TEST(Robustness, head_is_used_through_the_interface_of_all_heads) {
+TEST(Robustness, HeadIsUsedThroughTheInterfaceOfAllHeads) {
   const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(DeviceConfig{}, 0ns);
   EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U) << "an alive";
   const BytesReceived request{{}, SharedBytes(fixture("send_version"))};

@@ -26,7 +26,7 @@ Scan scan(Bench& bench, std::size_t count) {
 
 class AllRound : public ::testing::TestWithParam<int> {};
 
-TEST_P(AllRound, has_one_line_for_each_step_of_the_turn) {
+TEST_P(AllRound, HasOneLineForEachStepOfTheTurn) {
   const int step = GetParam();
   for (const bool right : {true, false}) {
     Bench bench;
@@ -42,7 +42,7 @@ TEST_P(AllRound, has_one_line_for_each_step_of_the_turn) {
 }
 INSTANTIATE_TEST_SUITE_P(steps, AllRound, ::testing::Values(8, 16, 32, 64, 128, 88, 255));
 
-TEST(AllRoundScan, ends_a_turn_where_it_began) {
+TEST(AllRoundScan, EndsATurnWhereItBegan) {
   Bench bench;
   bench.make_ready(all_round(32));
   const Scan result = scan(bench, 401);
@@ -51,7 +51,7 @@ TEST(AllRoundScan, ends_a_turn_where_it_began) {
   EXPECT_EQ(result.bearings[400], result.bearings[0]);
 }
 
-TEST(AllRoundScan, step_0_acts_as_16_and_is_echoed_as_0) {
+TEST(AllRoundScan, Step0ActsAs16AndIsEchoedAs0) {
   Bench bench;
   bench.make_ready(all_round(0));
   const auto lines = bench.scan(2);
@@ -59,7 +59,7 @@ TEST(AllRoundScan, step_0_acts_as_16_and_is_echoed_as_0) {
   EXPECT_EQ(lines[0].step, 0);
 }
 
-TEST(AllRoundScan, goes_on_from_where_it_is_with_new_parameters) {
+TEST(AllRoundScan, GoesOnFromWhereItIsWithNewParameters) {
   Bench bench;
   bench.make_ready(all_round(32));
   EXPECT_EQ(scan(bench, 3).bearings, (Bearings{3200, 3232, 3264}));
@@ -85,7 +85,7 @@ Scan expected_sector(int left, int width, int step, int start, bool right, std::
   return expected;
 }
 
-TEST(SectorScan, of_the_ros_driver_turns_at_both_limits) {
+TEST(SectorScan, OfTheRosDriverTurnsAtBothLimits) {
   Bench bench;
   bench.make_ready(sector(2666, 3733, 16));
   const Scan result = scan(bench, 200);
@@ -101,7 +101,7 @@ TEST(SectorScan, of_the_ros_driver_turns_at_both_limits) {
   EXPECT_EQ(result.codes[34 + 67], 1);
 }
 
-TEST(SectorScan, of_90_degrees_in_whole_steps_has_51_bearings_each_way) {
+TEST(SectorScan, Of90DegreesInWholeStepsHas51BearingsEachWay) {
   Bench bench;
   HeadCommand command = sector(2400, 4000, 32);
   command.control = 0x2301;  // to the left first
@@ -115,7 +115,7 @@ TEST(SectorScan, of_90_degrees_in_whole_steps_has_51_bearings_each_way) {
   EXPECT_EQ(std::ranges::count(result.codes, 0), 123);
 }
 
-TEST(SectorScan, may_cross_astern) {
+TEST(SectorScan, MayCrossAstern) {
   Bench bench;
   bench.make_ready(sector(5600, 800, 64));
   const Scan result = scan(bench, 100);
@@ -126,7 +126,7 @@ TEST(SectorScan, may_cross_astern) {
   EXPECT_EQ(result.bearings[13], 32) << "past 6368, across astern";
 }
 
-TEST(SectorScan, left_beyond_right_may_mean_that_they_were_confused) {
+TEST(SectorScan, LeftBeyondRightMayMeanThatTheyWereConfused) {
   DeviceConfig config;
   config.limits_order = LimitsOrder::swapped;
   Bench bench(config);
@@ -138,7 +138,7 @@ TEST(SectorScan, left_beyond_right_may_mean_that_they_were_confused) {
   EXPECT_EQ(lines[0].right_limit, 2400);
 }
 
-TEST(SectorScan, head_outside_goes_to_the_nearer_limit) {
+TEST(SectorScan, HeadOutsideGoesToTheNearerLimit) {
   for (const auto& [left, right, first] : {std::tuple{3600, 4400, 3600}, std::tuple{1600, 2400, 2400}}) {
     Bench bench;
     bench.make_ready(sector(static_cast<std::uint16_t>(left), static_cast<std::uint16_t>(right)));
@@ -146,7 +146,7 @@ TEST(SectorScan, head_outside_goes_to_the_nearer_limit) {
   }
 }
 
-TEST(SectorScan, entered_at_a_limit_outward_turns_at_once) {
+TEST(SectorScan, EnteredAtALimitOutwardTurnsAtOnce) {
   Bench bench;
   HeadCommand command = sector(3600, 4400, 100);
   command.control = 0x2301;
@@ -156,13 +156,13 @@ TEST(SectorScan, entered_at_a_limit_outward_turns_at_once) {
   EXPECT_EQ(result.codes, (std::vector<int>{1, 0, 0}));
 }
 
-TEST(SectorScan, narrower_than_a_step_goes_from_limit_to_limit) {
+TEST(SectorScan, NarrowerThanAStepGoesFromLimitToLimit) {
   Bench bench;
   bench.make_ready(sector(3190, 3210, 128));
   EXPECT_EQ(scan(bench, 5).bearings, (Bearings{3200, 3210, 3190, 3210, 3190}));
 }
 
-TEST(SectorScan, limit_6400_is_0) {
+TEST(SectorScan, Limit6400Is0) {
   Bench bench;
   bench.make_ready(sector(4800, 6400, 255));
   const auto lines = bench.scan(9);
@@ -171,7 +171,7 @@ TEST(SectorScan, limit_6400_is_0) {
   EXPECT_EQ(lines[7].right_limit, 6400);
 }
 
-TEST(StillHead, stares_at_the_left_limit) {
+TEST(StillHead, StaresAtTheLeftLimit) {
   HeadCommand stare = sector(2000, 4000);
   stare.control |= control_bits::stare;
   HeadCommand no_width = sector(2000, 2000);
@@ -187,7 +187,7 @@ TEST(StillHead, stares_at_the_left_limit) {
   }
 }
 
-TEST(StillHead, does_not_turn_with_its_motor_off) {
+TEST(StillHead, DoesNotTurnWithItsMotorOff) {
   Bench bench;
   HeadCommand command = sector(1000, 2000);
   command.control |= control_bits::motor_off;
@@ -195,7 +195,7 @@ TEST(StillHead, does_not_turn_with_its_motor_off) {
   EXPECT_EQ(scan(bench, 3).bearings, (Bearings{3200, 3200, 3200}));
 }
 
-TEST(Reverse, takes_effect_from_the_next_step_and_shows_in_the_control_bits) {
+TEST(Reverse, TakesEffectFromTheNextStepAndShowsInTheControlBits) {
   Bench bench;
   bench.make_ready(all_round(32));
   EXPECT_EQ(scan(bench, 3).bearings, (Bearings{3200, 3232, 3264}));
@@ -211,7 +211,7 @@ TEST(Reverse, takes_effect_from_the_next_step_and_shows_in_the_control_bits) {
   EXPECT_EQ(bench.scan(1)[0].control, 0x2307);
 }
 
-TEST(Reverse, control_bits_stay_as_commanded_when_a_sector_turns_by_itself) {
+TEST(Reverse, ControlBitsStayAsCommandedWhenASectorTurnsByItself) {
   Bench bench;
   bench.make_ready(sector(3100, 3300, 50));
   for (const HeadData& line : bench.scan(20)) {
@@ -219,7 +219,7 @@ TEST(Reverse, control_bits_stay_as_commanded_when_a_sector_turns_by_itself) {
   }
 }
 
-TEST(Reverse, head_may_claim_to_scan_right_always) {
+TEST(Reverse, HeadMayClaimToScanRightAlways) {
   DeviceConfig config;
   config.always_reports_scan_right = true;
   Bench bench(config);
@@ -229,7 +229,7 @@ TEST(Reverse, head_may_claim_to_scan_right_always) {
   EXPECT_EQ(lines[0].control, 0x2307);
 }
 
-TEST(Invert, bearing_in_the_vehicle_is_mirrored_when_mounting_and_bit_disagree) {
+TEST(Invert, BearingInTheVehicleIsMirroredWhenMountingAndBitDisagree) {
   for (const bool inverted : {false, true}) {
     for (const bool bit : {false, true}) {
       DeviceConfig config;

@@ -35,7 +35,7 @@ HeadCommand command_of(const Row& row) {
   return command;
 }
 
-TEST(Timing, parts_of_a_line_are_those_of_the_table) {
+TEST(Timing, PartsOfALineAreThoseOfTheTable) {
   for (const Row& row : rows) {
     DeviceConfig config;
     const LineTiming timing = line_timing(command_of(row), config, row.step);
@@ -48,7 +48,7 @@ TEST(Timing, parts_of_a_line_are_those_of_the_table) {
   }
 }
 
-TEST(Timing, lines_of_a_busy_head_come_at_that_pace) {
+TEST(Timing, LinesOfABusyHeadComeAtThatPace) {
   for (const Row& row : rows) {
     for (const bool half_duplex : {false, true}) {
       DeviceConfig config;
@@ -66,7 +66,7 @@ TEST(Timing, lines_of_a_busy_head_come_at_that_pace) {
   }
 }
 
-TEST(Timing, pings_transmit_at_the_times_that_their_jobs_say) {
+TEST(Timing, PingsTransmitAtTheTimesThatTheirJobsSay) {
   Bench bench;
   bench.make_ready(command_of(rows[0]));
   bench.scan(10);
@@ -75,7 +75,7 @@ TEST(Timing, pings_transmit_at_the_times_that_their_jobs_say) {
   }
 }
 
-TEST(Timing, one_request_for_two_lines_waits_for_the_request) {
+TEST(Timing, OneRequestForTwoLinesWaitsForTheRequest) {
   Bench bench;
   bench.make_ready(command_of(rows[0]));
   for (int i = 0; i < 5; ++i) {
@@ -90,7 +90,7 @@ TEST(Timing, one_request_for_two_lines_waits_for_the_request) {
   }
 }
 
-TEST(Timing, slow_renderer_slows_the_scan_and_loses_nothing) {
+TEST(Timing, SlowRendererSlowsTheScanAndLosesNothing) {
   for (const bool half_duplex : {false, true}) {
     DeviceConfig config;
     config.half_duplex = half_duplex;
@@ -109,7 +109,7 @@ TEST(Timing, slow_renderer_slows_the_scan_and_loses_nothing) {
   }
 }
 
-TEST(Timing, slower_link_slows_the_scan) {
+TEST(Timing, SlowerLinkSlowsTheScan) {
   DeviceConfig config;
   config.baud = 9600;
   Bench bench(config);
@@ -119,7 +119,7 @@ TEST(Timing, slower_link_slows_the_scan) {
   EXPECT_NEAR(ms(lines[10].first - lines[0].first) / 10, 245 * 10 / 9.6 + 3.0, 0.01);
 }
 
-TEST(Timing, fixed_and_fast_pace) {
+TEST(Timing, FixedAndFastPace) {
   DeviceConfig config;
   config.line_period = 100ms;
   Bench fixed(config);
@@ -136,7 +136,7 @@ TEST(Timing, fixed_and_fast_pace) {
   EXPECT_EQ(fast.now, begin) << "as fast as it is rendered, which here takes no time";
 }
 
-TEST(Timing, still_head_does_not_wait_for_its_motor) {
+TEST(Timing, StillHeadDoesNotWaitForItsMotor) {
   Bench bench;
   HeadCommand command = command_of(rows[7]);
   command.control |= control_bits::motor_off;
@@ -146,7 +146,7 @@ TEST(Timing, still_head_does_not_wait_for_its_motor) {
   EXPECT_NEAR(ms(lines[10].first - lines[0].first) / 10, 66.56 + 3.0, 0.01);
 }
 
-TEST(Timing, motor_takes_the_time_of_the_way_that_it_goes) {
+TEST(Timing, MotorTakesTheTimeOfTheWayThatItGoes) {
   Bench bench;
   bench.make_ready(sector(3190, 3210, 255));  // 20 units between the limits
   bench.scan(12);
@@ -167,7 +167,7 @@ std::chrono::nanoseconds repositioning(const HeadCommand& command, const DeviceC
   return bench.jobs.at(0).transmit_time - asked;
 }
 
-TEST(Timing, new_parameters_cost_a_quarter_of_a_second_and_the_way) {
+TEST(Timing, NewParametersCostAQuarterOfASecondAndTheWay) {
   EXPECT_EQ(repositioning(all_round()), 250ms);
   EXPECT_EQ(repositioning(sector(3000, 3400)), 250ms) << "inside";
   EXPECT_EQ(repositioning(sector(3600, 4000)), 250ms + 100ms) << "400 units of 250 us";
@@ -177,7 +177,7 @@ TEST(Timing, new_parameters_cost_a_quarter_of_a_second_and_the_way) {
   EXPECT_EQ(repositioning(all_round(), config), 10ms);
 }
 
-TEST(Timing, motor_is_seen_on_its_way_to_a_sector) {
+TEST(Timing, MotorIsSeenOnItsWayToASector) {
   DeviceConfig config;
   config.alive_period = 100ms;
   config.alive_after_head_command = false;
@@ -196,7 +196,7 @@ TEST(Timing, motor_is_seen_on_its_way_to_a_sector) {
   EXPECT_EQ(positions.back(), 5200);
 }
 
-TEST(Timing, first_line_comes_within_a_second_of_its_request_always) {
+TEST(Timing, FirstLineComesWithinASecondOfItsRequestAlways) {
   for (const int limit : {0, 1600, 3200, 4800, 6399}) {
     HeadCommand command = sector(static_cast<std::uint16_t>(limit), static_cast<std::uint16_t>(limit));
     command.bins = 800;
@@ -205,7 +205,7 @@ TEST(Timing, first_line_comes_within_a_second_of_its_request_always) {
   }
 }
 
-TEST(Timing, caller_that_is_a_little_late_keeps_the_pace) {
+TEST(Timing, CallerThatIsALittleLateKeepsThePace) {
   DeviceConfig config;
   config.line_period = 40ms;
   Device device(config, 0ns);

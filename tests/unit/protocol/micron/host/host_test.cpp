@@ -5,7 +5,7 @@
 namespace sonard::micron {
 namespace {
 
-TEST(Host, says_what_the_drivers_say_in_the_order_of_the_drivers) {
+TEST(Host, SaysWhatTheDriversSayInTheOrderOfTheDrivers) {
   Session session;
   session.host.start(0ns, HeadCommand{}, 3);
   session.run_to_end();
@@ -18,7 +18,7 @@ TEST(Host, says_what_the_drivers_say_in_the_order_of_the_drivers) {
   EXPECT_EQ(session.host.statistics().head_commands, 1U);
 }
 
-TEST(Host, learns_who_the_head_is) {
+TEST(Host, LearnsWhoTheHeadIs) {
   DeviceConfig config;
   config.version.serial_number = 4711;
   Session session(config);
@@ -30,7 +30,7 @@ TEST(Host, learns_who_the_head_is) {
   EXPECT_EQ(session.said.size(), 2U) << "and asks for nothing before it is told to";
 }
 
-TEST(Host, gets_a_whole_turn_in_order_with_its_samples) {
+TEST(Host, GetsAWholeTurnInOrderWithItsSamples) {
   for (const bool half : {false, true}) {
     DeviceConfig config;
     config.half_duplex = half;
@@ -52,7 +52,7 @@ TEST(Host, gets_a_whole_turn_in_order_with_its_samples) {
   }
 }
 
-TEST(Host, keeps_a_full_duplex_head_busy_though_lines_take_their_time) {
+TEST(Host, KeepsAFullDuplexHeadBusyThoughLinesTakeTheirTime) {
   Session session;
   session.byte_time = 86'806ns;  // ten bits at 115200 baud
   session.host.start(0ns, HeadCommand{}, 100);
@@ -64,7 +64,7 @@ TEST(Host, keeps_a_full_duplex_head_busy_though_lines_take_their_time) {
   EXPECT_NEAR(per_line_ms, 41.6, 0.1) << "400 bins at 115200 baud";
 }
 
-TEST(Host, unpacks_4_bit_lines) {
+TEST(Host, Unpacks4BitLines) {
   for (const NibbleOrder order : {NibbleOrder::high_first, NibbleOrder::low_first}) {
     DeviceConfig head_config;
     head_config.nibble_order = order;
@@ -81,7 +81,7 @@ TEST(Host, unpacks_4_bit_lines) {
   }
 }
 
-TEST(Host, stops_when_told_and_goes_on_with_other_parameters) {
+TEST(Host, StopsWhenToldAndGoesOnWithOtherParameters) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(10s);
@@ -106,7 +106,7 @@ TEST(Host, stops_when_told_and_goes_on_with_other_parameters) {
   }
 }
 
-TEST(Host, changes_gain_and_direction_of_a_running_scan) {
+TEST(Host, ChangesGainAndDirectionOfARunningScan) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(8s);
@@ -124,7 +124,7 @@ TEST(Host, changes_gain_and_direction_of_a_running_scan) {
   EXPECT_EQ(session.host.statistics().timeouts, 0U);
 }
 
-TEST(Host, gives_parameters_again_to_a_head_that_has_rebooted) {
+TEST(Host, GivesParametersAgainToAHeadThatHasRebooted) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(10s);
@@ -136,7 +136,7 @@ TEST(Host, gives_parameters_again_to_a_head_that_has_rebooted) {
   EXPECT_EQ(session.host.statistics().head_commands, 2U);
 }
 
-TEST(Host, gives_parameters_again_to_a_head_that_has_lost_its_step) {
+TEST(Host, GivesParametersAgainToAHeadThatHasLostItsStep) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(10s);
@@ -147,7 +147,7 @@ TEST(Host, gives_parameters_again_to_a_head_that_has_lost_its_step) {
   EXPECT_EQ(session.lines.back().head.status, 0x10);
 }
 
-TEST(Host, begins_with_a_reboot_if_so_set) {
+TEST(Host, BeginsWithARebootIfSoSet) {
   HostConfig config;
   config.reboot_first = true;
   Session session({}, config);
@@ -159,7 +159,7 @@ TEST(Host, begins_with_a_reboot_if_so_set) {
   EXPECT_EQ(session.lines[0].head.bearing, 3200);
 }
 
-TEST(Host, drives_a_head_whose_alives_were_stopped) {
+TEST(Host, DrivesAHeadWhoseAlivesWereStopped) {
   Session session;
   session.head.run_until(5s);
   session.head.raw(fixture("stop_alives"));
@@ -170,7 +170,7 @@ TEST(Host, drives_a_head_whose_alives_were_stopped) {
   EXPECT_EQ(session.lines.size(), 20U);
 }
 
-TEST(Host, drives_a_head_that_keeps_its_user_blocks_to_itself) {
+TEST(Host, DrivesAHeadThatKeepsItsUserBlocksToItself) {
   Session session;
   session.to_host = [](const Bytes& frame) {
     return frame[10] == 6 ? std::vector<Bytes>{} : std::vector<Bytes>{frame};
@@ -181,7 +181,7 @@ TEST(Host, drives_a_head_that_keeps_its_user_blocks_to_itself) {
   EXPECT_FALSE(session.host.head().user_blocks);
 }
 
-TEST(Host, waits_for_ever_for_a_head_that_is_not_there) {
+TEST(Host, WaitsForEverForAHeadThatIsNotThere) {
   Host host(HostConfig{}, 0ns);
   TimePoint now{};
   std::size_t said = 0;
@@ -194,7 +194,7 @@ TEST(Host, waits_for_ever_for_a_head_that_is_not_there) {
   EXPECT_EQ(now, 2s + 99 * 1s);
 }
 
-TEST(Host, delivers_only_lines_of_its_own_parameters) {
+TEST(Host, DeliversOnlyLinesOfItsOwnParameters) {
   Session session;
   session.host.start(0ns, all_round(), 0);
   session.run_for(8s);
@@ -207,7 +207,7 @@ TEST(Host, delivers_only_lines_of_its_own_parameters) {
   EXPECT_EQ(session.lines.back().head.step, 32) << "it insists";
 }
 
-TEST(Host, frames_of_other_nodes_are_passed_over) {
+TEST(Host, FramesOfOtherNodesArePassedOver) {
   Host host(HostConfig{}, 0ns);
   Bytes alive = fixture("alive_5d");
   alive[7] = 20;
@@ -221,7 +221,7 @@ TEST(Host, frames_of_other_nodes_are_passed_over) {
   EXPECT_TRUE(host.take_outgoing().empty());
 }
 
-TEST(Host, reads_the_published_line) {
+TEST(Host, ReadsThePublishedLine) {
   Host host(HostConfig{}, 0ns);
   HeadCommand command;
   command.bins = 8;

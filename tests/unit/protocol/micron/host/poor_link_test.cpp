@@ -26,7 +26,7 @@ Session::Carrier poor_carrier(std::mt19937& random, unsigned lost_percent) {
   };
 }
 
-TEST(PoorLink, split_and_noisy_line_loses_nothing) {
+TEST(PoorLink, SplitAndNoisyLineLosesNothing) {
   std::mt19937 random(3);
   Session session;
   session.to_head = poor_carrier(random, 0);
@@ -41,7 +41,7 @@ TEST(PoorLink, split_and_noisy_line_loses_nothing) {
   EXPECT_GT(session.host.statistics().dropped_bytes, 0U);
 }
 
-TEST(PoorLink, lost_frames_cost_time_only) {
+TEST(PoorLink, LostFramesCostTimeOnly) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     std::mt19937 random(seed);
     DeviceConfig config;
@@ -58,7 +58,7 @@ TEST(PoorLink, lost_frames_cost_time_only) {
   }
 }
 
-TEST(PoorLink, random_bytes_never_end_a_host) {
+TEST(PoorLink, RandomBytesNeverEndAHost) {
   const char* names[] = {"alive_5d",     "alive_4a",     "alive_8a",  "alive_aa",
                          "version_data", "bb_user_data", "head_data", "head_data_4_bit"};
   for (unsigned seed = 1; seed <= 20; ++seed) {

@@ -33,13 +33,13 @@ std::vector<FireExample> fire_examples() {
 
 class OculusFireExample : public ::testing::TestWithParam<FireExample> {};
 
-TEST_P(OculusFireExample, bytes_mean_the_value) {
+TEST_P(OculusFireExample, BytesMeanTheValue) {
   const auto command = decode_command(load_fixture(GetParam().fixture));
   ASSERT_TRUE(command) << to_string(command.error());
   EXPECT_TRUE(*command == Command{GetParam().value});
 }
 
-TEST_P(OculusFireExample, value_becomes_the_bytes) {
+TEST_P(OculusFireExample, ValueBecomesTheBytes) {
   if (GetParam().states_its_size) {
     EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
   }
@@ -86,19 +86,19 @@ PingResult second_ping() {
 const Bytes second_image{0,    0, 1,    0, 2,    0, 3,    0, 0xE8, 3, 0xE9, 3,
                          0xEA, 3, 0xEB, 3, 0xD0, 7, 0xD1, 7, 0xD2, 7, 0xD3, 7};
 
-TEST(OculusExamples, ping_of_version_1_becomes_the_bytes) {
+TEST(OculusExamples, PingOfVersion1BecomesTheBytes) {
   PingResult ping = first_ping();
   ping.image = first_image;
   EXPECT_EQ(encode(ping, m1200d), load_fixture("ping_result_v1"));
 }
 
-TEST(OculusExamples, ping_of_version_2_becomes_the_bytes) {
+TEST(OculusExamples, PingOfVersion2BecomesTheBytes) {
   PingResult ping = second_ping();
   ping.image = second_image;
   EXPECT_EQ(encode(ping, m1200d), load_fixture("ping_result_v2"));
 }
 
-TEST(OculusExamples, bytes_are_the_pings) {
+TEST(OculusExamples, BytesAreThePings) {
   for (const auto& [fixture, wanted, image] : {std::tuple{"ping_result_v1", first_ping(), first_image},
                                                std::tuple{"ping_result_v2", second_ping(), second_image}}) {
     const Bytes bytes = load_fixture(fixture);
@@ -114,7 +114,7 @@ TEST(OculusExamples, bytes_are_the_pings) {
   }
 }
 
-TEST(OculusExamples, status_both_ways) {
+TEST(OculusExamples, StatusBothWays) {
   Status status;
   status.device_id = 7892;
   status.part_number = 1042;
@@ -143,7 +143,7 @@ PingResult ping_of(double value, bool second_version) {
   return ping;
 }
 
-TEST(OculusExamples, a_zero_is_positive_on_the_wire) {
+TEST(OculusExamples, AZeroIsPositiveOnTheWire) {
   for (const bool second_version : {false, true}) {
     EXPECT_EQ(encode(ping_of(-0.0, second_version), m1200d), encode(ping_of(0.0, second_version), m1200d));
   }
@@ -154,7 +154,7 @@ TEST(OculusExamples, a_zero_is_positive_on_the_wire) {
   EXPECT_NE(encode(ping_of(-1.0, true), m1200d), encode(ping_of(1.0, true), m1200d));
 }
 
-TEST(OculusExamples, a_status_of_another_size_is_none) {
+TEST(OculusExamples, AStatusOfAnotherSizeIsNone) {
   Bytes bytes = load_fixture("status");
   bytes.push_back(0);
   EXPECT_FALSE(decode_status(bytes));
@@ -162,7 +162,7 @@ TEST(OculusExamples, a_status_of_another_size_is_none) {
   EXPECT_FALSE(decode_status(bytes));
 }
 
-TEST(OculusExamples, dummy_log_and_user_config) {
+TEST(OculusExamples, DummyLogAndUserConfig) {
   EXPECT_EQ(encode_dummy(m1200d), load_fixture("dummy"));
   const UserConfig config{{192, 168, 2, 4}, {255, 255, 255, 0}, 0};
   EXPECT_EQ(encode(config, m1200d), load_fixture("user_config"));

@@ -48,14 +48,14 @@ Bytes fire_announcing(std::uint32_t payload_size) {
   return bytes;
 }
 
-TEST(OculusCommands, several_in_one_segment) {
+TEST(OculusCommands, SeveralInOneSegment) {
   CommandBuffer buffer;
   buffer.append(all_in_one());
   EXPECT_EQ(take_all(buffer), all_apart());
   EXPECT_EQ(buffer.dropped(), 0U);
 }
 
-TEST(OculusCommands, split_at_any_byte) {
+TEST(OculusCommands, SplitAtAnyByte) {
   const Bytes stream = all_in_one();
   for (std::size_t at = 0; at <= stream.size(); ++at) {
     CommandBuffer buffer;
@@ -69,7 +69,7 @@ TEST(OculusCommands, split_at_any_byte) {
   }
 }
 
-TEST(OculusCommands, byte_by_byte) {
+TEST(OculusCommands, ByteByByte) {
   CommandBuffer buffer;
   std::vector<Bytes> found;
   for (const std::uint8_t byte : all_in_one()) {
@@ -81,7 +81,7 @@ TEST(OculusCommands, byte_by_byte) {
   EXPECT_EQ(found, all_apart());
 }
 
-TEST(OculusCommands, a_fire_without_a_size_is_as_long_as_its_version) {
+TEST(OculusCommands, AFireWithoutASizeIsAsLongAsItsVersion) {
   Bytes bytes = load_fixture("fire_liboculus_32_bit");
   bytes[10] = 0;
   CommandBuffer buffer;
@@ -91,7 +91,7 @@ TEST(OculusCommands, a_fire_without_a_size_is_as_long_as_its_version) {
   EXPECT_TRUE(std::get<SimpleFire>(*decode_command(found[0])).extension);
 }
 
-TEST(OculusCommands, bytes_between_are_skipped) {
+TEST(OculusCommands, BytesBetweenAreSkipped) {
   Bytes stream{0x53, 0x00, 0x4F, 0x53, 0x53};
   const Bytes fire = load_fixture("fire_ensta");
   stream.insert(stream.end(), fire.begin(), fire.end());
@@ -101,7 +101,7 @@ TEST(OculusCommands, bytes_between_are_skipped) {
   EXPECT_EQ(buffer.dropped(), 5U);
 }
 
-TEST(OculusCommands, a_fire_that_is_too_short_is_an_error) {
+TEST(OculusCommands, AFireThatIsTooShortIsAnError) {
   Bytes bytes = fire_announcing(36);
   bytes.resize(16 + 36);
   CommandBuffer buffer;
@@ -111,7 +111,7 @@ TEST(OculusCommands, a_fire_that_is_too_short_is_an_error) {
   EXPECT_FALSE(decode_command(found[0]));
 }
 
-TEST(OculusCommands, a_fire_of_72_bytes_has_no_extension) {
+TEST(OculusCommands, AFireOf72BytesHasNoExtension) {
   Bytes bytes = fire_announcing(72);
   bytes.resize(16 + 72);
   EXPECT_FALSE(std::get<SimpleFire>(*decode_command(bytes)).extension);
@@ -120,7 +120,7 @@ TEST(OculusCommands, a_fire_of_72_bytes_has_no_extension) {
   EXPECT_TRUE(std::get<SimpleFire>(*decode_command(bytes)).extension);
 }
 
-TEST(OculusCommands, what_is_longer_than_4096_ends_the_connection) {
+TEST(OculusCommands, WhatIsLongerThan4096EndsTheConnection) {
   CommandBuffer buffer;
   buffer.append(fire_announcing(4096));
   EXPECT_FALSE(buffer.front());

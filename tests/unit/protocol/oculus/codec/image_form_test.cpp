@@ -13,7 +13,7 @@ namespace {
 
 constexpr double recorded_speed_mps = 1490.658551265436;
 
-TEST(OculusBearings, are_those_of_a_recorded_head) {
+TEST(OculusBearings, AreThoseOfARecordedHead) {
   const auto bearings = bearings_cdeg(256, 30.0);
   ASSERT_EQ(bearings.size(), 256U);
   EXPECT_EQ(bearings.front(), -3000);
@@ -22,7 +22,7 @@ TEST(OculusBearings, are_those_of_a_recorded_head) {
   EXPECT_EQ(bearings.back(), 3000);
 }
 
-TEST(OculusBearings, have_exact_ends_and_are_symmetric_and_rise) {
+TEST(OculusBearings, HaveExactEndsAndAreSymmetricAndRise) {
   for (const double half : {20.0, 30.0, 35.0, 65.0}) {
     for (const int beams : {256, 512}) {
       const auto bearings = bearings_cdeg(beams, half);
@@ -36,7 +36,7 @@ TEST(OculusBearings, have_exact_ends_and_are_symmetric_and_rise) {
 }
 
 // Bearings are truncated towards zero by less than 0.01 degrees.
-TEST(OculusBearings, are_equally_spaced_in_their_sine) {
+TEST(OculusBearings, AreEquallySpacedInTheirSine) {
   const auto bearings = bearings_cdeg(512, 65.0);
   for (std::size_t i = 256; i < 511; ++i) {
     const double exact =
@@ -46,13 +46,13 @@ TEST(OculusBearings, are_equally_spaced_in_their_sine) {
   }
 }
 
-TEST(OculusRanges, are_those_of_a_recorded_head) {
+TEST(OculusRanges, AreThoseOfARecordedHead) {
   const RangeGrid grid = range_grid(2.0, recorded_speed_mps);
   EXPECT_EQ(grid.ranges, 703);
   EXPECT_NEAR(grid.resolution_m, 0.00284218897, 1e-11);
 }
 
-TEST(OculusRanges, keep_below_the_most_and_within_a_row_of_what_was_asked) {
+TEST(OculusRanges, KeepBelowTheMostAndWithinARowOfWhatWasAsked) {
   for (const double range_m : {0.1, 0.5, 3.4, 3.42, 5.0, 10.0, 40.0, 119.9, 120.0}) {
     const RangeGrid grid = range_grid(range_m, 1500.0);
     const double samples = grid.resolution_m / (1500.0 / (2.0 * sample_rate_hz));
@@ -66,13 +66,13 @@ TEST(OculusRanges, keep_below_the_most_and_within_a_row_of_what_was_asked) {
   }
 }
 
-TEST(OculusGamma, two_points_are_documented) {
+TEST(OculusGamma, TwoPointsAreDocumented) {
   EXPECT_EQ(gamma_exponent(0), 1.0);
   EXPECT_EQ(gamma_exponent(255), 1.0);
   EXPECT_NEAR(gamma_exponent(127), 0.5, 0.002);
 }
 
-TEST(OculusGain, is_reported_in_another_scale_in_the_high_frequency_mode) {
+TEST(OculusGain, IsReportedInAnotherScaleInTheHighFrequencyMode) {
   Fire fire;
   fire.gain_percent = 50.0;
   fire.master_mode = 1;
@@ -81,12 +81,12 @@ TEST(OculusGain, is_reported_in_another_scale_in_the_high_frequency_mode) {
   EXPECT_EQ(reported_gain_percent(fire), 70.0);
 }
 
-TEST(OculusSoundSpeed, of_fresh_and_salt_water) {
+TEST(OculusSoundSpeed, OfFreshAndSaltWater) {
   EXPECT_NEAR(sound_speed_of_water_mps(23.0, 0.0), 1490.66, 0.2);
   EXPECT_NEAR(sound_speed_of_water_mps(10.0, 35.0), 1490.0, 0.5);
 }
 
-TEST(OculusImageOffset, is_2048_up_to_512_beams) {
+TEST(OculusImageOffset, Is2048UpTo512Beams) {
   for (const bool second : {false, true}) {
     EXPECT_EQ(usual_image_offset(second, 256), 2048U);
     EXPECT_EQ(usual_image_offset(second, 512), 2048U);

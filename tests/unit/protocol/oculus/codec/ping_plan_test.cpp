@@ -19,7 +19,7 @@ SimpleFire fire_with(std::uint8_t mode, double range_m) {
   return fire;
 }
 
-TEST(OculusPlan, acknowledges_mode_gamma_flags_range_and_salinity_exactly) {
+TEST(OculusPlan, AcknowledgesModeGammaFlagsRangeAndSalinityExactly) {
   for (const std::uint8_t mode : {1, 2}) {
     SimpleFire fire = fire_with(mode, 1234.56);  // beyond the range of the head
     fire.fire.gamma = 200;
@@ -36,7 +36,7 @@ TEST(OculusPlan, acknowledges_mode_gamma_flags_range_and_salinity_exactly) {
   }
 }
 
-TEST(OculusPlan, gain_and_speed_are_echoed_as_the_configuration_says) {
+TEST(OculusPlan, GainAndSpeedAreEchoedAsTheConfigurationSays) {
   SimpleFire fire = fire_with(2, 2.0);
   const PingPlan usual = plan_ping(fire, {});
   EXPECT_EQ(usual.result.fire.fire.sound_speed_mps, usual.result.sound_speed_mps);
@@ -49,7 +49,7 @@ TEST(OculusPlan, gain_and_speed_are_echoed_as_the_configuration_says) {
 }
 
 // Readers of viewer logs accept versions 1 and 2 only, but the recording of a real head has version 0.
-TEST(OculusPlan, version_of_the_result_follows_the_length_of_the_fire) {
+TEST(OculusPlan, VersionOfTheResultFollowsTheLengthOfTheFire) {
   for (const bool reports_version_1 : {true, false}) {
     PlanConfig config;
     config.reports_version_1 = reports_version_1;
@@ -64,7 +64,7 @@ TEST(OculusPlan, version_of_the_result_follows_the_length_of_the_fire) {
 }
 
 // A column of 10 m of water weighs about as much as the air above it.
-TEST(OculusPlan, pressure_is_that_of_air_and_of_the_water_above) {
+TEST(OculusPlan, PressureIsThatOfAirAndOfTheWaterAbove) {
   PlanConfig config;
   config.pressure_bar = 1.7;
   EXPECT_NEAR(pressure_bar(20.0, config), 3.013, 1e-9);
@@ -76,7 +76,7 @@ TEST(OculusPlan, pressure_is_that_of_air_and_of_the_water_above) {
   EXPECT_EQ(pressure_bar(-5.0, config), 0.0);
 }
 
-TEST(OculusPlan, attitude_is_in_degrees_with_the_signs_of_the_configuration) {
+TEST(OculusPlan, AttitudeIsInDegreesWithTheSignsOfTheConfiguration) {
   const SensorReadings readings{.heading_rad = std::numbers::pi / 3,
                                 .pitch_rad = -std::numbers::pi / 12,
                                 .roll_rad = std::numbers::pi / 60,
@@ -102,7 +102,7 @@ TEST(OculusPlan, attitude_is_in_degrees_with_the_signs_of_the_configuration) {
   EXPECT_EQ(north.heading_deg, 0.0) << "not 360";
 }
 
-TEST(OculusPlan, rates_are_limits) {
+TEST(OculusPlan, RatesAreLimits) {
   SimpleFire fire = fire_with(2, 2.0);
   const auto period = [&](int rate) {
     fire.fire.ping_rate = static_cast<std::uint8_t>(rate);
@@ -117,7 +117,7 @@ TEST(OculusPlan, rates_are_limits) {
   EXPECT_FALSE(period_of_rate(5));
 }
 
-TEST(OculusPlan, far_echoes_and_slow_links_take_longer) {
+TEST(OculusPlan, FarEchoesAndSlowLinksTakeLonger) {
   SimpleFire fire = fire_with(1, 120.0);
   fire.fire.sound_speed_mps = 1500.0;
   EXPECT_EQ(plan_ping(fire, {}).period, milliseconds{165});
@@ -129,13 +129,13 @@ TEST(OculusPlan, far_echoes_and_slow_links_take_longer) {
               8.0 * static_cast<double>(plan.result.image_offset + plan.image_size()) * 100.0, 1.0);
 }
 
-TEST(OculusPlan, percent_are_of_the_modes_range) {
+TEST(OculusPlan, PercentAreOfTheModesRange) {
   SimpleFire fire = fire_with(1, 25.0);
   fire.fire.flags = 0x08;
   EXPECT_EQ(plan_ping(fire, {}).range_m, 30.0);
 }
 
-TEST(OculusPlan, modes_have_apertures_of_their_own) {
+TEST(OculusPlan, ModesHaveAperturesOfTheirOwn) {
   PlanConfig config;
   config.model = m1200d;
   EXPECT_EQ(plan_ping(fire_with(1, 5.0), config).result.bearings_cdeg.back(), 6500);
@@ -143,7 +143,7 @@ TEST(OculusPlan, modes_have_apertures_of_their_own) {
   EXPECT_EQ(plan_ping(fire_with(0, 5.0), config).result.bearings_cdeg.back(), 3000);
 }
 
-TEST(OculusPlan, numbers_that_mean_nothing_do_no_harm) {
+TEST(OculusPlan, NumbersThatMeanNothingDoNoHarm) {
   for (const double value :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300, 1e300}) {
     SimpleFire fire = fire_with(2, value);
@@ -157,7 +157,7 @@ TEST(OculusPlan, numbers_that_mean_nothing_do_no_harm) {
   }
 }
 
-TEST(OculusPlan, image_has_a_gain_of_one_before_each_row_and_full_scale) {
+TEST(OculusPlan, ImageHasAGainOfOneBeforeEachRowAndFullScale) {
   PingResult ping;
   ping.ranges = 2;
   ping.beams = 2;
@@ -175,7 +175,7 @@ TEST(OculusPlan, image_has_a_gain_of_one_before_each_row_and_full_scale) {
   EXPECT_FALSE(image_bytes(ping, {}, {0}));
 }
 
-TEST(OculusPlan, samples_of_eight_bits_are_widened_and_wide_ones_not_cut) {
+TEST(OculusPlan, SamplesOfEightBitsAreWidenedAndWideOnesNotCut) {
   PingResult ping;
   ping.ranges = 1;
   ping.beams = 2;

@@ -19,7 +19,7 @@ std::uint32_t u32_at(const Bytes& bytes, std::size_t offset) {
 using Form = std::tuple<int, int, bool, int, int>;
 class OculusSizes : public ::testing::TestWithParam<Form> {};
 
-TEST_P(OculusSizes, fit_each_other) {
+TEST_P(OculusSizes, FitEachOther) {
   const auto [version, bits, gains, beams, mode] = GetParam();
   PingResult ping;
   ping.fire.version = static_cast<std::uint16_t>(version);

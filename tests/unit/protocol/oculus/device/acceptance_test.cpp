@@ -126,7 +126,7 @@ SimpleFire fire_with(bool second, int bits, bool gains, int beams, int mode) {
 }
 
 // 3.1, as several clients send them. One client's header states no length; another's states a wrong version.
-TEST(OculusAcceptance, fires_of_all_clients_split_at_every_byte_make_it_ping) {
+TEST(OculusAcceptance, FiresOfAllClientsSplitAtEveryByteMakeItPing) {
   for (const char* name : {"fire_vendor", "fire_ensta", "fire_ensta_resume_v2", "fire_liboculus_8_bit",
                            "fire_liboculus_32_bit"}) {
     const Bytes bytes = sonard::testing::load_hex_fixture("oculus", name);
@@ -150,7 +150,7 @@ using Form = std::tuple<bool, int, bool, int, int>;
 class OculusForms : public ::testing::TestWithParam<Form> {};
 
 // 4.1 to 4.4 and 4.7, on the bytes: the checks of vendor code, liboculus and ENSTA's driver.
-TEST_P(OculusForms, echo_and_sizes_are_what_clients_check) {
+TEST_P(OculusForms, EchoAndSizesAreWhatClientsCheck) {
   const auto [second, bits, gains, beams, mode] = GetParam();
   const SimpleFire fire = fire_with(second, bits, gains, beams, mode);
   Line line;
@@ -216,7 +216,7 @@ INSTANTIATE_TEST_SUITE_P(Second, OculusForms,
                          Combine(Values(true), Values(8, 16, 32), Bool(), Values(256, 512), Values(1, 2)));
 
 // 8: ranges of the models. A greater requested range is echoed, and the image reaches as far as the head can.
-TEST(OculusAcceptance, models_have_ranges_and_apertures_of_their_own) {
+TEST(OculusAcceptance, ModelsHaveRangesAndAperturesOfTheirOwn) {
   struct Case {
     Model model;
     int mode;
@@ -243,7 +243,7 @@ TEST(OculusAcceptance, models_have_ranges_and_apertures_of_their_own) {
 }
 
 // 6: 142 bytes once a second, also while a client is connected. Addresses are in the order of their octets.
-TEST(OculusAcceptance, a_status_of_142_bytes_comes_each_second_whatever_else_happens) {
+TEST(OculusAcceptance, AStatusOf142BytesComesEachSecondWhateverElseHappens) {
   Line line;
   line.receive(encode(fire_with(true, 8, true, 512, 1)));
   const std::size_t before = line.statuses.size();
@@ -262,7 +262,7 @@ TEST(OculusAcceptance, a_status_of_142_bytes_comes_each_second_whatever_else_hap
 }
 
 // 7, each section of the diagram.
-TEST(OculusAcceptance, idle_and_standby_are_told_each_second_and_standby_ends_within_a_period) {
+TEST(OculusAcceptance, IdleAndStandbyAreToldEachSecondAndStandbyEndsWithinAPeriod) {
   Line line;
   EXPECT_EQ(line.host.take_logs().size(), 1U);
   line.run_for(milliseconds{3'100});
@@ -283,7 +283,7 @@ TEST(OculusAcceptance, idle_and_standby_are_told_each_second_and_standby_ends_wi
 }
 
 // 3.3, and 7: the viewer fires after every ping and every status.
-TEST(OculusAcceptance, rates_are_limits_also_where_each_ping_is_answered_by_the_same_fire) {
+TEST(OculusAcceptance, RatesAreLimitsAlsoWhereEachPingIsAnsweredByTheSameFire) {
   for (const auto& [code, hz] : {std::pair{0, 10}, {1, 15}, {2, 40}, {3, 5}, {4, 2}}) {
     Line line;
     SimpleFire fire = fire_with(false, 8, true, 256, 2);
@@ -302,7 +302,7 @@ TEST(OculusAcceptance, rates_are_limits_also_where_each_ping_is_answered_by_the_
 }
 
 // 4.4: a driver waits for its settings in one of the next pings.
-TEST(OculusAcceptance, new_settings_come_with_the_next_ping) {
+TEST(OculusAcceptance, NewSettingsComeWithTheNextPing) {
   Line line;
   line.receive(encode(fire_with(false, 8, true, 256, 1)));
   line.run_for(milliseconds{550});
@@ -315,7 +315,7 @@ TEST(OculusAcceptance, new_settings_come_with_the_next_ping) {
 }
 
 // 4.1, 4.2: readings at the time when the pulse left.
-TEST(OculusAcceptance, a_ping_says_how_the_head_is_turned_and_how_deep_it_is) {
+TEST(OculusAcceptance, APingSaysHowTheHeadIsTurnedAndHowDeepItIs) {
   const SensorReadings readings{.heading_rad = std::numbers::pi / 2,
                                 .pitch_rad = -std::numbers::pi / 6,
                                 .roll_rad = std::numbers::pi,
@@ -338,7 +338,7 @@ TEST(OculusAcceptance, a_ping_says_how_the_head_is_turned_and_how_deep_it_is) {
   }
 }
 
-TEST(OculusAcceptance, a_status_says_how_deep_the_head_is_whether_it_pings_or_not) {
+TEST(OculusAcceptance, AStatusSaysHowDeepTheHeadIsWhetherItPingsOrNot) {
   DeviceConfig config;
   config.plan.pressure_bar = 1.7;
   Line line(config);
@@ -356,7 +356,7 @@ TEST(OculusAcceptance, a_status_says_how_deep_the_head_is_whether_it_pings_or_no
 }
 
 // With a simulator's clock the head pings only after a grant, and reports the period that it would use.
-TEST(OculusAcceptance, by_a_simulators_clock_it_waits_for_grants) {
+TEST(OculusAcceptance, ByASimulatorsClockItWaitsForGrants) {
   DeviceConfig config;
   config.waits_for_permission = true;
   Line line(config);
@@ -384,7 +384,7 @@ RecordedPing fed(const PingRecord& record, std::uint64_t number) {
           .due = std::nullopt};
 }
 
-TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
+TEST(OculusPlayback, SendsThePingThatItIsFedWhateverIsAskedFor) {
   Line live;
   live.readings = SensorReadings{.heading_rad = std::numbers::pi / 2, .depth_m = 20.0};
   live.receive(encode(fire_with(true, 8, true, 512, 1)));
@@ -443,7 +443,7 @@ TEST(OculusPlayback, sends_the_ping_that_it_is_fed_whatever_is_asked_for) {
   EXPECT_NEAR(player.records.at(1).settings.amplitude_exponent, 200.0 / 255, 1e-12) << "of what was recorded";
 }
 
-TEST(OculusPlayback, a_ping_with_a_time_of_its_own_keeps_it) {
+TEST(OculusPlayback, APingWithATimeOfItsOwnKeepsIt) {
   Line live;
   live.receive(encode(fire_with(false, 8, false, 256, 1)));
   live.run_for(milliseconds{100});
@@ -461,7 +461,7 @@ TEST(OculusPlayback, a_ping_with_a_time_of_its_own_keeps_it) {
   EXPECT_EQ(player.jobs[0].transmit_time, milliseconds{730});
 }
 
-TEST(OculusPlayback, what_no_head_could_send_has_no_recorded_form) {
+TEST(OculusPlayback, WhatNoHeadCouldSendHasNoRecordedForm) {
   Line live;
   live.receive(encode(fire_with(false, 8, false, 256, 1)));
   live.run_for(milliseconds{100});
@@ -479,7 +479,7 @@ TEST(OculusPlayback, what_no_head_could_send_has_no_recorded_form) {
 
 // ---- The client's side
 
-TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing) {
+TEST(OculusHost, ReadsMessagesInPiecesOfAnySizeAndCountsWhatIsMissing) {
   Line line;
   line.receive(encode(fire_with(true, 8, true, 256, 1)));
   line.run_for(milliseconds{450});
@@ -507,7 +507,7 @@ TEST(OculusHost, reads_messages_in_pieces_of_any_size_and_counts_what_is_missing
   }
 }
 
-TEST(OculusHost, a_length_that_no_message_has_is_skipped) {
+TEST(OculusHost, ALengthThatNoMessageHasIsSkipped) {
   Host host;
   Bytes bytes = encode_dummy({7892, 1032});
   bytes[13] = 0x7F;  // about two billion bytes

@@ -81,7 +81,7 @@ SimpleFire fire_at(std::uint8_t rate) {
   return fire;
 }
 
-TEST(OculusDevice, sends_a_status_of_142_bytes_each_second) {
+TEST(OculusDevice, SendsAStatusOf142BytesEachSecond) {
   Bench bench;
   bench.run_for(milliseconds{10'500});
   EXPECT_EQ(bench.statuses.size(), 11U);
@@ -93,7 +93,7 @@ TEST(OculusDevice, sends_a_status_of_142_bytes_each_second) {
   }
 }
 
-TEST(OculusDevice, a_move_of_the_server_is_in_the_next_status) {
+TEST(OculusDevice, AMoveOfTheServerIsInTheNextStatus) {
   Bench bench;
   bench.device().move_to(0x0A3D13C9, 0xFFFFFF00);
   bench.run_for(seconds{1});
@@ -102,7 +102,7 @@ TEST(OculusDevice, a_move_of_the_server_is_in_the_next_status) {
   EXPECT_EQ(status.netmask, (std::array<std::uint8_t, 4>{255, 255, 255, 0}));
 }
 
-TEST(OculusDevice, status_follows_the_client_at_once) {
+TEST(OculusDevice, StatusFollowsTheClientAtOnce) {
   Bench bench;
   bench.connect();
   EXPECT_EQ(decode_status(bench.statuses.back())->client, (std::array<std::uint8_t, 4>{192, 168, 2, 5}));
@@ -111,7 +111,7 @@ TEST(OculusDevice, status_follows_the_client_at_once) {
   EXPECT_EQ(bench.statuses.size(), 3U);
 }
 
-TEST(OculusDevice, greets_with_a_log_and_then_dummies) {
+TEST(OculusDevice, GreetsWithALogAndThenDummies) {
   Bench bench;
   bench.connect();
   EXPECT_EQ(bench.count(MessageId::logs), 1U);
@@ -120,7 +120,7 @@ TEST(OculusDevice, greets_with_a_log_and_then_dummies) {
   EXPECT_EQ(bench.count(MessageId::simple_ping_result), 0U);
 }
 
-TEST(OculusDevice, one_fire_pings_on_at_its_rate) {
+TEST(OculusDevice, OneFirePingsOnAtItsRate) {
   for (const auto& [rate, pings] : {std::pair{0, 100U}, {1, 150U}, {2, 400U}, {3, 50U}, {4, 20U}}) {
     Bench bench;
     bench.connect();
@@ -131,7 +131,7 @@ TEST(OculusDevice, one_fire_pings_on_at_its_rate) {
   }
 }
 
-TEST(OculusDevice, the_same_fire_again_changes_nothing) {
+TEST(OculusDevice, TheSameFireAgainChangesNothing) {
   Bench bench;
   bench.connect();
   for (int i = 0; i < 999; ++i) {
@@ -141,7 +141,7 @@ TEST(OculusDevice, the_same_fire_again_changes_nothing) {
   EXPECT_EQ(bench.count(MessageId::simple_ping_result), 100U);
 }
 
-TEST(OculusDevice, standby_stops_pings_with_a_dummy_and_a_fire_resumes) {
+TEST(OculusDevice, StandbyStopsPingsWithADummyAndAFireResumes) {
   Bench bench;
   bench.connect();
   bench.receive(encode(fire_at(1)));
@@ -156,7 +156,7 @@ TEST(OculusDevice, standby_stops_pings_with_a_dummy_and_a_fire_resumes) {
   EXPECT_GT(bench.count(MessageId::simple_ping_result), before + 13);
 }
 
-TEST(OculusDevice, ping_ids_count_up_and_the_id_is_that_of_the_status) {
+TEST(OculusDevice, PingIdsCountUpAndTheIdIsThatOfTheStatus) {
   Bench bench;
   bench.connect();
   bench.receive(encode(fire_at(1)));
@@ -172,7 +172,7 @@ TEST(OculusDevice, ping_ids_count_up_and_the_id_is_that_of_the_status) {
   EXPECT_GE(before, 14U);
 }
 
-TEST(OculusDevice, a_second_client_is_closed) {
+TEST(OculusDevice, ASecondClientIsClosed) {
   Bench bench;
   bench.connect();
   bench.connect(second_client);
@@ -184,7 +184,7 @@ TEST(OculusDevice, a_second_client_is_closed) {
   EXPECT_GE(bench.count(MessageId::simple_ping_result), 9U);
 }
 
-TEST(OculusDevice, a_silent_client_without_pings_gives_its_place_to_the_next) {
+TEST(OculusDevice, ASilentClientWithoutPingsGivesItsPlaceToTheNext) {
   Bench bench;
   bench.connect();
   bench.run_for(Device::most_silence - milliseconds{1});
@@ -202,7 +202,7 @@ TEST(OculusDevice, a_silent_client_without_pings_gives_its_place_to_the_next) {
 }
 
 // Most drivers fire once and then only receive.
-TEST(OculusDevice, a_client_that_pings_keeps_its_place_however_long_it_only_listens) {
+TEST(OculusDevice, AClientThatPingsKeepsItsPlaceHoweverLongItOnlyListens) {
   Bench bench;
   bench.connect();
   bench.receive(encode(fire_at(4)));
@@ -211,7 +211,7 @@ TEST(OculusDevice, a_client_that_pings_keeps_its_place_however_long_it_only_list
   EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
 }
 
-TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
+TEST(OculusDevice, ACommandOf5000BytesClosesTheConnection) {
   Bench bench;
   bench.connect();
   Bytes bytes = encode(fire_at(0));
@@ -220,7 +220,7 @@ TEST(OculusDevice, a_command_of_5000_bytes_closes_the_connection) {
   EXPECT_EQ(bench.closed, std::vector<Peer>{client});
 }
 
-TEST(OculusDevice, user_config_is_answered_and_remembered) {
+TEST(OculusDevice, UserConfigIsAnsweredAndRemembered) {
   Bench bench;
   bench.connect();
   bench.receive(sonard::testing::load_hex_fixture("oculus", "user_config_request"));
@@ -231,7 +231,7 @@ TEST(OculusDevice, user_config_is_answered_and_remembered) {
   EXPECT_TRUE(*decode_command(bench.stream.back()) == Command{other});
 }
 
-TEST(OculusDevice, a_ping_that_nobody_wants_any_more_is_cancelled) {
+TEST(OculusDevice, APingThatNobodyWantsAnyMoreIsCancelled) {
   Bench bench(false);
   bench.connect();
   bench.receive(encode(fire_at(0)));
@@ -241,7 +241,7 @@ TEST(OculusDevice, a_ping_that_nobody_wants_any_more_is_cancelled) {
   EXPECT_FALSE(bench.cancelled);
 }
 
-TEST(OculusDevice, refuses_an_id_of_zero) {
+TEST(OculusDevice, RefusesAnIdOfZero) {
   DeviceConfig config;
   config.id = 0;
   EXPECT_THROW(Device(config, TimePoint{}), std::invalid_argument);

@@ -13,19 +13,19 @@ Bytes bytes_of(std::string_view text) {
   return {text.begin(), text.end()};
 }
 
-TEST(Ping360Discovery, checklist_7_the_text_is_exact_to_the_byte) {
+TEST(Ping360Discovery, Checklist7TheTextIsExactToTheByte) {
   EXPECT_EQ(discovery_reply({0x54, 0x10, 0xEC, 0x79, 0x7D, 0xC5}, 0xC0A80204),
             "SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 54-10-EC-79-7D-C5\r\n"
             "IP Address:- 192.168.002.004\r\n");
 }
 
-TEST(Ping360Discovery, small_numbers_are_padded) {
+TEST(Ping360Discovery, SmallNumbersArePadded) {
   EXPECT_EQ(discovery_reply({0, 1, 2, 0xA, 0xB, 0xFF}, 0x0A000001),
             "SONAR PING360\r\nBlue Robotics\r\nMAC Address:- 00-01-02-0A-0B-FF\r\n"
             "IP Address:- 010.000.000.001\r\n");
 }
 
-TEST(Ping360Discovery, request_is_the_word_and_nothing_else) {
+TEST(Ping360Discovery, RequestIsTheWordAndNothingElse) {
   EXPECT_TRUE(is_discovery(bytes_of("Discovery")));
   EXPECT_TRUE(is_discovery(bytes_of("Discovery\r\n")));
   EXPECT_TRUE(is_discovery(bytes_of(std::string_view(" Discovery\0", 11))));
@@ -37,7 +37,7 @@ TEST(Ping360Discovery, request_is_the_word_and_nothing_else) {
   EXPECT_FALSE(is_discovery(Bytes(60'000, ' ')));
 }
 
-TEST(Ping360Discovery, address_that_a_head_is_told_to_take) {
+TEST(Ping360Discovery, AddressThatAHeadIsToldToTake) {
   EXPECT_EQ(set_ip(bytes_of("SetSS1IP 192.168.002.004")), 0xC0A80204);
   EXPECT_EQ(set_ip(bytes_of("SetSS1IP 000.000.000.000\r\n")), 0U);
   EXPECT_EQ(set_ip(bytes_of("SetSS1IP 10.1.2.3")), 0x0A010203U);

@@ -92,24 +92,24 @@ std::vector<ReportExample> report_examples() {
 class CommandExampleTest : public ::testing::TestWithParam<CommandExample> {};
 class ReportExampleTest : public ::testing::TestWithParam<ReportExample> {};
 
-TEST_P(CommandExampleTest, bytes_mean_the_value) {
+TEST_P(CommandExampleTest, BytesMeanTheValue) {
   const auto decoded = decode_command(load_fixture(GetParam().fixture));
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(CommandExampleTest, value_becomes_the_bytes) {
+TEST_P(CommandExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value, host_id, GetParam().destination), load_fixture(GetParam().fixture));
 }
 
-TEST_P(ReportExampleTest, bytes_mean_the_value) {
+TEST_P(ReportExampleTest, BytesMeanTheValue) {
   const Bytes bytes = load_fixture(GetParam().fixture);
   const auto decoded = decode_report(bytes);
   ASSERT_TRUE(decoded) << to_string(decoded.error());
   EXPECT_TRUE(*decoded == GetParam().value);
 }
 
-TEST_P(ReportExampleTest, value_becomes_the_bytes) {
+TEST_P(ReportExampleTest, ValueBecomesTheBytes) {
   EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
 }
 
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(all, CommandExampleTest, ::testing::ValuesIn(command_ex
 INSTANTIATE_TEST_SUITE_P(all, ReportExampleTest, ::testing::ValuesIn(report_examples()),
                          example_name<ReportExample>);
 
-TEST(Ping360Examples, cover_every_message_and_every_fixture) {
+TEST(Ping360Examples, CoverEveryMessageAndEveryFixture) {
   std::set<std::size_t> commands;
   std::set<std::size_t> reports;
   std::set<std::string> fixtures;
@@ -141,12 +141,12 @@ TEST(Ping360Examples, cover_every_message_and_every_fixture) {
   EXPECT_EQ(fixtures, std::set<std::string>(names.begin(), names.end()));
 }
 
-TEST(Ping360Examples, a_head_may_say_its_id_with_the_message_that_sets_it) {
+TEST(Ping360Examples, AHeadMaySayItsIdWithTheMessageThatSetsIt) {
   const Bytes bytes = load_fixture("set_device_id");
   EXPECT_TRUE(*decode_report(bytes) == Report{SetDeviceId{7}});
 }
 
-TEST(Ping360Examples, every_frame_is_found_behind_junk) {
+TEST(Ping360Examples, EveryFrameIsFoundBehindJunk) {
   for (const std::string& name : fixture_names()) {
     Bytes stream{0x00, 0xFF, 0x55, 0x55, 0x55};
     const Bytes frame = load_fixture(name);

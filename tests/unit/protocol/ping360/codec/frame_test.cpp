@@ -43,13 +43,13 @@ std::vector<Bytes> frames_of(const Bytes& stream, std::size_t piece) {
   return frames;
 }
 
-TEST(Ping360Frame, header_and_checksum_are_where_they_belong) {
+TEST(Ping360Frame, HeaderAndChecksumAreWhereTheyBelong) {
   const Bytes frame = make_frame(0x0A29, 3, 9, Bytes{0xFF, 0xFF});
   EXPECT_EQ(frame, (Bytes{0x42, 0x52, 2, 0, 0x29, 0x0A, 3, 9, 0xFF, 0xFF, 0xD3, 0x02}));
   EXPECT_EQ(frame_header(frame), (FrameHeader{2, 2601, 3, 9}));
 }
 
-TEST(Ping360Frame, frames_are_found_however_the_stream_is_cut) {
+TEST(Ping360Frame, FramesAreFoundHoweverTheStreamIsCut) {
   std::vector<Bytes> frames;
   for (const std::string& name : fixture_names()) {
     frames.push_back(load_fixture(name));
@@ -60,13 +60,13 @@ TEST(Ping360Frame, frames_are_found_however_the_stream_is_cut) {
   }
 }
 
-TEST(Ping360Frame, a_start_byte_may_be_followed_by_a_frame) {
+TEST(Ping360Frame, AStartByteMayBeFollowedByAFrame) {
   const Bytes frame = load_fixture("motor_off");
   EXPECT_EQ(frames_of(joined({{'B'}, frame}), 1), std::vector<Bytes>{frame}) << "B B R ...";
   EXPECT_EQ(frames_of(joined({{'B', 'R'}, frame}), 1), std::vector<Bytes>{frame}) << "a length of 0x5242";
 }
 
-TEST(Ping360Frame, a_wrong_checksum_costs_one_frame) {
+TEST(Ping360Frame, AWrongChecksumCostsOneFrame) {
   Bytes broken = load_fixture("transducer");
   broken[12] ^= 1;
   const Bytes frame = load_fixture("motor_off");
@@ -77,20 +77,20 @@ TEST(Ping360Frame, a_wrong_checksum_costs_one_frame) {
   EXPECT_EQ(buffer.dropped(), 2 * broken.size());
 }
 
-TEST(Ping360Frame, a_frame_inside_of_a_broken_one_is_found) {
+TEST(Ping360Frame, AFrameInsideOfABrokenOneIsFound) {
   const Bytes frame = load_fixture("request_device_information");
   const Bytes long_header{0x42, 0x52, 0x10, 0x00, 0x29, 0x0A, 0x00, 0x00};
   EXPECT_EQ(frames_of(joined({long_header, frame, frame}), 1), (std::vector<Bytes>{frame, frame}));
 }
 
-TEST(Ping360Frame, a_length_beyond_the_limit_is_no_frame) {
+TEST(Ping360Frame, ALengthBeyondTheLimitIsNoFrame) {
   const Bytes at_the_limit = make_frame(1, 0, 0, Bytes(max_payload_size));
   const Bytes beyond = make_frame(1, 0, 0, Bytes(max_payload_size + 1));
   EXPECT_EQ(next_frame(at_the_limit), static_cast<std::ptrdiff_t>(at_the_limit.size()));
   EXPECT_EQ(next_frame(std::span{beyond}.first(4)), -1);
 }
 
-TEST(Ping360Frame, what_stops_to_come_for_100_ms_is_given_up) {
+TEST(Ping360Frame, WhatStopsToComeFor100MsIsGivenUp) {
   const Bytes frame = load_fixture("motor_off");
   const Bytes header_of_many{0x42, 0x52, 0xFF, 0x0F, 'U'};
   FrameBuffer buffer;
@@ -103,7 +103,7 @@ TEST(Ping360Frame, what_stops_to_come_for_100_ms_is_given_up) {
   EXPECT_FALSE(buffer.take_baud_bytes()) << "they were in a frame";
 }
 
-TEST(Ping360Frame, baud_bytes_count_between_frames_only) {
+TEST(Ping360Frame, BaudBytesCountBetweenFramesOnly) {
   FrameBuffer buffer;
   buffer.append({}, make_frame(3, 0, 0, Bytes{'U', 'U'}));
   EXPECT_EQ(frames_in(buffer).size(), 1U);
@@ -119,7 +119,7 @@ TEST(Ping360Frame, baud_bytes_count_between_frames_only) {
   EXPECT_FALSE(buffer.take_baud_bytes()) << "once";
 }
 
-TEST(Ping360Frame, what_is_cleared_does_not_spoil_what_comes) {
+TEST(Ping360Frame, WhatIsClearedDoesNotSpoilWhatComes) {
   FrameBuffer buffer;
   buffer.append({}, Bytes{0x42, 0x52, 0xFF, 0x0F});
   buffer.clear();
@@ -127,7 +127,7 @@ TEST(Ping360Frame, what_is_cleared_does_not_spoil_what_comes) {
   EXPECT_EQ(frames_in(buffer).size(), 1U);
 }
 
-TEST(Ping360Frame, junk_holds_no_memory_and_hides_no_frame_for_ever) {
+TEST(Ping360Frame, JunkHoldsNoMemoryAndHidesNoFrameForEver) {
   std::mt19937 random(1);
   FrameBuffer buffer;
   std::size_t found = 0;

@@ -26,7 +26,7 @@ constexpr std::uint16_t u16(std::size_t offset) {
   return static_cast<std::uint16_t>(u8(offset) | u8(offset + 1) << 8);
 }
 
-TEST(Ping360Layout, transducer) {
+TEST(Ping360Layout, Transducer) {
   const auto command = std::get<Transducer>(*decode_command(counting_frame(MessageId::transducer, 14)));
   EXPECT_EQ(command.mode, u8(0));
   EXPECT_EQ(command.gain_setting, u8(1));
@@ -38,7 +38,7 @@ TEST(Ping360Layout, transducer) {
   EXPECT_EQ(command.transmit, u8(12));
 }
 
-TEST(Ping360Layout, auto_transmit) {
+TEST(Ping360Layout, AutoTransmit) {
   const auto command = std::get<AutoTransmit>(*decode_command(counting_frame(MessageId::auto_transmit, 16)));
   EXPECT_EQ(command.mode, u8(0));
   EXPECT_EQ(command.gain_setting, u8(1));
@@ -53,7 +53,7 @@ TEST(Ping360Layout, auto_transmit) {
   EXPECT_EQ(encode(command), counting_frame(MessageId::auto_transmit, 16));
 }
 
-TEST(Ping360Layout, small_commands) {
+TEST(Ping360Layout, SmallCommands) {
   EXPECT_TRUE(*decode_command(counting_frame(MessageId::set_common_device_id, 1)) ==
               Command{SetCommonDeviceId{1}});
   EXPECT_TRUE(*decode_command(counting_frame(MessageId::set_device_id, 2)) == Command{SetDeviceId{1}});
@@ -62,7 +62,7 @@ TEST(Ping360Layout, small_commands) {
               Command{GeneralRequest{0x0201}});
 }
 
-TEST(Ping360Layout, device_data) {
+TEST(Ping360Layout, DeviceData) {
   Bytes payload(14 + 3);
   std::iota(payload.begin(), payload.end(), std::uint8_t{1});
   payload[12] = 3;
@@ -80,7 +80,7 @@ TEST(Ping360Layout, device_data) {
   EXPECT_EQ(encode(data), frame);
 }
 
-TEST(Ping360Layout, auto_device_data) {
+TEST(Ping360Layout, AutoDeviceData) {
   Bytes payload(20 + 2);
   std::iota(payload.begin(), payload.end(), std::uint8_t{1});
   payload[18] = 2;
@@ -102,7 +102,7 @@ TEST(Ping360Layout, auto_device_data) {
   EXPECT_EQ(encode(data), frame);
 }
 
-TEST(Ping360Layout, small_reports) {
+TEST(Ping360Layout, SmallReports) {
   EXPECT_TRUE(*decode_report(counting_frame(MessageId::device_information, 6)) ==
               (Report{DeviceInformation{1, 2, 3, 4, 5}}));
   EXPECT_TRUE(*decode_report(counting_frame(MessageId::protocol_version, 4)) ==

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint16_t all_ids[] = {1,    2,    3,    4,    5,    6,    100, 2000,
                                      2300, 2301, 2600, 2601, 2602, 2903, 7,   65535};
 
-TEST(Ping360Malformed, every_shortened_example_is_refused_or_means_a_shorter_message) {
+TEST(Ping360Malformed, EveryShortenedExampleIsRefusedOrMeansAShorterMessage) {
   for (const auto& name : fixture_names()) {
     const Bytes whole = load_fixture(name);
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -28,7 +28,7 @@ TEST(Ping360Malformed, every_shortened_example_is_refused_or_means_a_shorter_mes
   }
 }
 
-TEST(Ping360Malformed, a_command_has_its_length_to_the_byte) {
+TEST(Ping360Malformed, ACommandHasItsLengthToTheByte) {
   EXPECT_EQ(decode_command(make_frame(2601, 0, 0, Bytes(13))).error(),
             (WireError{WireErrorReason::truncated, 21, "spare"}));
   EXPECT_EQ(decode_command(make_frame(2602, 0, 0, Bytes(15))).error(),
@@ -41,19 +41,19 @@ TEST(Ping360Malformed, a_command_has_its_length_to_the_byte) {
             (WireError{WireErrorReason::truncated, 8, "requested_id"}));
 }
 
-TEST(Ping360Malformed, a_report_may_go_on_behind_its_message) {
+TEST(Ping360Malformed, AReportMayGoOnBehindItsMessage) {
   EXPECT_TRUE(*decode_report(make_frame(4, 2, 0, Bytes{2, 1, 3, 3, 8, 0, 77})) ==
               (Report{DeviceInformation{2, 1, 3, 3, 8}}));
 }
 
-TEST(Ping360Malformed, samples_that_are_not_there) {
+TEST(Ping360Malformed, SamplesThatAreNotThere) {
   Bytes payload(14 + 5);
   payload[12] = 6;
   EXPECT_EQ(decode_report(make_frame(2300, 2, 0, payload)).error(),
             (WireError{WireErrorReason::truncated, 22, "data"}));
 }
 
-TEST(Ping360Malformed, unknown_numbers_are_told_and_kept) {
+TEST(Ping360Malformed, UnknownNumbersAreToldAndKept) {
   for (const std::uint16_t id : {0, 7, 99, 101, 1001, 2001, 2302, 2603, 3000, 65535}) {
     const Bytes frame = make_frame(id, 0, 0, Bytes(5));
     EXPECT_TRUE(*decode_command(frame) == Command{Unknown{id}}) << id;
@@ -65,21 +65,21 @@ TEST(Ping360Malformed, unknown_numbers_are_told_and_kept) {
   EXPECT_TRUE(*decode_report(load_fixture("transducer")) == Report{Unknown{2601}});
 }
 
-TEST(Ping360Malformed, an_empty_message_of_three_kinds_is_a_request) {
+TEST(Ping360Malformed, AnEmptyMessageOfThreeKindsIsARequest) {
   for (const std::uint16_t id : {4, 5, 2300}) {
     EXPECT_TRUE(*decode_command(make_frame(id, 0, 0, {})) == Command{GeneralRequest{id}}) << id;
   }
   EXPECT_TRUE(*decode_command(make_frame(2301, 0, 0, {})) == Command{Unknown{2301}});
 }
 
-TEST(Ping360Malformed, what_is_too_long_is_cut_when_it_is_written) {
+TEST(Ping360Malformed, WhatIsTooLongIsCutWhenItIsWritten) {
   const Bytes many(5000, 7);
   EXPECT_EQ(encode(DeviceData{.data = many}).size(), max_payload_size + frame_overhead);
   EXPECT_EQ(encode(Nack{6, std::string(5000, 'x')}).size(), max_payload_size + frame_overhead);
   EXPECT_GT(next_frame(encode(AutoDeviceData{.data = many})), 0);
 }
 
-TEST(Ping360Malformed, random_frames_decode_to_what_encodes_again) {
+TEST(Ping360Malformed, RandomFramesDecodeToWhatEncodesAgain) {
   std::mt19937 random(1);
   int commands = 0;
   int reports = 0;

@@ -11,7 +11,7 @@ std::uint16_t number(MessageId id) {
 
 // ---- 1. Requests
 
-TEST(Ping360Checklist1, requests_are_answered_at_once) {
+TEST(Ping360Checklist1, RequestsAreAnsweredAtOnce) {
   Bench bench;
   bench.raw(fixture("request_protocol_version"));
   bench.raw(fixture("request_device_information"));
@@ -22,7 +22,7 @@ TEST(Ping360Checklist1, requests_are_answered_at_once) {
   EXPECT_EQ(bench.heard[2].frame, fixture("device_data_at_boot")) << "a payload of exactly 14 bytes";
 }
 
-TEST(Ping360Checklist1, requests_are_answered_while_a_ping_is_under_way) {
+TEST(Ping360Checklist1, RequestsAreAnsweredWhileAPingIsUnderWay) {
   Bench bench;
   bench.render_time = 1s;
   bench.command(ping_at(50));
@@ -37,7 +37,7 @@ TEST(Ping360Checklist1, requests_are_answered_while_a_ping_is_under_way) {
   EXPECT_EQ(bench.all<DeviceData>().size(), 5U) << "the ping itself is there, once";
 }
 
-TEST(Ping360Checklist1, requests_are_answered_while_it_scans_and_do_not_disturb_the_scan) {
+TEST(Ping360Checklist1, RequestsAreAnsweredWhileItScansAndDoNotDisturbTheScan) {
   Bench bench;
   bench.command(scan_of(0, 399));
   std::vector<int> expected;
@@ -54,7 +54,7 @@ TEST(Ping360Checklist1, requests_are_answered_while_it_scans_and_do_not_disturb_
   EXPECT_GE(angles.size(), 20U);
 }
 
-TEST(Ping360Checklist1, the_state_is_that_of_the_last_command_with_the_samples_of_the_last_ping) {
+TEST(Ping360Checklist1, TheStateIsThatOfTheLastCommandWithTheSamplesOfTheLastPing) {
   Bench bench;
   Transducer command = ping_at(150);
   command.mode = 0;
@@ -68,7 +68,7 @@ TEST(Ping360Checklist1, the_state_is_that_of_the_last_command_with_the_samples_o
 
 // By the published definition of device_data, if its data are filled in, all other fields date from the time
 // when the data were captured.
-TEST(Ping360Checklist1, the_state_goes_with_its_samples_while_the_next_ping_is_under_way) {
+TEST(Ping360Checklist1, TheStateGoesWithItsSamplesWhileTheNextPingIsUnderWay) {
   Bench bench;
   bench.command(ping_at(150));
   bench.run_for(5s);
@@ -90,7 +90,7 @@ TEST(Ping360Checklist1, the_state_goes_with_its_samples_while_the_next_ping_is_u
   EXPECT_TRUE(moved.data.empty()) << "what was heard is of another angle";
 }
 
-TEST(Ping360Checklist1, the_state_of_a_scan_is_its_last_ping) {
+TEST(Ping360Checklist1, TheStateOfAScanIsItsLastPing) {
   Bench bench;
   bench.command(scan_of(10, 200, 10));
   bench.wait_for<AutoDeviceData>(3);
@@ -99,7 +99,7 @@ TEST(Ping360Checklist1, the_state_of_a_scan_is_its_last_ping) {
   EXPECT_EQ(state, bench.all<AutoDeviceData>().back());
 }
 
-TEST(Ping360Checklist1, the_state_of_a_scan_can_be_asked_for_while_there_is_one) {
+TEST(Ping360Checklist1, TheStateOfAScanCanBeAskedForWhileThereIsOne) {
   Bench bench;
   EXPECT_TRUE(bench.ask(GeneralRequest{2301}).at(0) == (Report{Nack{6, "cannot be requested"}}));
   bench.command(scan_of(10, 20));
@@ -110,7 +110,7 @@ TEST(Ping360Checklist1, the_state_of_a_scan_can_be_asked_for_while_there_is_one)
   EXPECT_EQ(std::get<AutoDeviceData>(bench.ask(GeneralRequest{2301}).at(0)).data.size(), 200U);
 }
 
-TEST(Ping360Checklist1, what_cannot_be_requested_is_refused_in_the_name_of_the_request) {
+TEST(Ping360Checklist1, WhatCannotBeRequestedIsRefusedInTheNameOfTheRequest) {
   Bench bench;
   for (const int id : {0, 1, 6, 100, 2600, 2601, 2602, 2903, 9999}) {
     EXPECT_TRUE(bench.ask(GeneralRequest{static_cast<std::uint16_t>(id)}).at(0) ==
@@ -119,7 +119,7 @@ TEST(Ping360Checklist1, what_cannot_be_requested_is_refused_in_the_name_of_the_r
   }
 }
 
-TEST(Ping360Checklist1, an_empty_message_is_a_request_for_it) {
+TEST(Ping360Checklist1, AnEmptyMessageIsARequestForIt) {
   Bench bench;
   for (const std::uint16_t id : {4, 5, 2300}) {
     bench.raw(make_frame(id, 0, 0, {}));
@@ -130,7 +130,7 @@ TEST(Ping360Checklist1, an_empty_message_is_a_request_for_it) {
 
 // ---- 2. One answer for one command
 
-TEST(Ping360Checklist2, one_ping_for_one_command_with_its_settings) {
+TEST(Ping360Checklist2, OnePingForOneCommandWithItsSettings) {
   Bench bench;
   const Transducer command{.mode = 1,
                            .gain_setting = 2,
@@ -153,7 +153,7 @@ TEST(Ping360Checklist2, one_ping_for_one_command_with_its_settings) {
   EXPECT_EQ(bench.heard[0].frame.size(), 1200U + 14 + 10);
 }
 
-TEST(Ping360Checklist2, without_transmission_the_head_only_moves) {
+TEST(Ping360Checklist2, WithoutTransmissionTheHeadOnlyMoves) {
   Bench bench;
   Transducer command = ping_at(100);
   command.transmit = 0;
@@ -166,7 +166,7 @@ TEST(Ping360Checklist2, without_transmission_the_head_only_moves) {
   EXPECT_EQ(bench.now, 610ms) << "as soon as it is there";
 }
 
-TEST(Ping360Checklist2, mode_0_and_angle_400_are_taken) {
+TEST(Ping360Checklist2, Mode0AndAngle400AreTaken) {
   Bench bench;
   Transducer command = ping_at(400);
   command.mode = 0;
@@ -182,7 +182,7 @@ TEST(Ping360Checklist2, mode_0_and_angle_400_are_taken) {
             0);
 }
 
-TEST(Ping360Checklist2, commands_queue_and_the_oldest_is_dropped) {
+TEST(Ping360Checklist2, CommandsQueueAndTheOldestIsDropped) {
   Bench bench;
   for (int angle = 1; angle <= 8; ++angle) {
     bench.command(ping_at(angle));
@@ -198,7 +198,7 @@ TEST(Ping360Checklist2, commands_queue_and_the_oldest_is_dropped) {
 
 // ---- 3. Refusals
 
-TEST(Ping360Checklist3, a_value_out_of_range_is_one_nack_and_nothing_else) {
+TEST(Ping360Checklist3, AValueOutOfRangeIsOneNackAndNothingElse) {
   const Transducer good = ping_at(10);
   const std::pair<void (*)(Transducer&), const char*> bad[] = {
       {[](Transducer& it) { it.gain_setting = 3; }, "gain_setting out of range"},
@@ -228,7 +228,7 @@ TEST(Ping360Checklist3, a_value_out_of_range_is_one_nack_and_nothing_else) {
   }
 }
 
-TEST(Ping360Checklist3, limits_themselves_are_taken) {
+TEST(Ping360Checklist3, LimitsThemselvesAreTaken) {
   for (const Transducer& command :
        {Transducer{.transmit_duration_us = 1, .transmit_frequency_khz = 500, .number_of_samples = 1},
         Transducer{.gain_setting = 2,
@@ -243,7 +243,7 @@ TEST(Ping360Checklist3, limits_themselves_are_taken) {
   }
 }
 
-TEST(Ping360Checklist3, a_scan_out_of_range_is_refused) {
+TEST(Ping360Checklist3, AScanOutOfRangeIsRefused) {
   const std::pair<void (*)(AutoTransmit&), const char*> bad[] = {
       {[](AutoTransmit& it) { it.start_angle = 400; }, "start_angle out of range"},
       {[](AutoTransmit& it) { it.start_angle = 65336; }, "start_angle out of range"},
@@ -266,7 +266,7 @@ TEST(Ping360Checklist3, a_scan_out_of_range_is_refused) {
       1);
 }
 
-TEST(Ping360Checklist3, limits_of_a_scan_below_0_where_the_head_is_told_to_read_them_so) {
+TEST(Ping360Checklist3, LimitsOfAScanBelow0WhereTheHeadIsToldToReadThemSo) {
   DeviceConfig config;
   config.signed_scan_angles = true;
   Bench bench(config);
@@ -276,14 +276,14 @@ TEST(Ping360Checklist3, limits_of_a_scan_below_0_where_the_head_is_told_to_read_
   EXPECT_EQ(first.at(0).start_angle, 65336) << "as it was commanded";
 }
 
-TEST(Ping360Checklist3, angle_400_where_the_head_is_told_to_refuse_it) {
+TEST(Ping360Checklist3, Angle400WhereTheHeadIsToldToRefuseIt) {
   DeviceConfig config;
   config.accepts_angle_400 = false;
   Bench bench(config);
   EXPECT_TRUE(bench.ask(ping_at(400)).at(0) == (Report{Nack{2601, "angle out of range"}}));
 }
 
-TEST(Ping360Checklist3, junk_and_bad_checksums_get_no_answer) {
+TEST(Ping360Checklist3, JunkAndBadChecksumsGetNoAnswer) {
   Bench bench;
   Bytes broken = fixture("request_device_information");
   broken.back() ^= 1;
@@ -298,7 +298,7 @@ TEST(Ping360Checklist3, junk_and_bad_checksums_get_no_answer) {
   EXPECT_EQ(bench.device.counters().bad_checksums, 1U);
 }
 
-TEST(Ping360Checklist3, unknown_messages_and_wrong_lengths_are_refused_by_their_number) {
+TEST(Ping360Checklist3, UnknownMessagesAndWrongLengthsAreRefusedByTheirNumber) {
   Bench bench;
   EXPECT_TRUE(bench.ask(Unknown{1234}).at(0) == (Report{Nack{1234, "command not recognised"}}));
   bench.raw(fixture("device_data"));
@@ -316,7 +316,7 @@ TEST(Ping360Checklist3, unknown_messages_and_wrong_lengths_are_refused_by_their_
 
 // ---- 4. Scans
 
-TEST(Ping360Checklist4, the_first_thing_said_is_the_ping_at_the_start) {
+TEST(Ping360Checklist4, TheFirstThingSaidIsThePingAtTheStart) {
   Bench bench;
   bench.command(scan_of(37, 300, 3));
   bench.run_for(2s);
@@ -325,7 +325,7 @@ TEST(Ping360Checklist4, the_first_thing_said_is_the_ping_at_the_start) {
   EXPECT_EQ(bench.heard[0].get<AutoDeviceData>()->angle, 37);
 }
 
-TEST(Ping360Checklist4, every_ping_echoes_the_command) {
+TEST(Ping360Checklist4, EveryPingEchoesTheCommand) {
   Bench bench;
   const AutoTransmit command{.mode = 0,
                              .gain_setting = 1,
@@ -356,7 +356,7 @@ TEST(Ping360Checklist4, every_ping_echoes_the_command) {
   }
 }
 
-TEST(Ping360Checklist4, all_round_has_no_gap_and_goes_on_at_the_start) {
+TEST(Ping360Checklist4, AllRoundHasNoGapAndGoesOnAtTheStart) {
   Bench bench;
   bench.command(scan_of(0, 399));
   const auto angles = angles_of(bench.wait_for<AutoDeviceData>(810));
@@ -365,13 +365,13 @@ TEST(Ping360Checklist4, all_round_has_no_gap_and_goes_on_at_the_start) {
   }
 }
 
-TEST(Ping360Checklist4, half_a_turn_or_less_goes_back_and_forth_across_0) {
+TEST(Ping360Checklist4, HalfATurnOrLessGoesBackAndForthAcross0) {
   Bench bench;
   bench.command(scan_of(390, 10, 10));
   EXPECT_EQ(angles_of(bench.wait_for<AutoDeviceData>(7)), (std::vector{390, 0, 10, 0, 390, 0, 10}));
 }
 
-TEST(Ping360Checklist4, equal_limits_stare_and_a_sector_of_more_than_half_a_turn_goes_one_way) {
+TEST(Ping360Checklist4, EqualLimitsStareAndASectorOfMoreThanHalfATurnGoesOneWay) {
   Bench bench;
   bench.command(scan_of(77, 77));
   EXPECT_EQ(angles_of(bench.wait_for<AutoDeviceData>(3)), (std::vector{77, 77, 77}));
@@ -383,7 +383,7 @@ TEST(Ping360Checklist4, equal_limits_stare_and_a_sector_of_more_than_half_a_turn
   EXPECT_EQ(angles.at(22), 399);
 }
 
-TEST(Ping360Checklist4, a_scan_waits_for_the_command_that_is_being_done) {
+TEST(Ping360Checklist4, AScanWaitsForTheCommandThatIsBeingDone) {
   Bench bench;
   bench.command(ping_at(100), client_b);
   bench.command(scan_of(0, 399), client_a);
@@ -395,7 +395,7 @@ TEST(Ping360Checklist4, a_scan_waits_for_the_command_that_is_being_done) {
   EXPECT_EQ(bench.heard[1].get<AutoDeviceData>()->angle, 0);
 }
 
-TEST(Ping360Checklist4, a_new_scan_replaces_the_old_one_at_once) {
+TEST(Ping360Checklist4, ANewScanReplacesTheOldOneAtOnce) {
   Bench bench;
   bench.command(scan_of(0, 399));
   bench.run_for(500ms);
@@ -409,7 +409,7 @@ TEST(Ping360Checklist4, a_new_scan_replaces_the_old_one_at_once) {
   EXPECT_EQ(pings[1].angle, 102);
 }
 
-TEST(Ping360Checklist4, it_never_ends_while_its_client_lives) {
+TEST(Ping360Checklist4, ItNeverEndsWhileItsClientLives) {
   DeviceConfig config;
   config.idle_timeout = 30s;
   Bench bench(config);
@@ -442,7 +442,7 @@ struct Ping360Checklist5 : ::testing::Test {
   }
 };
 
-TEST_F(Ping360Checklist5, motor_off_is_acknowledged_every_time) {
+TEST_F(Ping360Checklist5, MotorOffIsAcknowledgedEveryTime) {
   scan();
   for (int i = 0; i < 10; ++i) {
     bench.raw(fixture("motor_off"));
@@ -453,34 +453,34 @@ TEST_F(Ping360Checklist5, motor_off_is_acknowledged_every_time) {
   expect_stopped("motor_off");
 }
 
-TEST_F(Ping360Checklist5, a_transducer_command) {
+TEST_F(Ping360Checklist5, ATransducerCommand) {
   scan();
   bench.command(ping_at(5));
   expect_stopped("transducer command received");
   EXPECT_EQ(bench.all<DeviceData>(before).size(), 1U);
 }
 
-TEST_F(Ping360Checklist5, a_reset) {
+TEST_F(Ping360Checklist5, AReset) {
   scan();
   bench.raw(fixture("reset"));
   expect_stopped("reset");
   EXPECT_EQ(bench.heard.size(), before) << "it is not answered";
 }
 
-TEST_F(Ping360Checklist5, an_empty_datagram_and_the_next_is_heard_at_once) {
+TEST_F(Ping360Checklist5, AnEmptyDatagramAndTheNextIsHeardAtOnce) {
   scan();
   bench.raw({});
   EXPECT_EQ(bench.ask(GeneralRequest{4}).size(), 1U);
   expect_stopped("empty datagram received");
 }
 
-TEST_F(Ping360Checklist5, u_on_the_serial_line) {
+TEST_F(Ping360Checklist5, UOnTheSerialLine) {
   scan(serial_client);
   bench.raw({'U', 'U', 'U', 0}, serial_client);
   expect_stopped("break received");
 }
 
-TEST_F(Ping360Checklist5, u_before_an_order_stops_what_was_and_not_what_is_ordered) {
+TEST_F(Ping360Checklist5, UBeforeAnOrderStopsWhatWasAndNotWhatIsOrdered) {
   scan(serial_client);
   Bytes bytes(10, 'U');
   const Bytes order = encode(scan_of(50, 60));
@@ -490,7 +490,7 @@ TEST_F(Ping360Checklist5, u_before_an_order_stops_what_was_and_not_what_is_order
   EXPECT_EQ(bench.all<AutoDeviceData>(before).at(0).angle, 50);
 }
 
-TEST_F(Ping360Checklist5, u_in_a_frame_or_a_datagram_means_nothing) {
+TEST_F(Ping360Checklist5, UInAFrameOrADatagramMeansNothing) {
   scan(serial_client);
   bench.command(GeneralRequest{0x5555}, serial_client);
   bench.raw({'U', 'U', 'U'}, client_a);
@@ -498,7 +498,7 @@ TEST_F(Ping360Checklist5, u_in_a_frame_or_a_datagram_means_nothing) {
   EXPECT_FALSE(bench.all<AutoDeviceData>(before).empty());
 }
 
-TEST_F(Ping360Checklist5, not_silence_on_a_serial_line) {
+TEST_F(Ping360Checklist5, NotSilenceOnASerialLine) {
   scan(serial_client);
   bench.run_for(100s);
   before = bench.heard.size();
@@ -506,13 +506,13 @@ TEST_F(Ping360Checklist5, not_silence_on_a_serial_line) {
   EXPECT_FALSE(bench.all<AutoDeviceData>(before).empty());
 }
 
-TEST_F(Ping360Checklist5, its_client_has_gone) {
+TEST_F(Ping360Checklist5, ItsClientHasGone) {
   scan();
   bench.step(ClientGone{client_a});
   expect_stopped("disconnected");
 }
 
-TEST(Ping360Silence, of_a_client_ends_its_scan_where_the_head_is_told_so) {
+TEST(Ping360Silence, OfAClientEndsItsScanWhereTheHeadIsToldSo) {
   DeviceConfig config;
   config.idle_timeout = 30s;
   Bench bench(config);
@@ -528,7 +528,7 @@ TEST(Ping360Silence, of_a_client_ends_its_scan_where_the_head_is_told_so) {
   EXPECT_TRUE(bench.last.nobody_there);
 }
 
-TEST(Ping360Silence, of_a_client_does_not_matter_by_default) {
+TEST(Ping360Silence, OfAClientDoesNotMatterByDefault) {
   Bench bench;
   bench.command(scan_of(0, 399, 10));
   bench.run_for(200s);
@@ -539,7 +539,7 @@ TEST(Ping360Silence, of_a_client_does_not_matter_by_default) {
 
 // ---- 6. Two clients
 
-TEST(Ping360Checklist6, clients_have_a_parser_each) {
+TEST(Ping360Checklist6, ClientsHaveAParserEach) {
   Bench bench;
   const Bytes question = fixture("request_device_information");
   for (const std::uint8_t byte : question) {
@@ -551,7 +551,7 @@ TEST(Ping360Checklist6, clients_have_a_parser_each) {
   EXPECT_EQ(bench.heard[1].to, client_b);
 }
 
-TEST(Ping360Checklist6, answers_go_to_the_asker) {
+TEST(Ping360Checklist6, AnswersGoToTheAsker) {
   Bench bench;
   bench.command(scan_of(0, 399), client_a);
   bench.run_for(100ms);
@@ -566,7 +566,7 @@ TEST(Ping360Checklist6, answers_go_to_the_asker) {
   EXPECT_EQ(bench.all<DeviceData>().size(), 1U);
 }
 
-TEST(Ping360Checklist6, the_same_address_on_two_ports_of_ours_is_two_clients) {
+TEST(Ping360Checklist6, TheSameAddressOnTwoPortsOfOursIsTwoClients) {
   Bench bench;
   Peer other_port = client_a;
   other_port.channel = 2;
@@ -578,7 +578,7 @@ TEST(Ping360Checklist6, the_same_address_on_two_ports_of_ours_is_two_clients) {
   EXPECT_EQ(bench.heard[1].to, client_a);
 }
 
-TEST(Ping360Checklist6, all_hear_all_behind_a_bridge) {
+TEST(Ping360Checklist6, AllHearAllBehindABridge) {
   DeviceConfig config;
   config.fan_out = FanOut::all;
   Bench bench(config);

@@ -7,7 +7,7 @@
 namespace sonard::ping360 {
 namespace {
 
-TEST(Ping360Actions, a_job_is_what_the_command_says_in_si_units) {
+TEST(Ping360Actions, AJobIsWhatTheCommandSaysInSiUnits) {
   Bench bench;
   bench.run_until(1s);
   bench.command(Transducer{.gain_setting = 2,
@@ -36,7 +36,7 @@ TEST(Ping360Actions, a_job_is_what_the_command_says_in_si_units) {
   EXPECT_EQ(job.transmit_us, 1'610'000U);
 }
 
-TEST(Ping360Actions, bearings_are_from_where_ahead_is) {
+TEST(Ping360Actions, BearingsAreFromWhereAheadIs) {
   for (const auto& [ahead, angle, right_angles] : {std::tuple{0, 0, 0},
                                                    {0, 100, 1},
                                                    {0, 300, -1},
@@ -54,7 +54,7 @@ TEST(Ping360Actions, bearings_are_from_where_ahead_is) {
   }
 }
 
-TEST(Ping360Actions, gains_are_those_of_the_config) {
+TEST(Ping360Actions, GainsAreThoseOfTheConfig) {
   DeviceConfig config;
   config.gain_db = {1.0, 20.0, 40.0};
   Bench bench(config);
@@ -68,7 +68,7 @@ TEST(Ping360Actions, gains_are_those_of_the_config) {
   }
 }
 
-TEST(Ping360Actions, settings_are_told_in_words) {
+TEST(Ping360Actions, SettingsAreToldInWords) {
   Bench bench;
   bench.command(scan_of(350, 50, 2));
   bench.run_for(3s);
@@ -90,7 +90,7 @@ TEST(Ping360Actions, settings_are_told_in_words) {
   EXPECT_EQ(setting(bench.jobs.back(), "scan"), "");
 }
 
-TEST(Ping360Actions, a_record_is_the_ping_as_it_travelled) {
+TEST(Ping360Actions, ARecordIsThePingAsItTravelled) {
   Bench bench;
   bench.command(ping_at(100));
   bench.run_for(3s);
@@ -114,7 +114,7 @@ TEST(Ping360Actions, a_record_is_the_ping_as_it_travelled) {
   EXPECT_TRUE(*said == Report{expected});
 }
 
-TEST(Ping360Actions, a_record_of_a_scan_says_which) {
+TEST(Ping360Actions, ARecordOfAScanSaysWhich) {
   Bench bench;
   bench.command(scan_of(10, 50, 5));
   bench.run_for(1s);
@@ -126,7 +126,7 @@ TEST(Ping360Actions, a_record_of_a_scan_says_which) {
   EXPECT_TRUE(*said == Report{expected});
 }
 
-TEST(Ping360Actions, a_job_that_nobody_wants_any_more_is_told) {
+TEST(Ping360Actions, AJobThatNobodyWantsAnyMoreIsTold) {
   Bench bench;
   bench.renderer_answers = false;
   bench.command(scan_of(0, 399));
@@ -143,7 +143,7 @@ TEST(Ping360Actions, a_job_that_nobody_wants_any_more_is_told) {
   EXPECT_EQ(bench.device.counters().pings_cancelled, 1U);
 }
 
-TEST(Ping360Actions, ids_are_set_and_told) {
+TEST(Ping360Actions, IdsAreSetAndTold) {
   Bench bench;
   EXPECT_TRUE(bench.ask(Command{SetDeviceId{7}}).at(0) == Report{Ack{2000}});
   EXPECT_EQ(bench.device.id(), 7);
@@ -158,7 +158,7 @@ TEST(Ping360Actions, ids_are_set_and_told) {
   EXPECT_EQ(bench.device.id(), 7) << "it is kept";
 }
 
-TEST(Ping360Actions, the_common_message_for_the_id_is_refused_unless_told_to_obey) {
+TEST(Ping360Actions, TheCommonMessageForTheIdIsRefusedUnlessToldToObey) {
   Bench bench;
   bench.raw(fixture("set_common_device_id"));
   EXPECT_EQ(bench.heard.back().frame, fixture("nack_not_recognised"));
@@ -172,7 +172,7 @@ TEST(Ping360Actions, the_common_message_for_the_id_is_refused_unless_told_to_obe
   EXPECT_TRUE(obeys.ask(SetCommonDeviceId{0}).at(0) == (Report{Nack{100, "device_id out of range"}}));
 }
 
-TEST(Ping360Actions, destinations_do_not_matter_unless_told_so) {
+TEST(Ping360Actions, DestinationsDoNotMatterUnlessToldSo) {
   DeviceConfig config;
   const Bytes question = encode(GeneralRequest{4}, 0, 9);
   Bench hears_all(config);
@@ -189,7 +189,7 @@ TEST(Ping360Actions, destinations_do_not_matter_unless_told_so) {
   EXPECT_EQ(bench.device.counters().other_destinations, 1U);
 }
 
-TEST(Ping360Actions, frames_are_split_where_datagrams_are_short) {
+TEST(Ping360Actions, FramesAreSplitWhereDatagramsAreShort) {
   DeviceConfig config;
   config.max_datagram = 100;
   Bench bench(config);
@@ -202,7 +202,7 @@ TEST(Ping360Actions, frames_are_split_where_datagrams_are_short) {
   EXPECT_EQ(bench.all<DeviceData>().at(0).data.size(), 1200U);
 }
 
-TEST(Ping360Actions, what_happens_is_told_in_words) {
+TEST(Ping360Actions, WhatHappensIsToldInWords) {
   Bench bench(with_serial_line());
   bench.raw({}, client_a);
   bench.command(scan_of(0, 399), client_b);
@@ -222,7 +222,7 @@ TEST(Ping360Actions, what_happens_is_told_in_words) {
                 "auto scan by client on the serial line: 5 to 6 gradians, step 1"}));
 }
 
-TEST(Ping360Actions, nobody_is_there_before_the_first_and_after_the_last_client) {
+TEST(Ping360Actions, NobodyIsThereBeforeTheFirstAndAfterTheLastClient) {
   DeviceConfig config;
   config.idle_timeout = 30s;
   Bench bench(config);
@@ -238,7 +238,7 @@ TEST(Ping360Actions, nobody_is_there_before_the_first_and_after_the_last_client)
   EXPECT_TRUE(bench.last.nobody_there);
 }
 
-TEST(Ping360Actions, progress_and_counts_add_up) {
+TEST(Ping360Actions, ProgressAndCountsAddUp) {
   Bench bench;
   bench.command(scan_of(0, 399));
   bench.run_for(1s);

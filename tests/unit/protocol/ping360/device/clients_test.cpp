@@ -51,7 +51,7 @@ Transducer as_brping(int angle) {
 
 // ---- brping
 
-TEST(Ping360Clients, brping_initialises_and_turns_with_mode_0) {
+TEST(Ping360Clients, BrpingInitialisesAndTurnsWithMode0) {
   DeviceConfig config;
   config.max_datagram = 100;  // brping joins the pieces
   Bench bench(config);
@@ -74,7 +74,7 @@ TEST(Ping360Clients, brping_initialises_and_turns_with_mode_0) {
   EXPECT_TRUE(client.wait_for<Ack>(1s));
 }
 
-TEST(Ping360Clients, brping_gets_a_nack_back_for_what_is_refused) {
+TEST(Ping360Clients, BrpingGetsANackBackForWhatIsRefused) {
   Bench bench;
   Client client{bench};
   Transducer command = as_brping(0);
@@ -85,7 +85,7 @@ TEST(Ping360Clients, brping_gets_a_nack_back_for_what_is_refused) {
   EXPECT_EQ(answer->get<Nack>()->nacked_id, 2601);
 }
 
-TEST(Ping360Clients, brping_on_a_serial_line_begins_with_u_and_finds_a_quiet_head) {
+TEST(Ping360Clients, BrpingOnASerialLineBeginsWithUAndFindsAQuietHead) {
   Bench bench(with_serial_line());
   bench.command(scan_of(0, 399), serial_client);  // an earlier client left this scan running
   bench.run_for(1s);
@@ -118,7 +118,7 @@ struct Ping360PingCpp : ::testing::Test {
   }
 };
 
-TEST_F(Ping360PingCpp, hardware_test_200_pings_and_200_of_a_scan_without_a_gap) {
+TEST_F(Ping360PingCpp, HardwareTest200PingsAnd200OfAScanWithoutAGap) {
   connect();
   for (int angle = 0; angle < 200; ++angle) {
     bench.command(ping_at(angle));
@@ -138,7 +138,7 @@ TEST_F(Ping360PingCpp, hardware_test_200_pings_and_200_of_a_scan_without_a_gap) 
   EXPECT_EQ(ack->frame, fixture("ack_motor_off"));
 }
 
-TEST_F(Ping360PingCpp, begins_on_a_serial_line_with_u_and_nul) {
+TEST_F(Ping360PingCpp, BeginsOnASerialLineWithUAndNul) {
   Bench serial(with_serial_line());
   Client end{serial, serial_client};
   serial.raw(Bytes{'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 0}, serial_client);
@@ -146,7 +146,7 @@ TEST_F(Ping360PingCpp, begins_on_a_serial_line_with_u_and_nul) {
   EXPECT_TRUE(end.wait_for<ProtocolVersion>(500ms));
 }
 
-TEST_F(Ping360PingCpp, takes_a_nack_of_a_request_for_its_answer_only_by_the_right_number) {
+TEST_F(Ping360PingCpp, TakesANackOfARequestForItsAnswerOnlyByTheRightNumber) {
   bench.command(GeneralRequest{1211});
   const auto nack = client.wait_for<Nack>(500ms);
   ASSERT_TRUE(nack);
@@ -155,7 +155,7 @@ TEST_F(Ping360PingCpp, takes_a_nack_of_a_request_for_its_answer_only_by_the_righ
 
 // ---- ROS nodes
 
-TEST_F(Ping360PingCpp, ros_node_sends_400_for_0_and_a_nack_would_be_stale_data) {
+TEST_F(Ping360PingCpp, RosNodeSends400For0AndANackWouldBeStaleData) {
   connect();
   for (int turn = 0; turn < 2; ++turn) {
     for (int angle = 20; angle <= 400; angle += 20) {
@@ -173,7 +173,7 @@ TEST_F(Ping360PingCpp, ros_node_sends_400_for_0_and_a_nack_would_be_stale_data) 
   EXPECT_TRUE(client.wait_for<Ack>(1s));
 }
 
-TEST(Ping360Clients, ros_node_in_python_repeats_its_bytes) {
+TEST(Ping360Clients, RosNodeInPythonRepeatsItsBytes) {
   Bench bench;
   Client client{bench};
   for (int i = 0; i < 45; ++i) {
@@ -188,7 +188,7 @@ TEST(Ping360Clients, ros_node_in_python_repeats_its_bytes) {
 // ---- pnarvor/ping360_driver
 
 /// The client reads datagrams into 1024 bytes, and the first one must have 14 bytes.
-TEST(Ping360Clients, pnarvor_reads_its_512_samples_whole) {
+TEST(Ping360Clients, PnarvorReadsIts512SamplesWhole) {
   Bench bench;
   bench.raw(fixture("request_protocol_version"));
   ASSERT_EQ(bench.datagrams.size(), 1U);
@@ -200,7 +200,7 @@ TEST(Ping360Clients, pnarvor_reads_its_512_samples_whole) {
   EXPECT_EQ(bench.all<DeviceData>().at(0).data.size(), 512U);
 }
 
-TEST(Ping360Clients, pnarvor_reads_1000_samples_and_of_more_only_where_datagrams_are_split) {
+TEST(Ping360Clients, PnarvorReads1000SamplesAndOfMoreOnlyWhereDatagramsAreSplit) {
   Transducer command = ping_at(0);
   command.number_of_samples = 1000;
   Bench bench;
@@ -255,13 +255,13 @@ struct Ping360PingViewer : ::testing::Test {
   }
 };
 
-TEST_F(Ping360PingViewer, detects_the_head_though_another_client_scans) {
+TEST_F(Ping360PingViewer, DetectsTheHeadThoughAnotherClientScans) {
   bench.command(scan_of(0, 399), client_b);
   bench.run_for(1s);
   detect();
 }
 
-TEST_F(Ping360PingViewer, scans_turns_changes_settings_and_leaves) {
+TEST_F(Ping360PingViewer, ScansTurnsChangesSettingsAndLeaves) {
   detect();
   order_scan();
   for (int ping = 0; ping < 450; ++ping) {
@@ -291,7 +291,7 @@ TEST_F(Ping360PingViewer, scans_turns_changes_settings_and_leaves) {
   EXPECT_EQ(bench.all<Ack>().size(), 10U);
 }
 
-TEST_F(Ping360PingViewer, older_firmware_is_turned_with_single_commands_quickly_enough) {
+TEST_F(Ping360PingViewer, OlderFirmwareIsTurnedWithSingleCommandsQuicklyEnough) {
   Client loop{bench};
   Transducer command = ping_at(0);
   command.number_of_samples = 1200;
@@ -357,7 +357,7 @@ void expect_one_ping_an_angle(StepLoop loop, std::chrono::nanoseconds render_tim
 // The loop begins at 200 gradians, which it draws straight ahead. The head needs 1.2 s to this angle after
 // boot. The loop waits 6 ms per gradian plus 200 ms for each answer. With a slower renderer it repeats each
 // command.
-TEST(Ping360Clients, ping_viewer_with_firmware_3_3_0_gets_one_ping_an_angle) {
+TEST(Ping360Clients, PingViewerWithFirmware3_3_0GetsOnePingAnAngle) {
   for (const int step : {1, 5}) {
     for (const auto render_time : {5ms, 300ms}) {
       Bench bench;
@@ -371,7 +371,7 @@ TEST(Ping360Clients, ping_viewer_with_firmware_3_3_0_gets_one_ping_an_angle) {
   }
 }
 
-TEST(Ping360Clients, iping360device_gets_one_ping_an_angle_though_it_repeats_the_first_command) {
+TEST(Ping360Clients, Iping360deviceGetsOnePingAnAngleThoughItRepeatsTheFirstCommand) {
   for (const auto render_time : {5ms, 250ms}) {
     Bench bench;
     expect_one_ping_an_angle({{bench}, as_brping(150), 1, 200ms}, render_time);
@@ -380,7 +380,7 @@ TEST(Ping360Clients, iping360device_gets_one_ping_an_angle_though_it_repeats_the
 
 // The head cannot distinguish a command repeated just as its answer leaves from a request for another ping.
 // This costs one ping. The two answers cause two commands, which are equal.
-TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) {
+TEST(Ping360Clients, ARepeatedCommandThatCrossesItsAnswerCostsOnePing) {
   Bench bench;
   StepLoop loop{{bench}, as_brping(0), 1, 200ms};
   loop.send();
@@ -397,7 +397,7 @@ TEST(Ping360Clients, a_repeated_command_that_crosses_its_answer_costs_one_ping) 
 }
 
 // A client that repeats its order to scan every 5 s. A turn at 20 m takes 20 s.
-TEST(Ping360Clients, auto_transmit_sent_every_5_s_scans_whole_turns) {
+TEST(Ping360Clients, AutoTransmitSentEvery5SScansWholeTurns) {
   Bench bench;
   const AutoTransmit command{.sample_period = 888, .number_of_samples = 1200};
   for (int i = 0; i < 13; ++i) {
@@ -409,7 +409,7 @@ TEST(Ping360Clients, auto_transmit_sent_every_5_s_scans_whole_turns) {
   EXPECT_EQ(angles, turn_of(0, 1, angles.size()));
 }
 
-TEST(Ping360Clients, auto_transmit_sent_every_second_turns_at_both_ends_of_a_sector) {
+TEST(Ping360Clients, AutoTransmitSentEverySecondTurnsAtBothEndsOfASector) {
   Bench bench;
   for (int i = 0; i < 20; ++i) {
     bench.command(scan_of(380, 20, 5));
@@ -423,14 +423,14 @@ TEST(Ping360Clients, auto_transmit_sent_every_second_turns_at_both_ends_of_a_sec
   }
 }
 
-TEST_F(Ping360PingViewer, asks_in_the_old_way_too) {
+TEST_F(Ping360PingViewer, AsksInTheOldWayToo) {
   bench.raw(make_frame(4, 0, 0, {}));
   EXPECT_TRUE(client.wait_for<DeviceInformation>(1s));
 }
 
 // ---- BlueOS, which searches the best speed of a serial line
 
-TEST(Ping360Clients, blueos_asks_ten_times_at_each_speed_and_hears_nothing_at_wrong_ones) {
+TEST(Ping360Clients, BlueosAsksTenTimesAtEachSpeedAndHearsNothingAtWrongOnes) {
   Bench bench(with_serial_line());
   Client client{bench, serial_client};
   for (int i = 0; i < 10; ++i) {
@@ -454,7 +454,7 @@ DeviceConfig locked_config() {
   return config;
 }
 
-TEST(Ping360Lock, drops_what_others_send_until_the_first_is_silent_for_its_timeout) {
+TEST(Ping360Lock, DropsWhatOthersSendUntilTheFirstIsSilentForItsTimeout) {
   Bench bench(locked_config());
   bench.command(scan_of(0, 399));
   for (const Peer& other : {other_host, serial_client}) {
@@ -475,7 +475,7 @@ TEST(Ping360Lock, drops_what_others_send_until_the_first_is_silent_for_its_timeo
   EXPECT_TRUE(bench.ask(GeneralRequest{5}).empty()) << "now the other has it";
 }
 
-TEST(Ping360Lock, is_not_taken_by_noise_and_ends_with_a_reset) {
+TEST(Ping360Lock, IsNotTakenByNoiseAndEndsWithAReset) {
   Bench bench(locked_config());
   bench.raw({'B', 'R', 0, 1, 2, 3}, other_host);
   EXPECT_EQ(bench.ask(GeneralRequest{5}).size(), 1U);

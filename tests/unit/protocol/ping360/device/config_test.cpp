@@ -21,7 +21,7 @@ std::string complaint(const std::function<void(DeviceConfig&)>& change) {
   return "";
 }
 
-TEST(Ping360DeviceConfig, names_the_field_that_is_out_of_range) {
+TEST(Ping360DeviceConfig, NamesTheFieldThatIsOutOfRange) {
   EXPECT_EQ(complaint([](DeviceConfig&) {}), "");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.id = 0; }), "ping360 device: id must be 1..254");
   EXPECT_EQ(complaint([](DeviceConfig& c) { c.id = 255; }), "ping360 device: id must be 1..254");

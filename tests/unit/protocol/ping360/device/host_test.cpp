@@ -72,7 +72,7 @@ class Session {
   std::size_t read_ = 0;
 };
 
-TEST(Ping360Host, meets_the_head) {
+TEST(Ping360Host, MeetsTheHead) {
   Session session;
   session.run_for(100ms);
   EXPECT_EQ(session.host.head().protocol, ProtocolVersion{});
@@ -82,7 +82,7 @@ TEST(Ping360Host, meets_the_head) {
   EXPECT_EQ(session.host.statistics().frames, 3U) << "then it is quiet";
 }
 
-TEST(Ping360Host, pings_one_after_another) {
+TEST(Ping360Host, PingsOneAfterAnother) {
   Session session;
   session.host.start(0ns, ping_at(380), 15, 5);
   session.run_to_end();
@@ -97,7 +97,7 @@ TEST(Ping360Host, pings_one_after_another) {
   EXPECT_EQ(session.host.statistics().commands, 5U);
 }
 
-TEST(Ping360Host, scans_and_stops_the_scan_behind_it) {
+TEST(Ping360Host, ScansAndStopsTheScanBehindIt) {
   Session session;
   session.host.start(0ns, scan_of(390, 10, 5), 7);
   session.run_to_end();
@@ -112,7 +112,7 @@ TEST(Ping360Host, scans_and_stops_the_scan_behind_it) {
   EXPECT_EQ(session.head.heard.size(), heard);
 }
 
-TEST(Ping360Host, pings_that_come_before_a_stop_is_read_are_not_unwanted) {
+TEST(Ping360Host, PingsThatComeBeforeAStopIsReadAreNotUnwanted) {
   Session session;
   int stops = 0;
   session.to_head = [&](const Bytes& frame) {
@@ -128,7 +128,7 @@ TEST(Ping360Host, pings_that_come_before_a_stop_is_read_are_not_unwanted) {
   EXPECT_EQ(session.host.statistics().pings_unwanted, 0U);
 }
 
-TEST(Ping360Host, gives_signs_of_life_so_that_a_scan_goes_on) {
+TEST(Ping360Host, GivesSignsOfLifeSoThatAScanGoesOn) {
   Session session;
   session.host.start(0ns, scan_of(0, 399, 10), 0);
   session.run_for(120s);
@@ -140,7 +140,7 @@ TEST(Ping360Host, gives_signs_of_life_so_that_a_scan_goes_on) {
   session.run_to_end(5s);
 }
 
-TEST(Ping360Host, changes_what_is_going_on) {
+TEST(Ping360Host, ChangesWhatIsGoingOn) {
   Session session;
   session.host.start(0ns, scan_of(0, 399), 0);
   session.run_for(1s);
@@ -152,7 +152,7 @@ TEST(Ping360Host, changes_what_is_going_on) {
   EXPECT_EQ(session.pings.back().form.settings.angle, 101);
 }
 
-TEST(Ping360Host, a_refusal_is_told_and_not_repeated) {
+TEST(Ping360Host, ARefusalIsToldAndNotRepeated) {
   Session session;
   session.host.start(0ns, Transducer{.number_of_samples = 1250}, 1, 0);
   session.run_to_end(5s);
@@ -162,7 +162,7 @@ TEST(Ping360Host, a_refusal_is_told_and_not_repeated) {
   EXPECT_EQ(session.host.statistics().commands, 1U);
 }
 
-TEST(Ping360Host, asks_again_for_what_is_lost) {
+TEST(Ping360Host, AsksAgainForWhatIsLost) {
   Session session;
   int sent = 0;
   const auto loses_every_third = [&](const Bytes& frame) {
@@ -180,7 +180,7 @@ TEST(Ping360Host, asks_again_for_what_is_lost) {
 }
 
 // The second copy of an answer must cause no command; otherwise two commands would stay under way for ever.
-TEST(Ping360Host, a_link_that_doubles_what_it_carries_makes_no_command_more) {
+TEST(Ping360Host, ALinkThatDoublesWhatItCarriesMakesNoCommandMore) {
   Session session;
   session.to_host = [](const Bytes& frame) { return std::vector<Bytes>{frame, frame}; };
   session.host.start(0ns, ping_at(380), 15, 5);
@@ -194,7 +194,7 @@ TEST(Ping360Host, a_link_that_doubles_what_it_carries_makes_no_command_more) {
   EXPECT_EQ(session.host.statistics().commands, 5U);
 }
 
-TEST(Ping360Host, reads_a_stream_cut_anywhere_among_noise) {
+TEST(Ping360Host, ReadsAStreamCutAnywhereAmongNoise) {
   Session session;
   session.to_host = [](const Bytes& frame) {
     std::vector<Bytes> pieces{{0x00, 0xFF, 'U', 'B'}};
@@ -211,7 +211,7 @@ TEST(Ping360Host, reads_a_stream_cut_anywhere_among_noise) {
   EXPECT_GT(session.host.statistics().dropped_bytes, 0U);
 }
 
-TEST(Ping360Host, gives_up_stopping_a_head_that_does_not_answer) {
+TEST(Ping360Host, GivesUpStoppingAHeadThatDoesNotAnswer) {
   Session session;
   session.run_for(1s);
   session.to_head = [](const Bytes&) { return std::vector<Bytes>{}; };

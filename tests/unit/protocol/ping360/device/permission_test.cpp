@@ -25,7 +25,7 @@ struct Ping360Permission : ::testing::Test {
   }
 };
 
-TEST_F(Ping360Permission, there_is_no_next_ping_until_one_is_wanted) {
+TEST_F(Ping360Permission, ThereIsNoNextPingUntilOneIsWanted) {
   EXPECT_FALSE(bench.last.next_ping);
   Transducer command = ping_at(3);
   command.transmit = 0;
@@ -37,14 +37,14 @@ TEST_F(Ping360Permission, there_is_no_next_ping_until_one_is_wanted) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(Ping360Permission, nothing_is_sent_without_it_and_requests_are_answered) {
+TEST_F(Ping360Permission, NothingIsSentWithoutItAndRequestsAreAnswered) {
   bench.command(scan_of(0, 399));
   bench.run_for(5s);
   EXPECT_TRUE(bench.jobs.empty());
   EXPECT_EQ(bench.ask(GeneralRequest{4}).size(), 1U);
 }
 
-TEST_F(Ping360Permission, the_next_ping_says_how_pings_follow) {
+TEST_F(Ping360Permission, TheNextPingSaysHowPingsFollow) {
   AutoTransmit command = scan_of(0, 399, 10);
   command.delay_ms = 5;
   bench.command(command);
@@ -56,7 +56,7 @@ TEST_F(Ping360Permission, the_next_ping_says_how_pings_follow) {
   EXPECT_EQ(bench.last.next_ping->period, listening + 18ms + 61ms + 5ms);
 }
 
-TEST_F(Ping360Permission, pings_are_the_same_and_in_order_however_fast) {
+TEST_F(Ping360Permission, PingsAreTheSameAndInOrderHoweverFast) {
   bench.command(scan_of(0, 399, 3));
   for (int i = 0; i < 20; ++i) {
     ASSERT_TRUE(grant());
@@ -67,7 +67,7 @@ TEST_F(Ping360Permission, pings_are_the_same_and_in_order_however_fast) {
   EXPECT_EQ(angles_of(bench.all<AutoDeviceData>()), angles_of(own.wait_for<AutoDeviceData>(20)));
 }
 
-TEST_F(Ping360Permission, scaled_to_nothing_a_ping_still_listens) {
+TEST_F(Ping360Permission, ScaledToNothingAPingStillListens) {
   DeviceConfig config = waiting();
   config.time_scale = 0.0;
   Bench fast(config);

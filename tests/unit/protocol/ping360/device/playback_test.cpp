@@ -35,7 +35,7 @@ struct Ping360Playback : ::testing::Test {
   Bench bench{player()};
 };
 
-TEST_F(Ping360Playback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
+TEST_F(Ping360Playback, NothingIsSentThatIsNotFedOrNotAskedFor) {
   bench.command(ping_at(5));
   bench.run_for(3s);
   EXPECT_TRUE(bench.heard.empty());
@@ -48,7 +48,7 @@ TEST_F(Ping360Playback, nothing_is_sent_that_is_not_fed_or_not_asked_for) {
 }
 
 // The answer has the recorded settings, but commands are compared by the settings that the client requested.
-TEST_F(Ping360Playback, a_repeated_command_shares_the_recorded_answer) {
+TEST_F(Ping360Playback, ARepeatedCommandSharesTheRecordedAnswer) {
   bench.render_time = 500ms;
   bench.command(ping_at(7));
   bench.command(ping_at(7));
@@ -61,7 +61,7 @@ TEST_F(Ping360Playback, a_repeated_command_shares_the_recorded_answer) {
   EXPECT_EQ(bench.device.counters().commands_joined, 2U);
 }
 
-TEST_F(Ping360Playback, a_command_brings_the_recorded_ping_as_its_answer) {
+TEST_F(Ping360Playback, ACommandBringsTheRecordedPingAsItsAnswer) {
   bench.step(PingFed{recorded(5)});
   Transducer command = ping_at(7);
   command.mode = 0;
@@ -77,7 +77,7 @@ TEST_F(Ping360Playback, a_command_brings_the_recorded_ping_as_its_answer) {
                                                           .data = test_samples(0, 30)}}));
 }
 
-TEST_F(Ping360Playback, a_scan_brings_it_with_the_limits_that_its_client_compares) {
+TEST_F(Ping360Playback, AScanBringsItWithTheLimitsThatItsClientCompares) {
   bench.step(PingFed{recorded(5)});
   bench.command(scan_of(0, 399));
   bench.run_for(1s);
@@ -90,7 +90,7 @@ TEST_F(Ping360Playback, a_scan_brings_it_with_the_limits_that_its_client_compare
   EXPECT_EQ(pings[0].num_steps, 1);
 }
 
-TEST_F(Ping360Playback, the_job_is_what_the_ping_was_made_with_and_says_how_it_differs) {
+TEST_F(Ping360Playback, TheJobIsWhatThePingWasMadeWithAndSaysHowItDiffers) {
   bench.step(PingFed{recorded(5)});
   bench.command(ping_at(7));
   ASSERT_EQ(bench.jobs.size(), 1U);
@@ -107,7 +107,7 @@ TEST_F(Ping360Playback, the_job_is_what_the_ping_was_made_with_and_says_how_it_d
   EXPECT_EQ(kinds, (std::vector<std::string>{"range", "samples", "gain", "frequency", "angle"}));
 }
 
-TEST_F(Ping360Playback, what_is_recorded_again_is_what_was_sent) {
+TEST_F(Ping360Playback, WhatIsRecordedAgainIsWhatWasSent) {
   bench.step(PingFed{recorded(5)});
   bench.command(scan_of(90, 110, 5));
   bench.run_for(1s);
@@ -118,7 +118,7 @@ TEST_F(Ping360Playback, what_is_recorded_again_is_what_was_sent) {
   EXPECT_EQ(bench.records[0].settings.frequency_hz, 690e3);
 }
 
-TEST_F(Ping360Playback, a_ping_that_does_not_say_how_it_travelled_is_none) {
+TEST_F(Ping360Playback, APingThatDoesNotSayHowItTravelledIsNone) {
   RecordedPing ping = recorded(5);
   ping.wire.clear();
   bench.step(PingFed{ping});
@@ -127,7 +127,7 @@ TEST_F(Ping360Playback, a_ping_that_does_not_say_how_it_travelled_is_none) {
   EXPECT_TRUE(bench.jobs.empty());
 }
 
-TEST_F(Ping360Playback, a_ping_is_fed_in_place_of_the_one_before) {
+TEST_F(Ping360Playback, APingIsFedInPlaceOfTheOneBefore) {
   bench.step(PingFed{recorded(5)});
   bench.step(PingFed{recorded(6)});
   bench.step(PingFed{std::nullopt});
@@ -138,7 +138,7 @@ TEST_F(Ping360Playback, a_ping_is_fed_in_place_of_the_one_before) {
   EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
-TEST_F(Ping360Playback, a_ping_is_made_when_it_is_due_and_leaves_when_its_echoes_are_in) {
+TEST_F(Ping360Playback, APingIsMadeWhenItIsDueAndLeavesWhenItsEchoesAreIn) {
   bench.step(PingFed{recorded(0, 700ms)});
   bench.command(ping_at(7));
   bench.run_for(2s);
@@ -146,7 +146,7 @@ TEST_F(Ping360Playback, a_ping_is_made_when_it_is_due_and_leaves_when_its_echoes
   EXPECT_EQ(bench.heard.at(0).at, 700ms + 300us);
 }
 
-TEST_F(Ping360Playback, pings_of_a_scan_come_as_close_as_they_are_fed) {
+TEST_F(Ping360Playback, PingsOfAScanComeAsCloseAsTheyAreFed) {
   bench.command(scan_of(0, 399));
   for (std::uint64_t record = 0; record < 10; ++record) {
     bench.step(PingFed{recorded(record)});
@@ -155,7 +155,7 @@ TEST_F(Ping360Playback, pings_of_a_scan_come_as_close_as_they_are_fed) {
   EXPECT_EQ(bench.now, 10 * 300us) << "turning takes no time";
 }
 
-TEST_F(Ping360Playback, a_ping_that_has_begun_is_not_lost_to_a_client_that_orders_again) {
+TEST_F(Ping360Playback, APingThatHasBegunIsNotLostToAClientThatOrdersAgain) {
   bench.renderer_answers = false;
   bench.step(PingFed{recorded(3)});
   bench.command(scan_of(0, 399));
@@ -170,7 +170,7 @@ TEST_F(Ping360Playback, a_ping_that_has_begun_is_not_lost_to_a_client_that_order
   EXPECT_EQ(bench.last.cancelled, 1U) << "but this ends all";
 }
 
-TEST_F(Ping360Playback, a_move_is_answered_without_a_ping) {
+TEST_F(Ping360Playback, AMoveIsAnsweredWithoutAPing) {
   Transducer command = ping_at(10);
   command.transmit = 0;
   bench.command(command);

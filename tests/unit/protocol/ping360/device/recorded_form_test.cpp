@@ -14,7 +14,7 @@ std::vector<std::string> texts(const std::vector<Difference>& found) {
   return texts;
 }
 
-TEST(Ping360RecordedForm, is_read_as_it_was_written) {
+TEST(Ping360RecordedForm, IsReadAsItWasWritten) {
   const PingForm alone = form_of(Transducer{.gain_setting = 2, .angle = 77, .number_of_samples = 300});
   EXPECT_EQ(recorded_form(recorded_wire(alone, 9)), alone);
   EXPECT_EQ(frame_header(recorded_wire(alone, 9)).source, 9);
@@ -22,7 +22,7 @@ TEST(Ping360RecordedForm, is_read_as_it_was_written) {
   EXPECT_EQ(recorded_form(recorded_wire(of_scan, 2)), of_scan);
 }
 
-TEST(Ping360RecordedForm, is_no_other_message_and_no_piece_of_one) {
+TEST(Ping360RecordedForm, IsNoOtherMessageAndNoPieceOfOne) {
   EXPECT_FALSE(recorded_form({}));
   EXPECT_FALSE(recorded_form(fixture("ack_motor_off")));
   Bytes piece = recorded_wire(PingForm{}, 2);
@@ -31,7 +31,7 @@ TEST(Ping360RecordedForm, is_no_other_message_and_no_piece_of_one) {
   EXPECT_FALSE(recorded_form(piece));
 }
 
-TEST(Ping360RecordedForm, of_a_whole_ping_leaves_its_data_out) {
+TEST(Ping360RecordedForm, OfAWholePingLeavesItsDataOut) {
   const Bytes frame = fixture("device_data");
   const auto form = recorded_form(frame);
   ASSERT_TRUE(form);
@@ -39,7 +39,7 @@ TEST(Ping360RecordedForm, of_a_whole_ping_leaves_its_data_out) {
   EXPECT_EQ(form->settings.angle, 200);
 }
 
-TEST(Ping360Differences, the_same_is_no_difference_and_each_kind_is_told) {
+TEST(Ping360Differences, TheSameIsNoDifferenceAndEachKindIsTold) {
   RecordedPing recorded;
   recorded.settings.bins = 200;
   recorded.settings.sound_speed_mps = 1500.0;

@@ -16,7 +16,7 @@ std::vector<int> answered_angles(const Bench& bench) {
 
 // ---- transducer
 
-TEST(Ping360RepeatedCommand, shares_the_answer_of_the_one_under_way_wherever_that_is) {
+TEST(Ping360RepeatedCommand, SharesTheAnswerOfTheOneUnderWayWhereverThatIs) {
   // The head turns for 0.61 s and listens for 0.4 ms. Rendering takes 1 s, and the answer leaves 18 ms later
   // at the earliest.
   for (const auto later : {0ms, 200ms, 609ms, 611ms, 1600ms}) {
@@ -32,7 +32,7 @@ TEST(Ping360RepeatedCommand, shares_the_answer_of_the_one_under_way_wherever_tha
   }
 }
 
-TEST(Ping360RepeatedCommand, is_a_new_ping_once_its_answer_has_left) {
+TEST(Ping360RepeatedCommand, IsANewPingOnceItsAnswerHasLeft) {
   Bench bench;
   for (int i = 0; i < 3; ++i) {
     bench.command(ping_at(100));
@@ -42,7 +42,7 @@ TEST(Ping360RepeatedCommand, is_a_new_ping_once_its_answer_has_left) {
   EXPECT_EQ(bench.device.counters().commands_joined, 0U);
 }
 
-TEST(Ping360RepeatedCommand, shares_the_answer_of_the_last_that_waits) {
+TEST(Ping360RepeatedCommand, SharesTheAnswerOfTheLastThatWaits) {
   Bench bench;
   for (const int angle : {1, 2, 3, 3, 3}) {
     bench.command(ping_at(angle));
@@ -51,7 +51,7 @@ TEST(Ping360RepeatedCommand, shares_the_answer_of_the_last_that_waits) {
   EXPECT_EQ(answered_angles(bench), (std::vector{1, 2, 3}));
 }
 
-TEST(Ping360RepeatedCommand, is_done_again_when_another_was_ordered_in_between) {
+TEST(Ping360RepeatedCommand, IsDoneAgainWhenAnotherWasOrderedInBetween) {
   Bench bench;
   for (const int angle : {1, 2, 1, 2}) {
     bench.command(ping_at(angle));
@@ -60,7 +60,7 @@ TEST(Ping360RepeatedCommand, is_done_again_when_another_was_ordered_in_between) 
   EXPECT_EQ(answered_angles(bench), (std::vector{1, 2, 1, 2}));
 }
 
-TEST(Ping360RepeatedCommand, is_equal_in_every_setting) {
+TEST(Ping360RepeatedCommand, IsEqualInEverySetting) {
   void (*const changes[])(Transducer&) = {
       [](Transducer& it) { it.mode = 0; },
       [](Transducer& it) { it.gain_setting = 1; },
@@ -82,7 +82,7 @@ TEST(Ping360RepeatedCommand, is_equal_in_every_setting) {
   }
 }
 
-TEST(Ping360RepeatedCommand, may_call_the_angle_0_or_400) {
+TEST(Ping360RepeatedCommand, MayCallTheAngle0Or400) {
   Bench bench;
   bench.command(ping_at(200));
   bench.command(ping_at(400));
@@ -91,7 +91,7 @@ TEST(Ping360RepeatedCommand, may_call_the_angle_0_or_400) {
   EXPECT_EQ(answered_angles(bench), (std::vector{200, 0}));
 }
 
-TEST(Ping360RepeatedCommand, may_be_one_that_only_moves) {
+TEST(Ping360RepeatedCommand, MayBeOneThatOnlyMoves) {
   Bench bench;
   Transducer command = ping_at(100);
   command.transmit = 0;
@@ -102,7 +102,7 @@ TEST(Ping360RepeatedCommand, may_be_one_that_only_moves) {
   EXPECT_EQ(answered_angles(bench), std::vector{100});
 }
 
-TEST(Ping360RepeatedCommand, of_another_client_is_done_for_that_client) {
+TEST(Ping360RepeatedCommand, OfAnotherClientIsDoneForThatClient) {
   Bench bench;
   bench.command(ping_at(50), client_a);
   bench.command(ping_at(50), client_b);
@@ -114,7 +114,7 @@ TEST(Ping360RepeatedCommand, of_another_client_is_done_for_that_client) {
   EXPECT_EQ(bench.heard[1].to, client_b);
 }
 
-TEST(Ping360RepeatedCommand, is_done_again_after_a_stop_a_reset_or_an_order_to_scan) {
+TEST(Ping360RepeatedCommand, IsDoneAgainAfterAStopAResetOrAnOrderToScan) {
   const Command between[] = {MotorOff{}, Reset{}, scan_of(0, 399)};
   for (const Command& stop : between) {
     Bench bench;
@@ -131,7 +131,7 @@ TEST(Ping360RepeatedCommand, is_done_again_after_a_stop_a_reset_or_an_order_to_s
   }
 }
 
-TEST(Ping360RepeatedCommand, has_no_answer_if_the_ping_fails_and_can_be_sent_again) {
+TEST(Ping360RepeatedCommand, HasNoAnswerIfThePingFailsAndCanBeSentAgain) {
   Bench bench;
   bench.renderer_fails = true;
   bench.command(ping_at(0));
@@ -144,7 +144,7 @@ TEST(Ping360RepeatedCommand, has_no_answer_if_the_ping_fails_and_can_be_sent_aga
   EXPECT_EQ(bench.all<DeviceData>().size(), 1U);
 }
 
-TEST(Ping360RepeatedCommand, is_a_ping_of_its_own_if_the_head_is_told_so) {
+TEST(Ping360RepeatedCommand, IsAPingOfItsOwnIfTheHeadIsToldSo) {
   DeviceConfig config;
   config.joins_repeated_commands = false;
   Bench bench(config);
@@ -155,7 +155,7 @@ TEST(Ping360RepeatedCommand, is_a_ping_of_its_own_if_the_head_is_told_so) {
   EXPECT_EQ(answered_angles(bench), (std::vector{100, 100, 100}));
 }
 
-TEST(Ping360Queue, of_length_0_drops_what_comes_while_a_command_is_done) {
+TEST(Ping360Queue, OfLength0DropsWhatComesWhileACommandIsDone) {
   DeviceConfig config;
   config.queue_length = 0;
   Bench bench(config);
@@ -175,7 +175,7 @@ TEST(Ping360Queue, of_length_0_drops_what_comes_while_a_command_is_done) {
   EXPECT_EQ(answered_angles(bench).back(), 4) << "a scan is no command that is being done";
 }
 
-TEST(Ping360Queue, has_room_for_its_length_beside_the_first_of_a_datagram) {
+TEST(Ping360Queue, HasRoomForItsLengthBesideTheFirstOfADatagram) {
   Bench bench;
   Bytes all;
   for (int angle = 1; angle <= 5; ++angle) {
@@ -189,7 +189,7 @@ TEST(Ping360Queue, has_room_for_its_length_beside_the_first_of_a_datagram) {
 
 // ---- auto_transmit
 
-TEST(Ping360RepeatedScan, goes_on) {
+TEST(Ping360RepeatedScan, GoesOn) {
   Bench bench;
   bench.command(scan_of(10, 300));
   bench.run_for(1s);
@@ -206,7 +206,7 @@ TEST(Ping360RepeatedScan, goes_on) {
   EXPECT_EQ(bench.device.counters().pings_cancelled, 0U);
 }
 
-TEST(Ping360RepeatedScan, begins_anew_if_a_setting_differs) {
+TEST(Ping360RepeatedScan, BeginsAnewIfASettingDiffers) {
   void (*const changes[])(AutoTransmit&) = {
       [](AutoTransmit& it) { it.mode = 0; },
       [](AutoTransmit& it) { it.gain_setting = 1; },
@@ -231,7 +231,7 @@ TEST(Ping360RepeatedScan, begins_anew_if_a_setting_differs) {
   }
 }
 
-TEST(Ping360RepeatedScan, of_another_client_begins_anew_for_that_client) {
+TEST(Ping360RepeatedScan, OfAnotherClientBeginsAnewForThatClient) {
   Bench bench;
   bench.command(scan_of(10, 300), client_a);
   bench.run_for(1s);
@@ -245,7 +245,7 @@ TEST(Ping360RepeatedScan, of_another_client_begins_anew_for_that_client) {
   }
 }
 
-TEST(Ping360RepeatedScan, begins_anew_after_what_ends_a_scan) {
+TEST(Ping360RepeatedScan, BeginsAnewAfterWhatEndsAScan) {
   const Bytes ends[] = {{}, encode(MotorOff{}), encode(ping_at(10))};
   for (const Bytes& end : ends) {
     Bench bench;
@@ -259,7 +259,7 @@ TEST(Ping360RepeatedScan, begins_anew_after_what_ends_a_scan) {
   }
 }
 
-TEST(Ping360RepeatedScan, still_waits_for_the_command_before_it) {
+TEST(Ping360RepeatedScan, StillWaitsForTheCommandBeforeIt) {
   Bench bench;
   bench.command(ping_at(100));
   bench.command(scan_of(0, 399));

@@ -8,7 +8,7 @@
 namespace sonard::ping360 {
 namespace {
 
-TEST(Ping360Robustness, a_client_that_vanishes_takes_its_commands_with_it) {
+TEST(Ping360Robustness, AClientThatVanishesTakesItsCommandsWithIt) {
   Bench bench;
   for (int angle = 1; angle < 4; ++angle) {
     bench.command(ping_at(angle), client_a);
@@ -23,7 +23,7 @@ TEST(Ping360Robustness, a_client_that_vanishes_takes_its_commands_with_it) {
   bench.step(ClientGone{Peer{7, {1, 2}, 3}});
 }
 
-TEST(Ping360Robustness, a_ping_that_cannot_be_rendered_is_an_answer_that_does_not_come) {
+TEST(Ping360Robustness, APingThatCannotBeRenderedIsAnAnswerThatDoesNotCome) {
   Bench bench;
   bench.renderer_fails = true;
   bench.command(ping_at(1));
@@ -35,7 +35,7 @@ TEST(Ping360Robustness, a_ping_that_cannot_be_rendered_is_an_answer_that_does_no
   EXPECT_EQ(bench.wait_for<DeviceData>(1).at(0).angle, 2);
 }
 
-TEST(Ping360Robustness, a_scan_without_a_renderer_takes_its_time) {
+TEST(Ping360Robustness, AScanWithoutARendererTakesItsTime) {
   DeviceConfig config;
   config.time_scale = 0.0;
   Bench bench(config);
@@ -46,7 +46,7 @@ TEST(Ping360Robustness, a_scan_without_a_renderer_takes_its_time) {
   EXPECT_GT(bench.jobs.size(), 50U);
 }
 
-TEST(Ping360Robustness, an_image_of_the_wrong_size_counts_as_failed) {
+TEST(Ping360Robustness, AnImageOfTheWrongSizeCountsAsFailed) {
   Bench bench;
   bench.render = [](const PingJob& job) { return PingImage{job.number, Bytes(199), {}}; };
   bench.command(ping_at(0));
@@ -55,7 +55,7 @@ TEST(Ping360Robustness, an_image_of_the_wrong_size_counts_as_failed) {
   EXPECT_EQ(bench.device.counters().pings_failed, 1U);
 }
 
-TEST(Ping360Robustness, answers_to_no_job_are_dropped) {
+TEST(Ping360Robustness, AnswersToNoJobAreDropped) {
   Bench bench;
   bench.answer({0, Bytes(200), {}});
   bench.step(PingNotRendered{5});
@@ -69,7 +69,7 @@ TEST(Ping360Robustness, answers_to_no_job_are_dropped) {
   EXPECT_EQ(bench.heard.size(), 1U);
 }
 
-TEST(Ping360Robustness, clients_without_end_are_forgotten_but_the_one_that_listens) {
+TEST(Ping360Robustness, ClientsWithoutEndAreForgottenButTheOneThatListens) {
   Bench bench;
   bench.command(scan_of(0, 399), client_a);
   for (std::uint16_t port = 5000; port < 9000; ++port) {
@@ -81,7 +81,7 @@ TEST(Ping360Robustness, clients_without_end_are_forgotten_but_the_one_that_liste
   EXPECT_FALSE(bench.all<AutoDeviceData>().empty());
 }
 
-TEST(Ping360Robustness, a_flood_of_commands_is_bounded_in_output) {
+TEST(Ping360Robustness, AFloodOfCommandsIsBoundedInOutput) {
   Bench bench;
   for (int i = 0; i < 20'000; ++i) {
     bench.command(ping_at(i % 400));
@@ -96,7 +96,7 @@ TEST(Ping360Robustness, a_flood_of_commands_is_bounded_in_output) {
   EXPECT_TRUE(bench.heard.empty()) << "a head that is told something else all the time never gets ready";
 }
 
-TEST(Ping360Robustness, a_flood_of_equal_commands_is_one_command) {
+TEST(Ping360Robustness, AFloodOfEqualCommandsIsOneCommand) {
   Bench bench;
   for (int i = 0; i < 20'000; ++i) {
     bench.raw(fixture("transducer"));
@@ -114,7 +114,7 @@ TEST(Ping360Robustness, a_flood_of_equal_commands_is_one_command) {
       std::ranges::count_if(bench.notices, [](const auto& it) { return it.starts_with("auto scan by"); }), 1);
 }
 
-TEST(Ping360Robustness, refusals_are_told_once_in_the_log) {
+TEST(Ping360Robustness, RefusalsAreToldOnceInTheLog) {
   Bench bench;
   Transducer command = ping_at(0);
   command.number_of_samples = 1250;
@@ -125,7 +125,7 @@ TEST(Ping360Robustness, refusals_are_told_once_in_the_log) {
   EXPECT_EQ(bench.notices.size(), 2U) << "connected, refused";
 }
 
-TEST(Ping360Robustness, random_bytes_at_random_times) {
+TEST(Ping360Robustness, RandomBytesAtRandomTimes) {
   const char* names[] = {"transducer",
                          "transducer_brping",
                          "transducer_pnarvor",
@@ -173,7 +173,7 @@ TEST(Ping360Robustness, random_bytes_at_random_times) {
   }
 }
 
-TEST(Ping360Robustness, the_head_is_used_through_the_interface_of_all_heads) {
+TEST(Ping360Robustness, TheHeadIsUsedThroughTheInterfaceOfAllHeads) {
   const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(DeviceConfig{}, 0ns);
   EXPECT_TRUE(head->step(0ns, TimePassed{}).send.empty());
   const BytesReceived request{client_a, SharedBytes(fixture("request_device_information"))};

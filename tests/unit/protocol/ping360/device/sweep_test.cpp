@@ -22,19 +22,19 @@ std::vector<int> angles(int start, int stop, int step, std::size_t count, bool t
   return found;
 }
 
-TEST(Ping360Sweep, more_than_half_a_turn_goes_one_way) {
+TEST(Ping360Sweep, MoreThanHalfATurnGoesOneWay) {
   EXPECT_EQ(angles(0, 399, 100, 6), (std::vector{0, 100, 200, 300, 0, 100}));
   EXPECT_EQ(angles(0, 201, 100, 4), (std::vector{0, 100, 200, 0}));
   EXPECT_EQ(angles(300, 200, 80, 6), (std::vector{300, 380, 60, 140, 300, 380})) << "across 0";
 }
 
-TEST(Ping360Sweep, half_a_turn_goes_back_and_forth) {
+TEST(Ping360Sweep, HalfATurnGoesBackAndForth) {
   EXPECT_EQ(angles(0, 200, 100, 6), (std::vector{0, 100, 200, 100, 0, 100}));
   EXPECT_EQ(angles(395, 5, 5, 6), (std::vector{395, 0, 5, 0, 395, 0})) << "ends are not doubled";
   EXPECT_EQ(angles(10, 11, 1, 4), (std::vector{10, 11, 10, 11}));
 }
 
-TEST(Ping360Sweep, steps_that_miss_the_stop) {
+TEST(Ping360Sweep, StepsThatMissTheStop) {
   EXPECT_EQ(angles(0, 10, 4, 6), (std::vector{0, 4, 8, 4, 0, 4}));
   EXPECT_EQ(angles(0, 10, 4, 7, true), (std::vector{0, 4, 8, 10, 8, 4, 0})) << "where told to end on it";
   EXPECT_EQ(angles(0, 8, 4, 5, true), (std::vector{0, 4, 8, 4, 0}));
@@ -43,11 +43,11 @@ TEST(Ping360Sweep, steps_that_miss_the_stop) {
   EXPECT_EQ(angles(0, 398, 10, 41, true).back(), 0) << "one way ends on the last whole step";
 }
 
-TEST(Ping360Sweep, equal_limits_stare) {
+TEST(Ping360Sweep, EqualLimitsStare) {
   EXPECT_EQ(angles(77, 77, 1, 3), (std::vector{77, 77, 77}));
 }
 
-TEST(Ping360Sweep, every_sector_stays_inside_and_moves_by_its_step_or_back_to_its_start) {
+TEST(Ping360Sweep, EverySectorStaysInsideAndMovesByItsStepOrBackToItsStart) {
   for (int start = 0; start < 400; start += 37) {
     for (int stop = 0; stop < 400; stop += 13) {
       for (int step = 1; step <= 10; ++step) {

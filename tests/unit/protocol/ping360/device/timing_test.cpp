@@ -25,7 +25,7 @@ double turn_s(int sample_period, int step, double time_scale = 1.0) {
 }
 
 // Measured on real hardware over Ethernet, with the two ranges and periods of 2.3.
-TEST(Ping360Timing, a_turn_takes_as_long_as_measured_within_5_percent) {
+TEST(Ping360Timing, ATurnTakesAsLongAsMeasuredWithin5Percent) {
   EXPECT_NEAR(turn_s(88, 1), 10.74, 0.05 * 10.74);
   EXPECT_NEAR(turn_s(888, 1), 20.57, 0.05 * 20.57);
   EXPECT_NEAR(turn_s(2222, 1), 37.6, 0.05 * 37.6);
@@ -34,7 +34,7 @@ TEST(Ping360Timing, a_turn_takes_as_long_as_measured_within_5_percent) {
   EXPECT_NEAR(turn_s(2222, 10), 5.89, 0.05 * 5.89);
 }
 
-TEST(Ping360Timing, a_loop_of_commands_takes_as_long_as_a_scan) {
+TEST(Ping360Timing, ALoopOfCommandsTakesAsLongAsAScan) {
   Bench bench;
   for (int angle = 0; angle < 400; ++angle) {
     Transducer command = ping_at(angle);
@@ -46,7 +46,7 @@ TEST(Ping360Timing, a_loop_of_commands_takes_as_long_as_a_scan) {
   EXPECT_NEAR(seconds(bench.now), 10.74, 0.05 * 10.74);
 }
 
-TEST(Ping360Timing, an_answer_comes_when_it_has_turned_listened_and_worked) {
+TEST(Ping360Timing, AnAnswerComesWhenItHasTurnedListenedAndWorked) {
   Bench bench;
   Transducer command = ping_at(390);  // the short way is 10 gradians
   command.number_of_samples = 1000;
@@ -57,7 +57,7 @@ TEST(Ping360Timing, an_answer_comes_when_it_has_turned_listened_and_worked) {
   EXPECT_EQ(bench.now, 61ms + 10ms + 18ms);
 }
 
-TEST(Ping360Timing, the_longest_way_and_range_come_in_time_for_every_client) {
+TEST(Ping360Timing, TheLongestWayAndRangeComeInTimeForEveryClient) {
   Bench bench;
   Transducer command = ping_at(200);
   command.number_of_samples = 1200;
@@ -67,7 +67,7 @@ TEST(Ping360Timing, the_longest_way_and_range_come_in_time_for_every_client) {
   EXPECT_LT(bench.now, 4s);
 }
 
-TEST(Ping360Timing, the_delay_of_a_scan_comes_between_its_pings) {
+TEST(Ping360Timing, TheDelayOfAScanComesBetweenItsPings) {
   Bench bench;
   AutoTransmit command = scan_of(0, 399, 2);
   command.delay_ms = 100;
@@ -78,7 +78,7 @@ TEST(Ping360Timing, the_delay_of_a_scan_comes_between_its_pings) {
   EXPECT_EQ(bench.jobs[2].transmit_time - bench.jobs[1].transmit_time, listening + 18ms + 12'200us + 100ms);
 }
 
-TEST(Ping360Timing, a_slow_renderer_delays_what_follows_and_a_quick_one_keeps_the_pace) {
+TEST(Ping360Timing, ASlowRendererDelaysWhatFollowsAndAQuickOneKeepsThePace) {
   Bench bench;
   bench.render_time = 10ms;
   bench.command(scan_of(0, 399));
@@ -91,7 +91,7 @@ TEST(Ping360Timing, a_slow_renderer_delays_what_follows_and_a_quick_one_keeps_th
   EXPECT_GE(bench.now - begin, 5s);
 }
 
-TEST(Ping360Timing, a_late_caller_keeps_the_pace_for_50_ms) {
+TEST(Ping360Timing, ALateCallerKeepsThePaceFor50Ms) {
   Bench bench;
   bench.command(scan_of(0, 399));
   bench.wait_for<AutoDeviceData>(5);
@@ -104,11 +104,11 @@ TEST(Ping360Timing, a_late_caller_keeps_the_pace_for_50_ms) {
   EXPECT_EQ(bench.jobs.back().transmit_time, bench.now - 50ms);
 }
 
-TEST(Ping360Timing, twice_as_slow) {
+TEST(Ping360Timing, TwiceAsSlow) {
   EXPECT_NEAR(turn_s(88, 10, 2.0), 2 * turn_s(88, 10), 1e-3);
 }
 
-TEST(Ping360Timing, scaled_to_nothing_it_is_as_fast_as_pings_are_rendered) {
+TEST(Ping360Timing, ScaledToNothingItIsAsFastAsPingsAreRendered) {
   DeviceConfig config;
   config.time_scale = 0.0;
   Bench bench(config);
@@ -122,7 +122,7 @@ TEST(Ping360Timing, scaled_to_nothing_it_is_as_fast_as_pings_are_rendered) {
   EXPECT_EQ(bench.ask(command).size(), 1U) << "at once";
 }
 
-TEST(Ping360Timing, the_head_is_seen_on_its_way) {
+TEST(Ping360Timing, TheHeadIsSeenOnItsWay) {
   Bench bench;
   Transducer command = ping_at(100);
   command.transmit = 0;
@@ -135,7 +135,7 @@ TEST(Ping360Timing, the_head_is_seen_on_its_way) {
   EXPECT_TRUE(bench.all<DeviceData>().size() == 2) << "what was dropped is not answered";
 }
 
-TEST(Ping360Timing, silent_for_a_second_after_a_reset_and_as_at_boot_then) {
+TEST(Ping360Timing, SilentForASecondAfterAResetAndAsAtBootThen) {
   Bench bench;
   bench.command(ping_at(77));
   bench.run_for(3s);
@@ -152,7 +152,7 @@ TEST(Ping360Timing, silent_for_a_second_after_a_reset_and_as_at_boot_then) {
   EXPECT_EQ(bench.heard[0].frame, fixture("device_data_at_boot"));
 }
 
-TEST(Ping360Timing, silent_for_5_s_in_the_bootloader) {
+TEST(Ping360Timing, SilentFor5SInTheBootloader) {
   Bench bench;
   bench.command(Reset{1});
   bench.run_until(4999ms);
@@ -161,7 +161,7 @@ TEST(Ping360Timing, silent_for_5_s_in_the_bootloader) {
   EXPECT_EQ(bench.ask(GeneralRequest{4}).size(), 1U);
 }
 
-TEST(Ping360Timing, what_comes_behind_an_order_to_reset_is_not_heard) {
+TEST(Ping360Timing, WhatComesBehindAnOrderToResetIsNotHeard) {
   Bench bench;
   Bytes bytes = fixture("reset");
   const Bytes question = fixture("request_device_information");

@@ -79,7 +79,7 @@ double variation(const std::vector<double>& codes) {
   return std::sqrt(square / static_cast<double>(codes.size()));
 }
 
-TEST(OculusNoise, neighbouring_beams_are_correlated_as_recorded) {
+TEST(OculusNoise, NeighbouringBeamsAreCorrelatedAsRecorded) {
   const std::vector<std::uint16_t> samples = ping(255, true).u16;
   const auto lag = [&](int beams) {
     return test::correlation(codes_of(samples, 0), codes_of(samples, beams));
@@ -90,14 +90,14 @@ TEST(OculusNoise, neighbouring_beams_are_correlated_as_recorded) {
 }
 
 // A Rayleigh amplitude has a coefficient of 0.5227; to the power of about a half it has 0.2805.
-TEST(OculusNoise, varies_as_recorded_at_the_gamma_of_clients) {
+TEST(OculusNoise, VariesAsRecordedAtTheGammaOfClients) {
   const double at_gamma = variation(codes_of(ping(127, true).u16, 0));
   EXPECT_GE(at_gamma, 0.275);
   EXPECT_LE(at_gamma, 0.30);
   EXPECT_NEAR(variation(codes_of(ping(255, true).u16, 0)), 0.5227, 0.02);
 }
 
-TEST(OculusNoise, no_code_is_above_254) {
+TEST(OculusNoise, NoCodeIsAbove254) {
   const std::vector<std::uint8_t> samples = ping(127, false, 1e6F).u8;
   EXPECT_EQ(*std::ranges::max_element(samples), 254);
   EXPECT_GT(std::ranges::count(samples, 254), static_cast<std::ptrdiff_t>(samples.size()) / 2);

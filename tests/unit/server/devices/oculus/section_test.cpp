@@ -34,7 +34,7 @@ class OculusSection : public ConfigFolder {
   HeadConfig read(const std::string& head) const { return load(document(head)).config.heads.at(0); }
 };
 
-TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
+TEST_F(OculusSection, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(document(with_network()));
   EXPECT_THAT(loaded.warning_lines(), ElementsAre(HasSubstr("1200 kHz is not within 0.2 to 1000 kHz")));
   const HeadConfig& head = loaded.config.heads.at(0);
@@ -61,7 +61,7 @@ TEST_F(OculusSection, gives_defaults_for_what_is_left_out) {
   EXPECT_EQ(sockets[0].transport, PlannedSocket::Transport::tcp);
 }
 
-TEST_F(OculusSection, reads_what_is_written) {
+TEST_F(OculusSection, ReadsWhatIsWritten) {
   const HeadConfig head = read(
       "model: m1200d, device_id: 9, network: {address: 127.0.0.4, netmask: 255.0.0.0, tcp_port: 1, "
       "status_port: 2, "
@@ -105,7 +105,7 @@ TEST_F(OculusSection, reads_what_is_written) {
   EXPECT_EQ(config.gain_db_per_percent, 0.5);
 }
 
-TEST_F(OculusSection, the_high_frequency_may_have_an_absorption_of_its_own) {
+TEST_F(OculusSection, TheHighFrequencyMayHaveAnAbsorptionOfItsOwn) {
   const LoadedConfig loaded =
       load(document(with_network("acoustics: {high_frequency: {absorption_db_per_km: 480}}")));
   EXPECT_THAT(loaded.warning_lines(), IsEmpty()) << "the formula is valid at 750 kHz";
@@ -114,7 +114,7 @@ TEST_F(OculusSection, the_high_frequency_may_have_an_absorption_of_its_own) {
   EXPECT_NEAR(config.modes[0].absorption_db_per_m, 0.2167, 0.0005);  // Francois and Garrison, by hand
 }
 
-TEST_F(OculusSection, an_absorption_that_is_set_holds_at_both_frequencies) {
+TEST_F(OculusSection, AnAbsorptionThatIsSetHoldsAtBothFrequencies) {
   std::string text = document(with_network());
   text.replace(text.find("depth_m: 30"), 11, "depth_m: 30, absorption_db_per_km: 150");
   const HeadConfig head = load(text).config.heads.at(0);
@@ -124,7 +124,7 @@ TEST_F(OculusSection, an_absorption_that_is_set_holds_at_both_frequencies) {
   EXPECT_GT(computed.modes[1].absorption_db_per_m, 1.5 * computed.modes[0].absorption_db_per_m);
 }
 
-TEST_F(OculusSection, says_what_is_wrong) {
+TEST_F(OculusSection, SaysWhatIsWrong) {
   const auto said = [this](const std::string& head) { return complaints(document(head)); };
   EXPECT_THAT(said("model: m750d"), Contains(HasSubstr("network")));
   EXPECT_THAT(said("network: {netmask: 255.0.0.0}"), Contains(HasSubstr("address")));

@@ -32,7 +32,7 @@ render::SonarSettings settings_of(const oculus::SimpleFire& fire,
 
 // docs/protocols/oculus.md 4.5: bearings are positive to starboard, but the renderer counts to port. By its
 // sine, each bearing is the middle of its beam.
-TEST(OculusSettings, beams_hold_the_bearings_of_the_table_at_both_frequencies) {
+TEST(OculusSettings, BeamsHoldTheBearingsOfTheTableAtBothFrequencies) {
   for (const auto& [mode, half_deg] : {std::pair{1, 65.0}, {2, 35.0}}) {
     for (const int beams : {256, 512}) {
       const std::vector<double> edges = settings_of(fire_with(mode, beams)).aperture.beam_edges_rad;
@@ -46,14 +46,14 @@ TEST(OculusSettings, beams_hold_the_bearings_of_the_table_at_both_frequencies) {
   }
 }
 
-TEST(OculusSettings, rows_are_those_of_the_ping) {
+TEST(OculusSettings, RowsAreThoseOfThePing) {
   const render::SonarSettings settings = settings_of(fire_with(1, 512));
   EXPECT_EQ(settings.range.count, 1048);  // 15 m in rows of 5 samples at 262 237.76 Hz
   EXPECT_NEAR(settings.range.step_m, 5 * 1500.0 / (2 * 37.5e6 / 143), 1e-12);
   EXPECT_EQ(settings.range.output_count(), 1048);
 }
 
-TEST(OculusSettings, rows_keep_their_time_in_water_of_another_speed) {
+TEST(OculusSettings, RowsKeepTheirTimeInWaterOfAnotherSpeed) {
   HeadConfig head = oculus_kind().make_default();
   auto config = std::make_shared<OculusConfig>(oculus_config(head));
   config->device.plan.water_sound_speed_mps = 1450.0;
@@ -61,7 +61,7 @@ TEST(OculusSettings, rows_keep_their_time_in_water_of_another_speed) {
   EXPECT_NEAR(settings_of(fire_with(1, 512), head).range.step_m, 5 * 1450.0 / (2 * 37.5e6 / 143), 1e-12);
 }
 
-TEST(OculusSettings, frequencies_have_beams_water_and_noise_of_their_own) {
+TEST(OculusSettings, FrequenciesHaveBeamsWaterAndNoiseOfTheirOwn) {
   const render::SonarSettings low = settings_of(fire_with(1, 256));
   const render::SonarSettings high = settings_of(fire_with(2, 256));
   EXPECT_NEAR(low.aperture.receive_beamwidth_rad, 1.0 * degree, 1e-12);
@@ -79,7 +79,7 @@ TEST(OculusSettings, frequencies_have_beams_water_and_noise_of_their_own) {
               1e-9);
 }
 
-TEST(OculusSettings, gamma_and_gain_are_the_clients) {
+TEST(OculusSettings, GammaAndGainAreTheClients) {
   oculus::SimpleFire fire = fire_with(1, 256);
   fire.fire.gamma = 127;
   const render::SonarSettings settings = settings_of(fire);

@@ -37,7 +37,7 @@ std::string complaint(const SurveyOptions& options) {
 }
 
 // docs/protocols/oculus.md 3.3 and 4.6.
-TEST(OculusSurvey, pings_are_those_of_a_client) {
+TEST(OculusSurvey, PingsAreThoseOfAClient) {
   const std::unique_ptr<Survey> pings = survey(with(&SurveyOptions::range_m, 40.0));
   EXPECT_NEAR(pings->client_bin_m(), 12 * 1500.0 / (2 * 37.5e6 / 143), 1e-12);
   EXPECT_NEAR(static_cast<double>(pings->natural_period().count()), (2 * 40.0 / 1500.0 + 0.005) * 1e9, 10.0);
@@ -53,7 +53,7 @@ TEST(OculusSurvey, pings_are_those_of_a_client) {
   EXPECT_TRUE(survey(with(&SurveyOptions::bits, 16))->job(0).sixteen_bit);
 }
 
-TEST(OculusSurvey, refuses_what_it_does_not_know_or_cannot_do) {
+TEST(OculusSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
   EXPECT_THAT(complaint(with(&SurveyOptions::compression_log2, 1)), HasSubstr("--compression"));
   EXPECT_THAT(complaint(with(&SurveyOptions::bins, 500)), HasSubstr("--bins"));
   EXPECT_THAT(complaint(with(&SurveyOptions::step_deg, 1.0)), HasSubstr("--step"));

@@ -29,7 +29,7 @@ class Ping360Section : public ConfigFolder {
   }
 };
 
-TEST_F(Ping360Section, gives_defaults_for_what_is_left_out) {
+TEST_F(Ping360Section, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(document("name: mast, udp: [{bind: 127.0.0.1:12345}]"));
   EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   const HeadConfig& head = loaded.config.heads.at(0);
@@ -44,7 +44,7 @@ TEST_F(Ping360Section, gives_defaults_for_what_is_left_out) {
   EXPECT_EQ(head.kind->summary(head), "ID 2, UDP 127.0.0.1:12345");
 }
 
-TEST_F(Ping360Section, reads_what_is_written) {
+TEST_F(Ping360Section, ReadsWhatIsWritten) {
   const Ping360Config config = read(
       "name: mast, udp: [{bind: 127.0.0.1:12345}, {bind: 127.0.0.1:9092}], serial: {pty: [{}]}, "
       "discovery: {bind: 0.0.0.0:30303, allow: [192.168.2.0/24], address: 192.168.2.4, mac: "
@@ -70,7 +70,7 @@ TEST_F(Ping360Section, reads_what_is_written) {
   EXPECT_TRUE(config.serial.lock_to_first);
 }
 
-TEST_F(Ping360Section, a_beamwidth_is_that_of_the_one_beam) {
+TEST_F(Ping360Section, ABeamwidthIsThatOfTheOneBeam) {
   const std::string text = document("name: m, udp: [{bind: 127.0.0.1:1}], acoustics: {beamwidth_deg: 3}");
   const render::Aperture aperture = load(text).config.heads.at(0).acoustics.aperture;
   const double half_rad = 1.5 * std::numbers::pi / 180.0;
@@ -80,7 +80,7 @@ TEST_F(Ping360Section, a_beamwidth_is_that_of_the_one_beam) {
   EXPECT_NEAR(aperture.beam_edges_rad[1], -half_rad, 1e-12);
 }
 
-TEST_F(Ping360Section, a_transducer_band_has_two_ends_or_none) {
+TEST_F(Ping360Section, ATransducerBandHasTwoEndsOrNone) {
   const std::string head = "name: m, udp: [{bind: 127.0.0.1:1}], acoustics: {transducer_band: ";
   EXPECT_EQ(read(head + "{low_khz: 700, high_khz: 780}}").transducer_band,
             (render::TransducerBand{700e3, 780e3}));
@@ -94,7 +94,7 @@ TEST_F(Ping360Section, a_transducer_band_has_two_ends_or_none) {
   }
 }
 
-TEST_F(Ping360Section, says_what_is_wrong) {
+TEST_F(Ping360Section, SaysWhatIsWrong) {
   EXPECT_THAT(complaints(document("name: m")), ElementsAre(HasSubstr("no client could reach the head")));
   EXPECT_THAT(complaints(document("name: m, udp: [{bind: 127.0.0.1:1}, {bind: 127.0.0.1:1}]")),
               ElementsAre(HasSubstr("127.0.0.1:1 is given twice")));
@@ -112,7 +112,7 @@ TEST_F(Ping360Section, says_what_is_wrong) {
 }
 
 // Without `bind` its socket is on all addresses, and without `allow` it would answer no client.
-TEST_F(Ping360Section, discovery_is_told_whom_to_answer_unless_bound_to_loopback) {
+TEST_F(Ping360Section, DiscoveryIsToldWhomToAnswerUnlessBoundToLoopback) {
   const std::string head = "name: m, udp: [{bind: 127.0.0.1:1}], discovery: {address: 127.0.0.1";
   EXPECT_THAT(complaints(document(head + "}")), ElementsAre(HasSubstr("discovery.allow")));
   EXPECT_THAT(complaints(document(head + ", bind: 0.0.0.0:30303}")),
@@ -122,7 +122,7 @@ TEST_F(Ping360Section, discovery_is_told_whom_to_answer_unless_bound_to_loopback
 }
 
 // docs/protocols/ping360.md 5: the answer names no port.
-TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
+TEST_F(Ping360Section, WarnsOfAHeadThatIsFoundWhereItIsNot) {
   const auto warnings = [this](const std::string& udp) {
     return load(document("name: m, udp: [" + udp +
                          "], discovery: {address: 192.168.2.4, allow: [192.168.2.0/24]}"))
@@ -137,13 +137,13 @@ TEST_F(Ping360Section, warns_of_a_head_that_is_found_where_it_is_not) {
   }
 }
 
-TEST_F(Ping360Section, no_two_heads_of_any_kind_may_have_the_same_terminal) {
+TEST_F(Ping360Section, NoTwoHeadsOfAnyKindMayHaveTheSameTerminal) {
   EXPECT_THAT(complaints(document("name: a, serial: {pty: [{link: a}]}") +
                          "  - {name: b, type: micron, serial: {pty: [{link: ./a}]}}\n"),
               ElementsAre(HasSubstr("is already used by heads[0] (expected a unique value)")));
 }
 
-TEST_F(Ping360Section, heads_may_share_the_port_of_discovery_and_an_id) {
+TEST_F(Ping360Section, HeadsMayShareThePortOfDiscoveryAndAnId) {
   const std::string of_a = "discovery: {address: 127.0.0.1, allow: [127.0.0.0/8]}";
   const std::string of_b = "discovery: {address: 127.0.0.2, allow: [127.0.0.0/8]}";
   EXPECT_THAT(complaints(document("name: a, udp: [{bind: 127.0.0.1:1}], " + of_a) +

@@ -27,7 +27,7 @@ ping360::Transducer usual_command() {
 
 // docs/protocols/ping360.md 2.3: the sample interval is the two-way time 888 * 25 ns. A pulse of 100 us is 75
 // mm long.
-TEST(Ping360Settings, ranges_and_pulse_are_those_of_the_command) {
+TEST(Ping360Settings, RangesAndPulseAreThoseOfTheCommand) {
   const render::SonarSettings settings = settings_of(usual_command());
   EXPECT_EQ(settings.range.count, 1200);
   EXPECT_NEAR(settings.range.step_m, 888 * 25e-9 * 1500.0 / 2.0, 1e-12);
@@ -36,7 +36,7 @@ TEST(Ping360Settings, ranges_and_pulse_are_those_of_the_command) {
 }
 
 // The transducer cannot receive before its tone ends. A tone of 1000 us is 0.675 m longer than one of 100 us.
-TEST(Ping360Settings, the_ring_down_lasts_as_much_longer_as_the_tone) {
+TEST(Ping360Settings, TheRingDownLastsAsMuchLongerAsTheTone) {
   const render::RingDown usual = settings_of(usual_command()).physical.ring_down;
   ping360::Transducer command = usual_command();
   command.transmit_duration_us = 1000;
@@ -49,7 +49,7 @@ TEST(Ping360Settings, the_ring_down_lasts_as_much_longer_as_the_tone) {
 
 // Absorption in the sea by Francois & Garrison, cool water: about 0.13 dB/m at 500 kHz, 0.36 dB/m at 1000
 // kHz.
-TEST(Ping360Settings, level_and_absorption_are_those_of_the_frequency) {
+TEST(Ping360Settings, LevelAndAbsorptionAreThoseOfTheFrequency) {
   ping360::Transducer command = usual_command();
   EXPECT_NEAR(settings_of(command).physical.band_loss_db, 0, 0.01);
   const double usual_db_per_m = settings_of(command).physical.absorption_db_per_m;
@@ -66,7 +66,7 @@ TEST(Ping360Settings, level_and_absorption_are_those_of_the_frequency) {
   EXPECT_LT(usual_db_per_m, high_db_per_m);
 }
 
-TEST(Ping360Settings, the_three_gains_are_six_decibels_apart) {
+TEST(Ping360Settings, TheThreeGainsAreSixDecibelsApart) {
   ping360::Transducer command = usual_command();
   command.gain_setting = 0;
   const double low_db = settings_of(command).physical.gain_db;

@@ -39,7 +39,7 @@ std::string complaint(const SurveyOptions& options) {
 
 // docs/protocols/ping360.md 2.3: 20 m at 1500 m/s are 1200 samples of 888 ticks. 3.7: a ping with a step of
 // one gradian takes 1200 * 888 * 25 ns + 18 ms + 6.1 ms.
-TEST(Ping360Survey, samples_and_times_are_those_of_clients_and_of_the_head) {
+TEST(Ping360Survey, SamplesAndTimesAreThoseOfClientsAndOfTheHead) {
   const std::unique_ptr<Survey> all_round =
       survey(with(&SurveyOptions::range_m, 20.0, with(&SurveyOptions::gain_percent, 100.0)));
   EXPECT_NEAR(all_round->client_bin_m(), 888 * 25e-9 * 750.0, 1e-12);
@@ -55,7 +55,7 @@ TEST(Ping360Survey, samples_and_times_are_those_of_clients_and_of_the_head) {
   EXPECT_NEAR(all_round->sector().width_rad, 360.0 * degree, 1e-12);
 }
 
-TEST(Ping360Survey, a_sector_is_swept_to_and_fro) {
+TEST(Ping360Survey, ASectorIsSweptToAndFro) {
   const std::unique_ptr<Survey> sector =
       survey(with(&SurveyOptions::step_deg, 9.0, with(&SurveyOptions::sector_deg, {-45.0, 45.0})));
   EXPECT_NEAR(sector->sector().left_rad, -45.0 * degree, 1e-12);
@@ -69,7 +69,7 @@ TEST(Ping360Survey, a_sector_is_swept_to_and_fro) {
 }
 
 // 3.3: the head takes the short way back to the start, which continues in the same direction.
-TEST(Ping360Survey, a_sector_of_more_than_half_a_turn_is_scanned_one_way) {
+TEST(Ping360Survey, ASectorOfMoreThanHalfATurnIsScannedOneWay) {
   const std::unique_ptr<Survey> sector =
       survey(with(&SurveyOptions::step_deg, 9.0, with(&SurveyOptions::sector_deg, {-135.0, 135.0})));
   const std::vector<int> frames = sector->frames(70);
@@ -80,7 +80,7 @@ TEST(Ping360Survey, a_sector_of_more_than_half_a_turn_is_scanned_one_way) {
   EXPECT_NEAR(sector->sector().width_rad, 270.0 * degree, 1e-12);
 }
 
-TEST(Ping360Survey, refuses_what_it_does_not_know_or_cannot_do) {
+TEST(Ping360Survey, RefusesWhatItDoesNotKnowOrCannotDo) {
   EXPECT_THAT(complaint(with(&SurveyOptions::compression_log2, 1)), HasSubstr("--compression"));
   EXPECT_THAT(complaint(with(&SurveyOptions::bits, 4)), HasSubstr("--bits"));
   EXPECT_THAT(complaint(with(&SurveyOptions::range_m, 0.1)), HasSubstr("--range"));
