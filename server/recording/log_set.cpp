@@ -25,9 +25,9 @@ std::int32_t utc_offset_s(RecordingZone zone) {
 
 }  // namespace
 
-LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads, TimePoint begin,
-               bool has_room)
-    : setting_{config, heads, unix_time_offset(), utc_offset_s(config.zone), {}}, begin_(begin) {
+LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads,
+               std::chrono::nanoseconds unix_offset, TimePoint begin, bool has_room)
+    : setting_{config, heads, unix_offset, utc_offset_s(config.zone), {}}, begin_(begin) {
   setting_.stem =
       free_stem(config.directory, glf::glf_time_s(setting_.unix_ns(begin), setting_.utc_offset_s));
   if (!has_room) {

@@ -13,10 +13,11 @@ namespace sonard::server {
 
 class LogSet {
  public:
+  /// @param unix_offset from TimePoint to Unix time
   /// @param begin time of the first event
   /// @param has_room false: everything is discarded
-  LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads, TimePoint begin,
-         bool has_room);
+  LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& heads,
+         std::chrono::nanoseconds unix_offset, TimePoint begin, bool has_room);
   ~LogSet() = default;
   LogSet(const LogSet&) = delete;  // logs refer to its setting
   LogSet& operator=(const LogSet&) = delete;

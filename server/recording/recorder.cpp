@@ -32,6 +32,9 @@ namespace fs = std::filesystem;
 constexpr int nice_value = 5;  // about a third of the processor time of a competing serving thread
 constexpr std::chrono::milliseconds look_again{100};  // chunks and syncs may be due without an event
 constexpr std::chrono::seconds sync_period{1};
+/// The wall clock was set if it differs by more. Otherwise the next files keep the offset, so that a ping has
+/// one time, also if its pose is in one file and its image in the next.
+constexpr std::chrono::milliseconds clocks_agree{1};
 constexpr std::chrono::seconds report_period{2};
 
 /// An exclusive lock on a folder; it ends with the process.
@@ -110,6 +113,7 @@ struct Recorder::Impl {
   // Used by the recorder's thread only:
   std::optional<LogSet> set;
   std::deque<GlfPacking> packings;
+  std::chrono::nanoseconds unix_offset{0};  ///< of the newest set
   TimePoint synced_at{};
   bool without_room = false;
 
@@ -244,7 +248,11 @@ void Recorder::Impl::begin_set(TimePoint now) {
     spdlog::error("recording: {}: nothing is recorded, serving continues", why);
   }
   without_room = !room;
-  set.emplace(config, heads, now, room);
+  const std::chrono::nanoseconds offset = unix_time_offset();
+  if (std::chrono::abs(offset - unix_offset) > clocks_agree) {
+    unix_offset = offset;
+  }
+  set.emplace(config, heads, unix_offset, now, room);
 }
 
 void Recorder::Impl::end_set() {

@@ -81,6 +81,23 @@ struct RecorderTest : testing::Test {
     }
     return numbers;
   }
+  /// Transmit times of all images, minus `period` for each ping.
+  std::set<std::int64_t> mcap_begins(std::chrono::nanoseconds period) const {
+    std::set<std::int64_t> begins;
+    for (const fs::path& path : files(".mcap")) {
+      const Bytes bytes = test::contents(path);
+      const auto reader = mcap::Reader::open(bytes);
+      mcap::MessageCursor cursor = reader->messages();
+      while (const auto message = cursor.next()) {
+        if (reader->summary().channel(message->channel_id)->topic == "/bow/image") {
+          const auto image = log::decode<log::SonarImage>(message->data);
+          begins.insert(image->transmit_time_ns() -
+                        static_cast<std::int64_t>(image->ping_number()) * period.count());
+        }
+      }
+    }
+    return begins;
+  }
   std::uint64_t packets() const {
     std::uint64_t count = 0;
     for (const fs::path& path : files(".pcapng")) {
@@ -157,6 +174,18 @@ TEST_F(RecorderTest, BeginsNewFilesWhenTimeIsOver) {
   EXPECT_EQ(files(".mcap").size(), 3U);
   EXPECT_EQ(files(".glf").size(), 3U);
   EXPECT_EQ(mcap_pings(), numbers_up_to(30));
+}
+
+TEST_F(RecorderTest, TimesHaveOneOffsetInAllFiles) {
+  config.rotate_after = std::chrono::minutes{2};
+  Recorder recorder(config, test::one_head());
+  const TimePoint begin = clock.now();
+  for (std::uint64_t number = 0; number < 30; ++number) {
+    recorder.push(test::ping_event(number, 32, begin + number * std::chrono::minutes{1}));
+  }
+  recorder.stop();
+  EXPECT_EQ(files(".mcap").size(), 15U);
+  EXPECT_EQ(mcap_begins(std::chrono::minutes{1}).size(), 1U);
 }
 
 TEST_F(RecorderTest, DropsAndCountsWhatDoesNotFitTheQueue) {
