@@ -139,7 +139,7 @@ Timing time_writing(const Ping& ping, const std::string& formats) {
   const ScratchFolder folder;
   const server::RecordingConfig config = config_of(folder.path(), formats);
   TimePoint time = server::SteadyClock().now();
-  server::LogSet logs(config, one_head, time, /*has_room=*/true);
+  server::LogSet logs(config, one_head, server::unix_time_offset(), time, /*has_room=*/true);
   Timing timing;
   const double start_s = now_s();
   for (int done = 0; repetition.wants_more(done, start_s); ++done) {
