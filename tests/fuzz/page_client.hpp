@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <csignal>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -62,10 +63,28 @@ struct Page {
   Page() { spdlog::set_level(spdlog::level::off); }
 };
 
+/// Keeps the timer of libFuzzer from interrupting a system call.
+class WithoutAlarm {
+ public:
+  WithoutAlarm() {
+    sigset_t alarm;
+    sigemptyset(&alarm);
+    sigaddset(&alarm, SIGALRM);
+    pthread_sigmask(SIG_BLOCK, &alarm, &before_);
+  }
+  ~WithoutAlarm() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  WithoutAlarm(const WithoutAlarm&) = delete;
+  WithoutAlarm& operator=(const WithoutAlarm&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
 /// One connection to the page.
 class PageClient {
  public:
   explicit PageClient(Page& page) : page_(page), client_(page.io) {
+    const WithoutAlarm connecting;
     client_.connect(page.acceptor.local_endpoint());
     client_.set_option(boost::asio::ip::tcp::no_delay(true));  // each message arrives before the page runs
     const auto session =
