@@ -155,8 +155,11 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3, opposite = (k + 2) % 3;
     const double lean = turn(k, next);
+    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad()))) {  // not a number: above or at the sonar
+      continue;
+    }
     const std::int32_t first = probe(std::min(t[k], t[next])), last = probe(std::max(t[k], t[next]));
-    if (!(std::abs(lean) < static_cast<double>(fan.upright_rad())) || last - first < 2) {
+    if (last - first < 2) {
       continue;
     }
     const double at = std::atan2(y[k], x[k]) + 0.5 * lean;

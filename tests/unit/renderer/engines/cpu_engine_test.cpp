@@ -3,6 +3,7 @@
 #include "renderer/engines/cpu/cpu_engine.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,31 @@ namespace {
 bool echoes(const MeanEcho& echo) {
   return std::any_of(echo.image.intensity.begin(), echo.image.intensity.end(),
                      [](float intensity) { return intensity > 0; });
+}
+
+/// A corner at the sonar has no direction, and one above it no azimuth. Run with sanitizers, too.
+TEST(CpuEngine, CornersAtAndAboveTheSonarCostNoEcho) {
+  const auto image_with = [](const glm::vec3& corner_m) {
+    TriangleMesh hull;
+    hull.positions = {corner_m, {25, 0, -3}, {25, 6, 3}, {25, -6, 3}};
+    hull.indices = {0, 1, 2, 0, 1, 3, 0, 2, 3, 1, 2, 3};
+    WorkerPool workers(1);
+    SpatialIndex index(test::make_world({test::make_body("hull", hull)}), workers);
+    CpuEngine engine(index, workers, {});
+    SonarSettings settings;
+    settings.aperture.beam_edges_rad = equal_angle_edges(8, 1.0);
+    settings.range = {1500, 0.02, 0, false};
+    const std::vector<float> unweighted;
+    MeanEcho echo;
+    PingStatistics statistics;
+    engine.image({{}, settings, unweighted}, echo, statistics);
+    return echo;
+  };
+  for (const glm::vec3& corner_m : {glm::vec3(0, 0, 0), glm::vec3(0, 0, 2), glm::vec3(0, 0, -2)}) {
+    const MeanEcho echo = image_with(corner_m);
+    EXPECT_TRUE(echoes(echo)) << corner_m.z;
+    EXPECT_TRUE(std::ranges::all_of(echo.image.intensity, [](float x) { return std::isfinite(x); }));
+  }
 }
 
 TEST(CpuEngine, OnlyAFixedGridBuildsSearchTrees) {
