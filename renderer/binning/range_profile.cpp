@@ -39,17 +39,20 @@ inline double rounded(double value) {
     const Lines rising = begun < to ? begun : to;
     integral = rising * rising * half_over_smear + (begun - rising);
   };
-  const Lines y = Lines{0, 1, 2, 3} - from;
-  Lines before, here, after;
-  integrate(y - 1, before);
-  integrate(y, here);
-  integrate(y + 1, after);
+  // The integrals up to the begin of the line before each line, up to its own begin, and up to its end.
+  const Lines y_before = Lines{-1, 0, 1, 2} - from;
+  const Lines y_after = Lines{1, 2, 3, 4} - from;
+  Lines before, after;
+  integrate(y_before, before);
+  integrate(y_after, after);
+  const Lines here = __builtin_shufflevector(before, after, 1, 2, 3, 6);
   const Lines last = (density * (here - before) + round_to_integer) - round_to_integer;
   const Lines sum = (density * (after - here) + round_to_integer) - round_to_integer;
   Lines changed;
   std::memcpy(&changed, difference, sizeof changed);
   // Lines beyond the step get exactly its whole height, without rounding.
-  changed += (y >= to ? whole : sum) - (y - 1 >= to ? whole : last);
+  const Lines y = __builtin_shufflevector(y_before, y_after, 1, 2, 3, 6);
+  changed += (y >= to ? whole : sum) - (y_before >= to ? whole : last);
   std::memcpy(difference, &changed, sizeof changed);
 }
 
