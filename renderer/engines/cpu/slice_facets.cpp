@@ -15,8 +15,8 @@ namespace sonard::render {
 namespace {
 
 constexpr std::size_t lanes = 16;  // samples are computed so many at a time
-constexpr float most_strides = 32.0F;
-constexpr std::size_t most_places = 3 * 32;  // per part
+constexpr std::size_t most_strides = 32;
+constexpr std::size_t most_places = 3 * most_strides;  // per part
 constexpr std::size_t most_samples = most_places * FacetSight::most_parts;
 
 /// Places across a part, from its middle and in widths of the part, and their shares of the mean.
@@ -36,7 +36,8 @@ struct Quadrature {
       add(off, 0.5F);
     } else {
       constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
-      const float strides = std::clamp(std::ceil(slopes / per_stride), 1.0F, most_strides);
+      const float strides =
+          std::clamp(std::ceil(slopes / per_stride), 1.0F, static_cast<float>(most_strides));
       for (float k = 0.5F; k < strides; ++k) {
         const float middle = k / strides - 0.5F;
         add(middle - off / strides, beside / strides);
