@@ -6,7 +6,7 @@ from tree import CPP, DATA, matches
 MARK = "SPDX-License-Identifier:"
 LICENCE = "Apache-2.0"
 LICENCE_OF_DISSECTORS = "Apache-2.0 OR GPL-2.0-or-later"  # Wireshark's programming interface requires this
-SLASHES = (*CPP, ".proto", ".cs", ".js")
+SLASHES = (*CPP, ".proto", ".cs", ".js", ".glsl")
 
 # A program of clients/wireshark writes these files; a test compares them.
 GENERATED = ("clients/wireshark/*_fields.lua",)

@@ -28,7 +28,8 @@ def run(tree, command, files, batch=40):
 
 
 def format_complaints(tree, paths):
-    yield from run(tree, ["clang-format", "--dry-run", "-Werror"], [path for path in paths if path.endswith(CPP)])
+    formatted = (*CPP, ".glsl")
+    yield from run(tree, ["clang-format", "--dry-run", "-Werror"], [path for path in paths if path.endswith(formatted)])
 
 
 def shell_complaints(tree):

@@ -12,8 +12,10 @@ namespace sonard::render {
 
 namespace {
 
+using slices::nearest_m;
+using slices::shortest_rad;
+
 constexpr std::size_t widest_vector = 16;  // arrays have a multiple of this length: loops have no remainder
-constexpr float nearest_m = 1e-4F;         // nearer to the vertical axis, triangles are cut off
 constexpr float sharp_turn_rad = 0.6F;
 constexpr double same_edge_rad = 2e-6;  // nearer edges count as one
 
@@ -146,7 +148,8 @@ void SliceCutter::add_edge_parts(const FanTriangle& triangle, double low_rad, do
   }
   const auto tan_limit = static_cast<double>(fan.tan_limit());
   const auto probe = [tan_limit](double at) {
-    const double place = (at / (probe_reach * tan_limit) + 1) * (0.5 * (side_probes - 1)) + 1;
+    const double place =
+        (at / (static_cast<double>(slices::probe_reach) * tan_limit) + 1) * (0.5 * (side_probes - 1)) + 1;
     return static_cast<std::int32_t>(std::clamp(place, 0.0, static_cast<double>(side_probes)));
   };
   const auto turn = [&](int from, int to) {
@@ -250,18 +253,15 @@ void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {
   cut_all(slice, tan_limit, segments);
   std::size_t count = 0;
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    if (fate_[i] == partly_behind) {
+    if (fate_[i] == slices::cut_is_partly_behind) {
       clip_behind(slice, tan_limit, i, segments);
     }
     segments.kept[count] = static_cast<std::int32_t>(i);
-    count += fate_[i] == kept ? 1 : 0;
+    count += fate_[i] == slices::cut_keeps ? 1 : 0;
   }
   segments.kept.resize(count);
 }
 
-/// With s the distance of a corner from the plane of the slice, an edge from i to j crosses it at
-/// h = (h_i s_j - h_j s_i) / (s_j - s_i), and z likewise. Exchanging i and j changes only the signs of
-/// numerator and denominator, so that two triangles find the same point on their common edge.
 SONARD_SIMD_CLONES
 void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segments) {
   const float cosine = slice.cosine, sine = slice.sine;
@@ -283,47 +283,19 @@ void SliceCutter::cut_all(const Slice& slice, float tan_limit, Segments& segment
   float* __restrict low_reach = segments.low_reach.data();
   float* __restrict high_reach = segments.high_reach.data();
   std::int32_t* __restrict fate = fate_.data();
-  constexpr float w_nearest = 1.0F / nearest_m;
   const std::size_t count = padded_;
   for (std::size_t i = 0; i < count; ++i) {
-    const float s0 = y0[i] * cosine - x0[i] * sine, h0 = x0[i] * cosine + y0[i] * sine;
-    const float s1 = y1[i] * cosine - x1[i] * sine, h1 = x1[i] * cosine + y1[i] * sine;
-    const float s2 = y2[i] * cosine - x2[i] * sine, h2 = x2[i] * cosine + y2[i] * sine;
-    // Sides of the slice as numbers: GCC 12 does not vectorise a comparison of comparisons.
-    const float side0 = s0 >= 0 ? 1.0F : -1.0F, side1 = s1 >= 0 ? 1.0F : -1.0F,
-                side2 = s2 >= 0 ? 1.0F : -1.0F;
-    const bool cut01 = side0 * side1 < 0;
-    const bool cut20 = side2 * side0 < 0;
-    // The two edges that are cut: p is 0-1 or else 1-2, q is 2-0 or else 1-2.
-    const float hpi = cut01 ? h0 : h1, hpj = cut01 ? h1 : h2, spi = cut01 ? s0 : s1, spj = cut01 ? s1 : s2;
-    const float zpi = cut01 ? z0[i] : z1[i], zpj = cut01 ? z1[i] : z2[i];
-    const float hqi = cut20 ? h2 : h1, hqj = cut20 ? h0 : h2, sqi = cut20 ? s2 : s1, sqj = cut20 ? s0 : s2;
-    const float zqi = cut20 ? z2[i] : z1[i], zqj = cut20 ? z0[i] : z2[i];
-    const float ep = spj - spi, eq = sqj - sqi;
-    const float over_p = 1.0F / (hpi * spj - hpj * spi), over_q = 1.0F / (hqi * sqj - hqj * sqi);
-    const float tp = (zpi * spj - zpj * spi) * over_p, wp = ep * over_p;
-    const float tq = (zqi * sqj - zqj * sqi) * over_q, wq = eq * over_q;
-    // dt / d azimuth along the edge is (dz - t dh) / ds; the edge spans the azimuth w ds.
-    const float rp = (zpj - zpi) - tp * (hpj - hpi), rq = (zqj - zqi) - tq * (hqj - hqi);
-    const float mp = rp / ep, mq = rq / eq;
-    const float fp = rp * wp, fq = rq * wq;
-    const bool p_low = tp < tq;
-    const float a = p_low ? tp : tq, b = p_low ? tq : tp, wa = p_low ? wp : wq, wb = p_low ? wq : wp;
-    const float steepness = (wb - wa) / (b - a);
-    low[i] = a;
-    high[i] = b;
-    slope[i] = steepness;
-    at_0[i] = wa - steepness * a;
-    low_slope[i] = p_low ? mp : mq;
-    high_slope[i] = p_low ? mq : mp;
-    const float reach_a = p_low ? fp : fq, reach_b = p_low ? fq : fp;
-    low_reach[i] = reach_a < 0 ? -reach_a : reach_a;
-    high_reach[i] = reach_b < 0 ? -reach_b : reach_b;
-    const std::int32_t cut = side0 * side1 + side2 * side0 < 2 ? 1 : 0;
-    const std::int32_t seen =
-        ((b - a > shortest_rad * (1 + a * a)) & (b > -tan_limit) & (a < tan_limit)) ? kept : none;
-    const std::int32_t not_in_front = ((wp <= 0) & (wq <= 0)) ? none : partly_behind;
-    fate[i] = cut * (((wp > 0) & (wq > 0) & (wp < w_nearest) & (wq < w_nearest)) ? seen : not_in_front);
+    const slices::CutTriangle cut = slices::cut_triangle({x0[i], y0[i], z0[i]}, {x1[i], y1[i], z1[i]},
+                                                         {x2[i], y2[i], z2[i]}, cosine, sine, tan_limit);
+    low[i] = cut.low;
+    high[i] = cut.high;
+    at_0[i] = cut.w_at_0;
+    slope[i] = cut.w_slope;
+    low_slope[i] = cut.low_slope;
+    high_slope[i] = cut.high_slope;
+    low_reach[i] = cut.low_reach;
+    high_reach[i] = cut.high_reach;
+    fate[i] = cut.fate;
   }
 }
 
@@ -348,7 +320,7 @@ void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i
       end_z[ends++] = z[k] + (z[j] - z[k]) * share;
     }
   }
-  fate_[i] = none;
+  fate_[i] = slices::cut_misses;
   if (ends < 2 || std::max(end_h[0], end_h[1]) <= static_cast<double>(nearest_m)) {
     return;
   }
@@ -372,7 +344,7 @@ void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i
   segments.w_at_0[i] = static_cast<float>(1 / end_h[lower] - steepness * a);
   segments.low_slope[i] = segments.high_slope[i] = 0.0F;
   segments.low_reach[i] = segments.high_reach[i] = 0.0F;
-  fate_[i] = kept;
+  fate_[i] = slices::cut_keeps;
 }
 
 }  // namespace sonard::render

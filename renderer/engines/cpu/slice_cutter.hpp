@@ -9,12 +9,11 @@
 #include <vector>
 
 #include "renderer/engines/cpu/fan_triangles.hpp"
+#include "renderer/engines/slices/slice_math.hpp"
 
 namespace sonard::render {
 
-/// A slice: the half plane h > 0 at one azimuth, with horizontal distance h and height z as coordinates, and
-/// the thin wedge around it that it represents. The tangent of the elevation, t = z / h, identifies a ray of
-/// the slice; along any straight line in the slice 1 / h is affine in t.
+/// A slice (renderer/engines/slices/cut.glsl), and the thin wedge around it that it represents.
 struct Slice {
   double azimuth_rad = 0.0;
   float width_rad = 0.0F;            ///< of the wedge
@@ -28,11 +27,7 @@ struct Slice {
         sine(static_cast<float>(std::sin(azimuth))) {}
 };
 
-/// Number of t at which neighbouring slices are compared, evenly spaced over the elevation of the fan. The
-/// first and the last lie just inside its limits, where weak echoes of a beam often are.
-inline constexpr int side_probes = 256;
-inline constexpr double probe_reach = 0.999;  ///< of the tangent of the limit
-
+using slices::side_probes;
 using ProbeSet = std::bitset<side_probes>;
 
 /// An edge along a slice at which a surface ends or turns sharply: the end of a wall, the side of a post, the
@@ -42,21 +37,10 @@ struct UprightEdge {
   ProbeSet probes;  ///< at which the surface ends or turns
 };
 
-/// Shortest segment, in radians of elevation; shorter ones are dropped, because rounding hides the slope of
-/// their surface.
-inline constexpr float shortest_rad = 1e-6F;
-
 /// Motion of a segment's end beside the slice, along the edge on which it lies.
 struct EdgeRun {
   float slope = 0.0F;  ///< dt / d azimuth
   float reach = 0.0F;  ///< length of the edge in t: the largest move within a wedge
-
-  /// The slope as a straight line over a wedge of the fan. An end at `t` that leaves the fan stops there.
-  float slope_within(float t, float width_rad, float tan_limit) const {
-    const float rest = (tan_limit - (t < 0 ? -t : t)) * 2;
-    const float most = (reach < rest ? reach : rest) / width_rad;
-    return slope > most ? most : (slope < -most ? -most : slope);
-  }
 };
 
 /// The straight segments that a slice cuts out of triangles, in arrays as long as the list of triangles, for
@@ -132,8 +116,7 @@ class SliceCutter {
     float facing_rad;  ///< azimuth of the triangle's normal; cancels too if the surface continues evenly
   };
   std::vector<EdgePart> edge_parts_;  ///< by rising azimuth
-  enum Fate : std::int32_t { none, kept, partly_behind };
-  std::vector<std::int32_t> fate_;  // per triangle, in the current slice
+  std::vector<std::int32_t> fate_;    ///< per triangle, in the current slice: slices::CutTriangle
 };
 
 }  // namespace sonard::render

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "renderer/engines/cpu/facet_law.hpp"
+#include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -65,12 +65,10 @@ SONARD_SIMD_CLONES
 void respond_at(const FacetsAt& facets, float t, const float* __restrict x, std::size_t count,
                 float* __restrict response) {
   const glm::vec3 n = facets.normals.at + t * facets.normals.per_t, per_x = facets.normals.per_x;
-  const float strength = facets.strength, variance = facets.variance;
+  const slices::FacetMaterial material{facets.strength, facets.variance};
   for (std::size_t i = 0; i < count; ++i) {
-    const float h = n.x + x[i] * per_x.x, s = n.y + x[i] * per_x.y, z = n.z + x[i] * per_x.z;
-    const float product = h + x[i] * s + t * z;
-    const float c2 = product * product / ((h * h + s * s + z * z) * (1 + x[i] * x[i] + t * t));
-    response[i] = facet_law(c2, strength, variance);
+    response[i] = slices::facets_toward(n.x + x[i] * per_x.x, n.y + x[i] * per_x.y, n.z + x[i] * per_x.z,
+                                        x[i], t, material);
   }
 }
 

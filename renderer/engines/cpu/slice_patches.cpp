@@ -16,9 +16,8 @@ namespace sonard::render {
 namespace {
 
 constexpr int pattern_steps = 1024;
-constexpr int most_divisions = 16;     // of a segment at once
-constexpr int most_rounds = 6;         // near a foot point, parts are divided again
-constexpr float most_gradient = 1.1F;  // of a segment; 1 if the range turns round at one end
+constexpr int most_divisions = 16;  // of a segment at once
+constexpr int most_rounds = 6;      // near a foot point, parts are divided again
 constexpr auto most_side_by_side = static_cast<float>(FacetSight::most_parts);  // patches of a segment
 constexpr float anything = std::numeric_limits<float>::infinity();
 
@@ -27,16 +26,6 @@ float share_of_pattern(float linearity) {
   return 0.36F * std::sqrt(linearity);
 }
 constexpr float share_in_one_place = 0.25F;
-
-/// Relative excess of a plane's mean range over a wedge above its range in the middle: a 24th of r'' / r
-/// times the width squared, with r = D / (n . d) as a function of the azimuth. 0 for planes seen nearly
-/// edge-on, whose range is far from straight.
-/// @param h, s components of the normal over n . d
-inline float sagitta_of_plane(float h, float s, float width) {
-  const float turn = s * width;
-  const float sagitta = (1.0F / 24) * (h * width * width + 2 * turn * turn);
-  return turn * turn < 2.5e-3F && sagitta < 1e-3F && sagitta > -1e-3F ? sagitta : 0.0F;
-}
 
 }  // namespace
 
@@ -164,7 +153,8 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
     const auto put = [&](float end_t, float& range_m, float& smear_m) {
       // The range at the azimuth of the slice instead of the mean over the wedge.
       const float n = seen_.normal_h[i] + seen_.normal_z[i] * end_t;
-      range_m /= 1 + sagitta_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
+      range_m /=
+          1 + slices::sagitta_of_plane(seen_.normal_h[i] / n, seen_.normal_s[i] / n, request.slice.width_rad);
       const float wedge_there_m = range_m * request.slice.width_rad;
       const float slope = sight.range_slope(end_t, place);
       const float on_the_way =
@@ -231,31 +221,23 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict cosine_gradient = cosine_gradient_.data();
   float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
-    const float b = w_slope[i];
-    const float w1 = w_at_0[i] + b * t1, w2 = w_at_0[i] + b * t2, wm = w_at_0[i] + b * tm;
-    const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
-    const float g1 = std::sqrt(q1), g2 = std::sqrt(q2), gm = std::sqrt(qm);
-    const float n1 = normal_h[i] + normal_z[i] * t1, n2 = normal_h[i] + normal_z[i] * t2,
-                nm = normal_h[i] + normal_z[i] * tm;
-    const float r1 = g1 / w1 * (1 + sagitta_of_plane(normal_h[i] / n1, normal_s[i] / n1, width));
-    const float r2 = g2 / w2 * (1 + sagitta_of_plane(normal_h[i] / n2, normal_s[i] / n2, width));
-    const float by_azimuth1 = -r1 * normal_s[i] / n1, by_azimuth2 = -r2 * normal_s[i] / n2;
-    const float by_t1 = r1 * (t1 / q1 - b / w1), by_t2 = r2 * (t2 / q2 - b / w2);
-    const float rm = gm / wm * (1 + sagitta_of_plane(normal_h[i] / nm, normal_s[i] / nm, width));
-    range_low[i] = r1;
-    range_mid[i] = rm;
-    range_high[i] = r2;
-    by_azimuth_low[i] = by_azimuth1 + by_t1 * low_slope[i];
-    by_azimuth_high[i] = by_azimuth2 + by_t2 * high_slope[i];
+    const float t1 = low[i], t2 = high[i];
+    const slices::PlaneLine plane{w_at_0[i], w_slope[i], normal_h[i], normal_s[i], normal_z[i]};
+    const slices::PlanePoint p1 = slices::point_of_plane(plane, t1, width);
+    const slices::PlanePoint p2 = slices::point_of_plane(plane, t2, width);
+    const slices::PlanePoint pm = slices::point_of_plane(plane, 0.5F * (t1 + t2), width);
+    range_low[i] = p1.range_m;
+    range_mid[i] = pm.range_m;
+    range_high[i] = p2.range_m;
+    by_azimuth_low[i] = p1.by_azimuth + p1.by_t * low_slope[i];
+    by_azimuth_high[i] = p2.by_azimuth + p2.by_t * high_slope[i];
     smear_low[i] = std::abs(by_azimuth_low[i]) * width;
     smear_high[i] = std::abs(by_azimuth_high[i]) * width;
-    const float c1 = std::abs(n1) / g1, c2 = std::abs(n2) / g2, cm = std::abs(nm) / gm;
-    const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
-    cos_phi[i] = cosine < 1 ? cosine : 1.0F;
-    cosine_gradient[i] = 0.5F * (c2 - c1) / cosine;
-    cosine_mid[i] = cm;
-    solid_angle[i] = (t2 / g2 - t1 / g1) * width;
+    const slices::CosineRun cosine = slices::cosine_run(p1.cosine, pm.cosine, p2.cosine);
+    cos_phi[i] = cosine.mean < 1 ? cosine.mean : 1.0F;
+    cosine_gradient[i] = cosine.gradient;
+    cosine_mid[i] = pm.cosine;
+    solid_angle[i] = (t2 / p2.length - t1 / p1.length) * width;
   }
 }
 
@@ -277,13 +259,13 @@ void SlicePatcher::measure_shading() {
   for (std::size_t i = 0; i < count; ++i) {
     const auto cosine_at = [&](float t) {
       const float h = at_h[i] + h_per_t[i] * t, s = at_s[i] + s_per_t[i] * t, z = at_z[i] + z_per_t[i] * t;
-      return std::abs(h + z * t) / std::sqrt((h * h + s * s + z * z) * (1 + t * t));
+      return slices::cosine_of_normal(h, s, z, t);
     };
     const float c1 = cosine_at(low[i]), c2 = cosine_at(high[i]), cm = cosine_at(0.5F * (low[i] + high[i]));
-    const float cosine = (c1 + 4 * cm + c2) * (1.0F / 6);
-    const bool is_direction = cosine >= 0;  // otherwise the plane's cosine stays
-    cos_phi[i] = is_direction ? (cosine < 1 ? cosine : 1.0F) : cos_phi[i];
-    cosine_gradient[i] = is_direction ? 0.5F * (c2 - c1) / cosine : cosine_gradient[i];
+    const slices::CosineRun cosine = slices::cosine_run(c1, cm, c2);
+    const bool is_direction = cosine.mean >= 0;  // otherwise the plane's cosine stays
+    cos_phi[i] = is_direction ? (cosine.mean < 1 ? cosine.mean : 1.0F) : cos_phi[i];
+    cosine_gradient[i] = is_direction ? cosine.gradient : cosine_gradient[i];
     cosine_mid[i] = is_direction ? cm : cosine_mid[i];
   }
 }
@@ -313,35 +295,22 @@ void SlicePatcher::find_gradients(const Request& request) {
   // A gradient moves the middle of the echo by a third of this.
   const float least_gradient_m = 0.5F * request.linearity * request.line_m;
   for (std::size_t i = 0; i < count; ++i) {
-    const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
-    const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
-    const float r1 = range_low[i], rm = range_mid[i], r2 = range_high[i];
-    const float half = 0.5F * (r2 - r1), sagitta = 0.5F * (r1 + r2) - rm;
-    const float stretch = 0.5F * qm * std::sqrt(qm) * (1 / (q2 * std::sqrt(q2)) - 1 / (q1 * std::sqrt(q1)));
-    const float gradient = stretch - 2 * sagitta / half;
-    const float length = std::abs(half), steepness = std::abs(gradient);
-    // Ends whose smears differ by more than twice the spread cross within the wedge. That is right if the
-    // segment shrinks to nothing, because its neighbour compensates; it is wrong if the range hardly changes
-    // along the segment, as on a wall.
-    const float shrinks = std::abs(high_slope[i] - low_slope[i]) * width / (t2 - t1);
-    const float smear = 0.5F * (smear_low[i] + smear_high[i]);
-    const float difference = 0.5F * (smear_high[i] - smear_low[i]);
-    const float most = length * (2 + 1.5F * shrinks);
-    const float kept = difference > most ? most : (difference < -most ? -most : difference);
-    smear_low[i] = smear - kept;
-    smear_high[i] = smear + kept;
-    const bool has_gradient = (steepness < most_gradient) & (smear < length);
-    const float with_cosine = std::abs(gradient + plain[i] * cosine_gradient[i]);
-    const float steeper = with_cosine > steepness ? with_cosine : steepness;
-    range_gradient[i] = (has_gradient & (steeper * length > least_gradient_m)) ? gradient : 0.0F;
-    // With a gradient the error is of third order. Spread evenly, the echo lies two thirds of the sagitta too
-    // far towards its thin end. All segments of a surface err to the same side, so this counts nine times.
-    const float left = (has_gradient & (plain[i] > 0)) ? sagitta * sagitta / length : 6 * std::abs(sagitta);
-    // If the range turns round inside, the halves overlap.
-    const float both = std::abs(rm - r1) + std::abs(r2 - rm);
-    const bool turns = (rm - r1) * (r2 - rm) < 0;
-    const float nearest = r1 < r2 ? (r1 < rm ? r1 : rm) : (r2 < rm ? r2 : rm);
-    displaced[i] = nearest < furthest ? (turns ? both : left) : 0.0F;
+    const slices::RangeGradient gradient =
+        slices::gradient_of({.low = low[i],
+                             .high = high[i],
+                             .range_low = range_low[i],
+                             .range_mid = range_mid[i],
+                             .range_high = range_high[i],
+                             .smear_low = smear_low[i],
+                             .smear_high = smear_high[i],
+                             .shrinking = std::abs(high_slope[i] - low_slope[i]) * width,
+                             .cosine_gradient = plain[i] * cosine_gradient[i],
+                             .changes_evenly = plain[i] > 0},
+                            least_gradient_m, furthest);
+    smear_low[i] = gradient.smear_low;
+    smear_high[i] = gradient.smear_high;
+    range_gradient[i] = gradient.gradient;
+    displaced[i] = gradient.displaced_m;
   }
 }
 
@@ -581,13 +550,9 @@ void SlicePatcher::weigh_by_pattern(const ElevationPattern& pattern) {
       const float rest = place - static_cast<float>(step);
       return table[step] * (1 - rest) + table[step + 1] * rest;
     };
-    const float t1 = low[i], t2 = high[i], tm = 0.5F * (t1 + t2);
-    const float q1 = 1 + t1 * t1, q2 = 1 + t2 * t2, qm = 1 + tm * tm;
-    const float w1 = weight_at(t1), w2 = weight_at(t2), wm = weight_at(tm);
-    const float by_low = (1 - echo_gradient[i]) / (q1 * std::sqrt(q1));
-    const float by_middle = 4 / (qm * std::sqrt(qm));
-    const float by_high = (1 + echo_gradient[i]) / (q2 * std::sqrt(q2));
-    const float weight = (w1 * by_low + wm * by_middle + w2 * by_high) / (by_low + by_middle + by_high);
+    const float t1 = low[i], t2 = high[i];
+    const float w1 = weight_at(t1), w2 = weight_at(t2), wm = weight_at(0.5F * (t1 + t2));
+    const float weight = slices::mean_weight(t1, t2, w1, wm, w2, echo_gradient[i]);
     solid_angle[i] *= weight;
     const float steeper = range_gradient[i] + 0.5F * (w2 - w1) / weight;
     range_gradient[i] = ((range_gradient[i] != 0.0F) & (weight > 0)) ? steeper : range_gradient[i];

@@ -12,19 +12,9 @@ namespace sonard::render {
 
 namespace {
 
-// Odd, so that the middle part keeps the visible segments of the whole. Five parts close in on an edge; for a
-// sagitta, which falls with the square of the width, three do.
-constexpr int parts_at_edges = 5;
-constexpr int parts_of_curves = 3;
-constexpr float three_helps_by = 9.0F;    // the error falls with the width, and its share of a beam once more
-constexpr float curves_per_edge = 10.0F;  // a sagitta displaces echoes only a little, an edge hides them
-constexpr float ends_per_edge = 1.0F;     // at the end of the range, smears are right in first order
 constexpr std::size_t borders_per_job = 32;
-constexpr float lone_share = 0.6F;  // of the elevations with an echo, at which neighbours disagree
-constexpr float least_ensonified = 0.5F / side_probes;
 
-/// Compares neighbours. Ranges are secant / w; they are compared without division, and ignored if both are
-/// out of range.
+/// Compares neighbours (renderer/engines/slices/refine.glsl).
 struct Comparison {
   const SideView& view;
   float most_sagitta_m;
@@ -60,26 +50,18 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
   const float* __restrict ps = port_side.data();
   const float* __restrict sp = starboard_side.data();
   const float* __restrict ss = starboard.sides.starboard.data();
-  // A sagitta over a chord of width b is b^2 / 8 of the curvature, here the change of slope over the mean
-  // width.
   const float* __restrict secant = view.secant.data();
   const std::int32_t* __restrict weight = view.weight.data();
-  const float line_m = view.line_m, furthest_m = view.max_range_m, most_sagitta = most_sagitta_m;
   const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
-  const float per_port = mean_width / (8 * port.slice.width_rad);
-  const float per_starboard = mean_width / (8 * starboard.slice.width_rad);
+  const slices::BorderLimits limits{view.line_m, view.max_range_m, most_sagitta_m,
+                                    mean_width / (8 * port.slice.width_rad),
+                                    mean_width / (8 * starboard.slice.width_rad)};
   std::int32_t mismatched = 0, curved = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float w_a = ps[i], w_b = sp[i], scale = secant[i];
-    const float nearer = w_a > w_b ? w_a : w_b;
-    const float product = w_a * w_b;
-    const float difference = scale * (w_a > w_b ? w_a - w_b : w_b - w_a);
-    const float sagitta = scale * std::abs((pp[i] - w_a) * per_port - (w_b - ss[i]) * per_starboard);
-    const bool all_seen = (pp[i] > 0) & (product > 0) & (ss[i] > 0);
-    const bool in_range = scale < furthest_m * nearer;
-    mismatched += (in_range & (difference > line_m * product)) ? weight[i] : 0;
-    const float displaced = sagitta > difference ? sagitta : difference;
-    curved += (in_range & all_seen & (displaced > most_sagitta * product)) ? weight[i] : 0;
+    const slices::ProbeDisagreement probe =
+        slices::compare_probe({pp[i], ps[i], sp[i], ss[i], secant[i], weight[i]}, limits);
+    mismatched += probe.mismatched;
+    curved += probe.curved;
   }
   const float mismatch = static_cast<float>(mismatched) / (side_probes * probe_weight_unit);
   return {mismatch, static_cast<float>(curved) / (side_probes * probe_weight_unit),
@@ -113,9 +95,6 @@ float sum(const OfProbes& numbers) {
   return all;
 }
 
-/// The echo of an elevation is proportional to cos(incidence) / r^2. With s the slope of the range along the
-/// slice, from one probe to the next, the cosine is approximated as 1 / (1 + |s|): accurate enough as a
-/// weight of errors, and without a root.
 SONARD_SIMD_CLONES
 float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& starboard_side) const {
   const float* __restrict wa = port_side.data();
@@ -123,21 +102,16 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
   const float* __restrict secant = view.secant.data();
   const std::int32_t* __restrict weight = view.weight.data();
   const float line_m = view.line_m, furthest_m = view.max_range_m;
-  const float probes_per_t = (side_probes - 1) / (2 * static_cast<float>(probe_reach) * view.tan_limit);
-  /// Echo times range.
-  const auto moment_of = [&](float w, float next_w, float scale, float next_scale, float pattern) {
-    constexpr float tiny = 1e-30F;                             // avoids 0 / 0 if nothing is seen
-    const float here = next_scale * w, next = scale * next_w;  // proportional to the ranges there and here
-    const float steps = here > next ? here - next : next - here;
-    const float cosine = next / (next + steps * (probes_per_t * scale * scale) + tiny);
-    return scale < furthest_m * w ? cosine * w * pattern : 0.0F;
+  const float probes_per_t = (side_probes - 1) / (2 * slices::probe_reach * view.tan_limit);
+  const auto moment_of = [&](float w, float next_w, std::size_t i, float pattern) {
+    return slices::moment_of(w, next_w, secant[i], secant[i + 1], furthest_m, probes_per_t, pattern);
   };
   OfProbes echo, moment, error, error_moment;
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float a = wa[i], b = wb[i], scale = secant[i], next_scale = secant[i + 1];
+    const float a = wa[i], b = wb[i], scale = secant[i];
     const float pattern = static_cast<float>(weight[i]) / probe_weight_unit;
-    const float moment_a = moment_of(a, wa[i + 1], scale, next_scale, pattern), echo_a = moment_a * a;
-    const float moment_b = moment_of(b, wb[i + 1], scale, next_scale, pattern), echo_b = moment_b * b;
+    const float moment_a = moment_of(a, wa[i + 1], i, pattern), echo_a = moment_a * a;
+    const float moment_b = moment_of(b, wb[i + 1], i, pattern), echo_b = moment_b * b;
     const float nearer = a > b ? a : b;
     const float difference = scale * (a > b ? a - b : b - a);
     const bool mismatched = (scale < furthest_m * nearer) & (difference > line_m * (a * b));
@@ -181,7 +155,7 @@ std::vector<float> SliceSampler::ensonified_by_beam(const Setting& setting) cons
     ensonified[static_cast<std::size_t>(cell.beam)] += setting.share_of_beam(cell) * cell.sides.ensonified;
   }
   for (float& share : ensonified) {
-    share = std::max(share, least_ensonified);
+    share = std::max(share, slices::least_ensonified);
   }
   return ensonified;
 }
@@ -205,43 +179,32 @@ std::vector<float> SliceSampler::slices_in_error(const Setting& setting) const {
   return squares;
 }
 
-/// Number of parts into which each slice must be divided. Divided are slices on both sides of a border at
-/// which they disagree too much, slices that miss a thin thing, and slices in which the range ends. Errors
-/// are relative to the elevations at which the beam receives an echo, and add like independent errors.
+/// Number of parts into which each slice must be divided (slices::parts_of_slice).
 std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   compare_neighbours(setting);
   const std::vector<float> ensonified = ensonified_by_beam(setting);
   const std::vector<float> in_error = slices_in_error(setting);
+  const SliceAccuracy& accuracy = setting.accuracy;
+  const slices::DivisionLimits limits{
+      accuracy.slices_per_beam, accuracy.most_divisions, accuracy.most_divisions_of_lone_echoes,
+      accuracy.first_in_five,   accuracy.disagreement,   accuracy.shift_lines};
   std::vector<int> parts(order_.size(), 1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     SliceCell& cell = *cells_[order_[i]];
     cell.fresh = false;
-    const float width = setting.share_of_beam(cell);
     const SliceBorder port = i > 0 ? cells_[order_[i - 1]]->to_starboard : SliceBorder{};
     const SliceBorder starboard = cell.to_starboard;
     const auto beam = static_cast<std::size_t>(cell.beam);
-    const float mismatch = std::max(port.range_mismatch, starboard.range_mismatch);
-    const float curvature = std::max(port.curvature, starboard.curvature);
-    const bool lone = std::max(mismatch, curvature) > lone_share * ensonified[beam];
-    const int most_divisions =
-        lone ? setting.accuracy.most_divisions_of_lone_echoes : setting.accuracy.most_divisions;
-    if (width * static_cast<float>(most_divisions) < 1.5F) {
-      continue;
-    }
-    const float most = setting.accuracy.disagreement * ensonified[beam] / width;
-    const float most_mismatch = most / std::sqrt(in_error[beam]);
-    const bool shifted =
-        std::max(port.shift_lines, starboard.shift_lines) * width > setting.accuracy.shift_lines;
-    const float ending =
-        cell.sides.one_sided * cell.sides.one_sided / std::max(cell.sides.ensonified, least_ensonified);
-    if (cell.misses_something || mismatch > most_mismatch || shifted) {
-      const bool is_first = width * static_cast<float>(setting.accuracy.slices_per_beam) > 0.9F;
-      const bool three_will_do = !cell.misses_something && mismatch < three_helps_by * most_mismatch;
-      parts[i] =
-          three_will_do && !(is_first && setting.accuracy.first_in_five) ? parts_of_curves : parts_at_edges;
-    } else if (curvature > curves_per_edge * most || ending > ends_per_edge * most) {
-      parts[i] = parts_of_curves;
-    }
+    parts[i] = slices::parts_of_slice({.share_of_beam = setting.share_of_beam(cell),
+                                       .beam_ensonified = ensonified[beam],
+                                       .beam_in_error = in_error[beam],
+                                       .mismatch = std::max(port.range_mismatch, starboard.range_mismatch),
+                                       .curvature = std::max(port.curvature, starboard.curvature),
+                                       .shift_lines = std::max(port.shift_lines, starboard.shift_lines),
+                                       .ensonified = cell.sides.ensonified,
+                                       .one_sided = cell.sides.one_sided,
+                                       .misses_something = cell.misses_something},
+                                      limits);
   }
   return parts;
 }

@@ -11,18 +11,9 @@ namespace sonard::render {
 
 namespace {
 
-float first_probe(float tan_limit) {
-  return -static_cast<float>(probe_reach) * tan_limit;
-}
-
-float probe_step(float tan_limit) {
-  return -2 * first_probe(tan_limit) / (side_probes - 1);
-}
-
-/// The tangent of the elevation of a probe.
-float probe_at(float tan_limit, std::size_t i) {
-  return first_probe(tan_limit) + static_cast<float>(i) * probe_step(tan_limit);
-}
+using slices::first_probe;
+using slices::probe_at;
+using slices::probe_step;
 
 /// Computes shares and lines of SliceSides from its profiles. Ranges are positive, so their bit patterns have
 /// the same order; GCC 12 vectorises extremes of integers only.
@@ -63,7 +54,7 @@ ProbeWeights probe_weights(const Aperture& aperture, float tan_limit) {
   std::array<double, side_probes> pattern{};
   double sum = 0.0;
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = probe_at(tan_limit, i);
+    const float t = probe_at(tan_limit, static_cast<int>(i));
     pattern[i] = aperture.elevation_weight(std::atan(static_cast<double>(t)));
     sum += pattern[i];
   }
@@ -78,7 +69,7 @@ ProbeWeights probe_weights(const Aperture& aperture, float tan_limit) {
 SideView::SideView(const ProbeWeights& weight_, float tan_limit_, float max_range_m_, float line_m_)
     : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight(weight_) {
   for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = probe_at(tan_limit, i);
+    const float t = probe_at(tan_limit, static_cast<int>(i));
     secant[i] = std::sqrt(1 + t * t);
   }
 }
@@ -94,11 +85,11 @@ void SideExpectation::find(const std::vector<VisibleSegment>& visible, float wid
 
 void SideExpectation::lay_out(const std::vector<VisibleSegment>& visible) {
   seen_.lay_out(visible);
-  // w_by_azimuth_ grows last: if memory runs out before, the next call tries all again.
-  if (seen_.size() > w_by_azimuth_.size()) {
+  // w_per_azimuth_ grows last: if memory runs out before, the next call tries all again.
+  if (seen_.size() > w_per_azimuth_.size()) {
     first_probe_.resize(seen_.size());
     last_probe_.resize(seen_.size());
-    w_by_azimuth_.resize(seen_.size());
+    w_per_azimuth_.resize(seen_.size());
   }
 }
 
@@ -117,13 +108,12 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
   const float* __restrict normal_h = seen_.normal_h.data();
   const float* __restrict normal_s = seen_.normal_s.data();
   const float* __restrict normal_z = seen_.normal_z.data();
-  float* __restrict w_by_azimuth = w_by_azimuth_.data();
+  float* __restrict w_per_azimuth = w_per_azimuth_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    low_slope[i] = EdgeRun{low_slope[i], low_reach[i]}.slope_within(low[i], width_rad, tan_limit);
-    high_slope[i] = EdgeRun{high_slope[i], high_reach[i]}.slope_within(high[i], width_rad, tan_limit);
-    // On a plane n . p = D, 1 / h = (n_h + n_z t) / D changes with azimuth by n_s / D, at any point.
-    const float t = 0.5F * (low[i] + high[i]);
-    w_by_azimuth[i] = (w_at_0[i] + w_slope[i] * t) * normal_s[i] / (normal_h[i] + normal_z[i] * t);
+    low_slope[i] = slices::slope_within(low_slope[i], low_reach[i], low[i], width_rad, tan_limit);
+    high_slope[i] = slices::slope_within(high_slope[i], high_reach[i], high[i], width_rad, tan_limit);
+    w_per_azimuth[i] = slices::w_per_azimuth(w_at_0[i], w_slope[i], normal_h[i], normal_s[i], normal_z[i],
+                                             0.5F * (low[i] + high[i]));
   }
 }
 
@@ -131,8 +121,6 @@ void SideExpectation::follow(float width_rad, float tan_limit) {
 SONARD_SIMD_CLONES
 void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   const auto count = seen_.count;
-  const float probes_per_t = 1 / probe_step(tan_limit), lowest = first_probe(tan_limit);
-  const auto end = static_cast<float>(side_probes);
   const float* __restrict low = seen_.low.data();
   const float* __restrict high = seen_.high.data();
   const float* __restrict low_slope = seen_.low_slope.data();
@@ -140,11 +128,8 @@ void SideExpectation::find_probes(float tan_limit, float offset_rad) {
   std::int32_t* __restrict first = first_probe_.data();
   std::int32_t* __restrict last = last_probe_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    // The first probe above t. Negative numbers become 0, so truncation equals floor.
-    const float from = (low[i] + low_slope[i] * offset_rad - lowest) * probes_per_t + 1;
-    const float to = (high[i] + high_slope[i] * offset_rad - lowest) * probes_per_t + 1;
-    first[i] = static_cast<std::int32_t>(from < 0 ? 0.0F : (from > end ? end : from));
-    last[i] = static_cast<std::int32_t>(to < 0 ? 0.0F : (to > end ? end : to));
+    first[i] = slices::probe_above(low[i] + low_slope[i] * offset_rad, tan_limit);
+    last[i] = slices::probe_above(high[i] + high_slope[i] * offset_rad, tan_limit);
   }
 }
 
@@ -159,7 +144,7 @@ void SideExpectation::profile(float tan_limit, float offset_rad, SideProfile& ou
       out[static_cast<std::size_t>(end)] = 0.0F;
     }
     const float slope = seen_.w_slope[i] * step;
-    const float w = seen_.w_at_0[i] + w_by_azimuth_[i] * offset_rad +
+    const float w = seen_.w_at_0[i] + w_per_azimuth_[i] * offset_rad +
                     seen_.w_slope[i] * (first_probe(tan_limit) + static_cast<float>(first) * step);
     // Most segments have one or two probes. The next segment, or the fill at the end, overwrites the excess.
     float* const at = &out[static_cast<std::size_t>(first)];

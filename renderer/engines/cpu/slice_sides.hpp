@@ -52,7 +52,7 @@ class SideExpectation {
   void profile(float tan_limit, float offset_rad, SideProfile& out);
 
   VisibleArrays seen_;
-  std::vector<float> w_by_azimuth_;
+  std::vector<float> w_per_azimuth_;
   std::vector<std::int32_t> first_probe_, last_probe_;
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "renderer/simd.hpp"
 
@@ -11,11 +10,12 @@ namespace sonard::render {
 
 namespace {
 
-constexpr float never = std::numeric_limits<float>::infinity();
-// Relative difference of 1 / h below which two segments touch but do not cross; above the rounding of cuts.
-constexpr float touching = 1e-5F;
+using slices::crossing_of;
+using slices::is_seen_first;
+using slices::never;
+using slices::touching;
 
-constexpr float widest_gap_rad = 2 * shortest_rad;  // left by dropped segments
+constexpr float widest_gap_rad = 2 * slices::shortest_rad;  // left by dropped segments
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void SliceSweep::run(const SliceCutter& cutter, const Slice& slice, const Segmen
   waiting_.clear();
   sort_by_low_end();
   next_ = 0;
-  current_ = {};
+  current_ = no_line;
   crossing_ = never;
   t_ = -limit_;
   run_ = {};
@@ -198,9 +198,9 @@ void SliceSweep::step_to_next_start() {
 void SliceSweep::meet(const Line& line) {
   const auto s = static_cast<std::size_t>(line.segment);
   const float start = std::max(-limit_, segments_->low[s]);
-  float at = never;
-  const bool cross = crosses(line, current_, start, at);
-  if (is_seen_first(line, current_, start, cross)) {
+  const float crossing = crossing_of(line, current_, start);
+  const bool cross = crossing < never;
+  if (is_seen_first(line, current_, start, crossing)) {
     emit(start, segments_->low_run(s));
     if (cross || current_.high > line.high) {
       waiting_.push_back(current_);
@@ -210,8 +210,8 @@ void SliceSweep::meet(const Line& line) {
   } else if (cross || line.high > current_.high) {
     // Otherwise it ends behind the current one and never becomes visible.
     waiting_.push_back(line);
-    if (cross && at < crossing_) {
-      crossing_ = at;
+    if (crossing < crossing_) {
+      crossing_ = crossing;
       crosser_ = waiting_.size() - 1;
     }
   }
@@ -242,15 +242,14 @@ void SliceSweep::take_nearest_waiting() {
       continue;
     }
     waiting_[kept] = candidate;
-    float at = never;
     if (kept > 0 &&
-        is_seen_first(candidate, waiting_[best], t_, crosses(candidate, waiting_[best], t_, at))) {
+        is_seen_first(candidate, waiting_[best], t_, crossing_of(candidate, waiting_[best], t_))) {
       best = kept;
     }
     ++kept;
   }
   waiting_.resize(kept);
-  current_ = {};
+  current_ = no_line;
   crossing_ = never;
   if (kept > 0) {
     current_ = waiting_[best];
@@ -265,37 +264,15 @@ SliceSweep::Line SliceSweep::line(std::int32_t segment) const {
   return {segment, segments_->high[s], segments_->w_at_0[s], segments_->w_slope[s]};
 }
 
-/// True if `a` is visible at and after `from`, before `b`. Compared in the middle of the common span, because
-/// neighbours share ends; if they cross, compared at `from`.
-/// @param cross crosses(a, b, from)
-bool SliceSweep::is_seen_first(const Line& a, const Line& b, float from, bool cross) {
-  if (cross) {
-    return a.w(from) > b.w(from);
-  }
-  const float middle = 0.5F * (from + std::min(a.high, b.high));
-  const float difference = a.w(middle) - b.w(middle);
-  return difference > 0 || (difference == 0 && a.segment < b.segment);
-}
-
-bool SliceSweep::crosses(const Line& a, const Line& b, float from, float& at) {
-  const float until = std::min(a.high, b.high);
-  const float w_from = a.w(from);
-  const float first = w_from - b.w(from);
-  const float last = a.w(until) - b.w(until);
-  const float margin = touching * std::abs(w_from);
-  if (!(first * last < 0) || std::abs(first) < margin || std::abs(last) < margin) {
-    return false;
-  }
-  at = from + (until - from) * (first / (first - last));
-  return at > from && at < until;
-}
-
 void SliceSweep::find_next_crossing() {
   crossing_ = never;
   for (std::size_t k = 0; k < waiting_.size(); ++k) {
-    float at = never;
-    if (waiting_[k].high > t_ && crosses(current_, waiting_[k], t_, at) && at < crossing_) {
-      crossing_ = at;
+    if (!(waiting_[k].high > t_)) {
+      continue;
+    }
+    const float crossing = crossing_of(current_, waiting_[k], t_);
+    if (crossing < crossing_) {
+      crossing_ = crossing;
       crosser_ = k;
     }
   }

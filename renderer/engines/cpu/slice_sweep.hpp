@@ -30,14 +30,8 @@ class SliceSweep {
            std::vector<VisibleSegment>& visible);
 
  private:
-  /// The numbers of a segment that determine visibility.
-  struct Line {
-    std::int32_t segment = -1;  ///< -1: no segment
-    float high = 0.0F;
-    float w_at_0 = 0.0F, w_slope = 0.0F;
-
-    float w(float t) const { return w_at_0 + w_slope * t; }
-  };
+  using Line = slices::Line;
+  static constexpr Line no_line{-1, 0.0F, 0.0F, 0.0F};
 
   void follow_crossings();
   void close_gaps();
@@ -49,8 +43,6 @@ class SliceSweep {
   void take_nearest_waiting();
   void emit(float until, const EdgeRun& run);
   Line line(std::int32_t segment) const;
-  static bool is_seen_first(const Line& a, const Line& b, float from, bool cross);
-  static bool crosses(const Line& a, const Line& b, float from, float& at);
   void find_next_crossing();
   float next_start() const;
   float start_after_next() const;
@@ -68,7 +60,7 @@ class SliceSweep {
   std::vector<std::uint32_t> bucket_begin_;
   std::size_t next_ = 0;       ///< in order_
   std::vector<Line> waiting_;  ///< begun, hidden by the current one, and possibly visible later
-  Line current_;
+  Line current_ = no_line;
   float t_ = 0.0F;         ///< position of the sweep, and begin of the current segment
   EdgeRun run_;            ///< at t_
   float crossing_ = 0.0F;  ///< next t at which a waiting segment crosses in front of the current one

@@ -39,8 +39,8 @@ void VisibleEnds::limit(float width_rad, float tan_limit, VisibleArrays& seen) {
   const float* __restrict low_reach = seen.low_reach.data();
   const float* __restrict high_reach = seen.high_reach.data();
   for (std::size_t i = 0; i < count; ++i) {
-    low_slope[i] = EdgeRun{low_slope[i], low_reach[i]}.slope_within(low[i], width_rad, tan_limit);
-    high_slope[i] = EdgeRun{high_slope[i], high_reach[i]}.slope_within(high[i], width_rad, tan_limit);
+    low_slope[i] = slices::slope_within(low_slope[i], low_reach[i], low[i], width_rad, tan_limit);
+    high_slope[i] = slices::slope_within(high_slope[i], high_reach[i], high[i], width_rad, tan_limit);
   }
 }
 

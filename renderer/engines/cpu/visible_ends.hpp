@@ -13,7 +13,7 @@ namespace sonard::render {
 /// Limits the runs of ends to runs that patches can represent. One per thread; reuses its memory.
 class VisibleEnds {
  public:
-  /// Replaces edge slopes by slopes of straight lines across the wedge (EdgeRun::slope_within) that cross
+  /// Replaces edge slopes by slopes of straight lines across the wedge (slices::slope_within()) that cross
   /// each other only inside a surface.
   ///
   /// If the two ends of a segment cross, it ends at a tip, and beyond the tip straight ends make it negative.
