@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/simd.hpp"
 
 namespace sonard::render {
@@ -82,6 +83,19 @@ bool lies_outside(const Fan& fan, std::uint32_t count, const Corners& at) {
   }
   const auto all = static_cast<std::int32_t>(count);
   return to_port == all || to_starboard == all;
+}
+
+/// True if a whole cluster may lie between two probes of a side: a cable, a lying pipe far away.
+SONARD_SIMD_CLONES
+bool is_low(const Fan& fan, std::uint32_t count, const Corners& at) {
+  const float most = 0.75F * slices::probe_step(fan.tan_limit());
+  const float first = at.tangent[0];
+  const float* __restrict tangent = at.tangent.data();
+  std::int32_t beside = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    beside += std::abs(tangent[i] - first) > most ? 1 : 0;
+  }
+  return beside == 0;
 }
 
 /// One number per corner of the triangles of a cluster.
@@ -254,6 +268,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     bounds.tangent.gather(*part.clusters, cluster, at.tangent);
     bound(fan, cluster.triangle_count, bounds);
     const bool small = is_small(fan, cluster.triangle_count, bounds);
+    const bool low = is_low(fan, cluster.vertex_count, at);
     for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
       if (bounds.in_elevation[n] == 0) {
         continue;
@@ -274,7 +289,9 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
            static_cast<std::uint32_t>(part_number),
            part.clusters->mesh_triangle[t],
            0,
-           !out && (small || bounds.thin[n] != 0),
+           !out && bounds.thin[n] != 0,
+           !out && small,
+           !out && low,
            bounds.upright[n] != 0,
            whole_turn ? -half_turn : bounds.low_azimuth[n],
            whole_turn ? half_turn : bounds.high_azimuth[n]},

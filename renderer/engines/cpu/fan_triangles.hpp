@@ -34,9 +34,10 @@ struct FanTriangle {
   std::uint32_t part = 0;           ///< index of the PlacedPart
   std::uint32_t mesh_triangle = 0;  ///< its number in the part's mesh
   std::uint32_t number = 0;         ///< among the triangles of the ping, from 0
-  /// Much taller than wide, as seen from the sonar, or part of a small object: the leg of a frame, a stone. A
-  /// slice beside it misses it.
-  bool thin = false;
+  bool thin = false;                ///< much taller than wide, as seen from the sonar: the leg of a frame
+  /// Part of an object that may lie between two slices: a stone, a plate.
+  bool small = false;
+  bool low = false;      ///< part of a surface that may lie between two probes of SliceSides: a cable
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
   /// Azimuths of its sides; -pi and pi if it may contain the sonar's vertical axis.
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;

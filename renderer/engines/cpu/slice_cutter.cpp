@@ -25,6 +25,17 @@ float facing(const FanTriangle& t) {
   return glm::dot(n, t.corner(0)) < 0 ? std::atan2(-n.y, -n.x) : std::atan2(n.y, n.x);
 }
 
+/// Tangent of the elevation of a corner.
+float elevation_of(const FanTriangle& t, std::size_t corner) {
+  return t.z[corner] / std::sqrt(t.x[corner] * t.x[corner] + t.y[corner] * t.y[corner] + 1e-30F);
+}
+
+/// True if an azimuth lies inside the wedge of a slice, and not at its border.
+bool lies_well_inside(double azimuth_rad, const Slice& slice) {
+  constexpr double margin = 1e-3;  // of the wedge
+  return std::abs(azimuth_rad - slice.azimuth_rad) < (0.5 - margin) * static_cast<double>(slice.width_rad);
+}
+
 }  // namespace
 
 void SliceCutter::load(std::span<const ListedTriangle> triangles, double low_rad, double high_rad,
@@ -101,29 +112,43 @@ void SliceCutter::drop_back_faces() {
   std::erase_if(triangles_, seen_from_behind);
 }
 
-/// Joins thin triangles of one part that touch in azimuth to one thing, so that a slice hits or misses a
+/// Joins triangles of one kind and part that touch in azimuth to one thing, so that a slice hits or misses a
 /// whole pole instead of single facets.
 void SliceCutter::list_thin() {
   thin_.clear();
+  low_ends_.clear();
   for (const FanTriangle* t : triangles_) {
-    if (t->thin) {
-      thin_.push_back({t->part, t->low_azimuth_rad, t->high_azimuth_rad});
+    const auto add = [&](Kind kind) {
+      const auto [low_t, high_t] =
+          std::minmax({elevation_of(*t, 0), elevation_of(*t, 1), elevation_of(*t, 2)});
+      thin_.push_back({kind, t->part, t->low_azimuth_rad, t->high_azimuth_rad, low_t, high_t});
+    };
+    if (t->thin || t->small) {
+      add(t->thin ? Kind::thin : Kind::small);
+    }
+    if (t->low) {
+      add(Kind::low);
     }
   }
   std::sort(thin_.begin(), thin_.end(), [](const ThinThing& a, const ThinThing& b) {
-    return std::tie(a.part, a.low_azimuth_rad) < std::tie(b.part, b.low_azimuth_rad);
+    return std::tie(a.kind, a.part, a.low_azimuth_rad) < std::tie(b.kind, b.part, b.low_azimuth_rad);
   });
   std::size_t things = 0;
   for (const ThinThing& thing : thin_) {
-    if (things > 0 && thin_[things - 1].part == thing.part &&
+    if (things > 0 && thin_[things - 1].kind == thing.kind && thin_[things - 1].part == thing.part &&
         thing.low_azimuth_rad <= thin_[things - 1].high_azimuth_rad) {
-      thin_[things - 1].high_azimuth_rad =
-          std::max(thin_[things - 1].high_azimuth_rad, thing.high_azimuth_rad);
+      ThinThing& whole = thin_[things - 1];
+      whole.high_azimuth_rad = std::max(whole.high_azimuth_rad, thing.high_azimuth_rad);
+      whole.low_t = std::min(whole.low_t, thing.low_t);
+      whole.high_t = std::max(whole.high_t, thing.high_t);
     } else {
       thin_[things++] = thing;
     }
   }
   thin_.resize(things);
+  for (; !thin_.empty() && thin_.back().kind == Kind::low; thin_.pop_back()) {
+    low_ends_.insert(low_ends_.end(), {thin_.back().low_azimuth_rad, thin_.back().high_azimuth_rad});
+  }
 }
 
 void SliceCutter::list_upright_edges(double low_rad, double high_rad, const Fan& fan) {
@@ -199,11 +224,14 @@ ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
 }
 
 void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const {
-  constexpr double margin = 1e-3;  // of the wedge
   constexpr std::size_t most_edges = 4;
   constexpr std::int32_t least_probes = 12;  // for lower edges even parts are as good
-  const double reach = (0.5 - margin) * static_cast<double>(slice.width_rad);
   edges.clear();
+  for (const float at : low_ends_) {
+    if (lies_well_inside(static_cast<double>(at), slice)) {
+      edges.push_back({static_cast<double>(at), {}});
+    }
+  }
   std::size_t begin = 0;
   for (std::size_t i = 0; i < edge_parts_.size(); ++i) {
     const double at = edge_parts_[begin].azimuth_rad;
@@ -214,7 +242,7 @@ void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge
     for (std::size_t k = begin; k <= i; ++k) {
       most_probes += edge_parts_[k].last_probe - edge_parts_[k].first_probe;
     }
-    if (most_probes >= least_probes && std::abs(at - slice.azimuth_rad) < reach) {
+    if (most_probes >= least_probes && lies_well_inside(at, slice)) {
       const ProbeSet probes = probes_of_edge(begin, i + 1);
       if (probes.count() >= static_cast<std::size_t>(least_probes)) {
         edges.push_back({at, probes});
@@ -232,16 +260,23 @@ void SliceCutter::find_upright_edges(const Slice& slice, std::vector<UprightEdge
             [](const UprightEdge& a, const UprightEdge& b) { return a.azimuth_rad > b.azimuth_rad; });
 }
 
-bool SliceCutter::misses_thin_thing(const Slice& slice) const {
+float SliceCutter::missed_height(const Slice& slice) const {
   const auto azimuth = static_cast<float>(slice.azimuth_rad);
   const float half = 0.5F * slice.width_rad;
-  return std::any_of(thin_.begin(), thin_.end(), [&](const ThinThing& thing) {
+  float height = 0.0F;
+  for (const ThinThing& thing : thin_) {
     const float port = thing.high_azimuth_rad - azimuth;
     const float starboard = thing.low_azimuth_rad - azimuth;
     // A neighbouring slice may hit it, but a thing that reaches into this wedge must be hit here. The margin
     // is the error of azimuths: a slice along the very edge of a thing may miss it too.
-    return (starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half);
+    if ((starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half)) {
+      height = std::max({height, thing.high_t - thing.low_t, least_missed});
+    }
+  }
+  const bool low_thing_ends = std::any_of(low_ends_.begin(), low_ends_.end(), [&](float at) {
+    return lies_well_inside(static_cast<double>(at), slice);
   });
+  return low_thing_ends ? std::max(height, least_missed) : height;
 }
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {

@@ -71,12 +71,14 @@ class SliceCutter {
   /// shared by two triangles is cut at the same point, to the bit.
   void cut(const Slice& slice, float tan_limit, Segments& segments);
 
-  /// True if a thin thing (the leg of a frame, a pole, a stone) reaches into the wedge of a slice but not to
-  /// its middle, so that the slice misses it.
-  bool misses_thin_thing(const Slice& slice) const;
+  /// Height of the tallest thin thing (the leg of a frame, a pole, a stone) that reaches into the wedge of a
+  /// slice but not to its middle, so that the slice misses it; in t. At least least_missed if there is one,
+  /// or if a low thing (a cable) ends well inside the wedge; 0 if nothing is missed.
+  float missed_height(const Slice& slice) const;
+  static constexpr float least_missed = 1e-6F;
 
-  /// Finds the upright edges well inside the wedge, from port to starboard; the highest ones if there are
-  /// many.
+  /// Finds the upright edges and ends of low things well inside the wedge, from port to starboard; the
+  /// highest ones if there are many.
   void find_upright_edges(const Slice& slice, std::vector<UprightEdge>& edges) const;
 
   const FanTriangle& triangle(int index) const { return *triangles_[static_cast<std::size_t>(index)]; }
@@ -101,11 +103,15 @@ class SliceCutter {
   std::vector<float> x_[3], y_[3], z_[3];
   std::vector<float> normal_x_, normal_y_, normal_z_;
   std::vector<std::uint32_t> part_;
+  enum class Kind : std::uint8_t { thin, small, low };
   struct ThinThing {
+    Kind kind;
     std::uint32_t part;
     float low_azimuth_rad, high_azimuth_rad;
+    float low_t, high_t;
   };
-  std::vector<ThinThing> thin_;
+  std::vector<ThinThing> thin_;  ///< thin or small
+  std::vector<float> low_ends_;  ///< azimuths at which low things end
   /// An upright edge of one triangle.
   struct EdgePart {
     double azimuth_rad;

@@ -203,7 +203,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
                                        .shift_lines = std::max(port.shift_lines, starboard.shift_lines),
                                        .ensonified = cell.sides.ensonified,
                                        .one_sided = cell.sides.one_sided,
-                                       .misses_something = cell.misses_something},
+                                       .missed_share = cell.missed_share},
                                       limits);
   }
   return parts;

@@ -251,7 +251,7 @@ void SliceSampler::see_cell(const Setting& setting, Scratch& scratch, SliceCell&
   if (setting.accuracy.most_divisions == 1) {
     return;
   }
-  cell.misses_something = scratch.cutter.misses_thin_thing(cell.slice);
+  cell.missed_share = scratch.cutter.missed_height(cell.slice) / (2 * setting.fan.tan_limit());
   scratch.cutter.find_upright_edges(cell.slice, cell.edges);
   scratch.expectation.find(cell.visible, cell.slice.width_rad, setting.side_view, cell.sides);
 }

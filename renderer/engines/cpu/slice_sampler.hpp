@@ -37,7 +37,7 @@ struct SliceCell {
   std::vector<VisibleSegment> visible;  ///< at its azimuth, independent of its width
   SliceSides sides;
   SliceBorder to_starboard;                  ///< between this slice and the next one
-  bool misses_something = false;             ///< a thin thing lies beside the slice and inside its wedge
+  float missed_share = 0.0F;                 ///< of the fan's height: SliceCutter::missed_height()
   bool seen = false;                         ///< `visible` is filled
   bool fresh = true;                         ///< not yet compared with its neighbours
   std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard

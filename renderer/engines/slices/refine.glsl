@@ -59,6 +59,7 @@ CONSTANT float three_helps_by = 9.0F;    // the error falls with the width, and 
 CONSTANT float curves_per_edge = 10.0F;  // a sagitta displaces echoes only a little, an edge hides them
 CONSTANT float ends_per_edge = 1.0F;     // at the end of the range, smears are right in first order
 CONSTANT float lone_share = 0.6F;        // of the elevations with an echo, at which neighbours disagree
+CONSTANT float tall_share = 0.05F;  // of the height of the fan: what is thin and as tall must not be missed
 CONSTANT float least_ensonified = 0.5F / float(side_probes);
 
 // Constants of a ping, from its preset.
@@ -81,25 +82,28 @@ struct SliceErrors {
   float shift_lines;      // larger move of the centroid by the mismatch of a border
   float ensonified;       // share at which the slice receives an echo
   float one_sided;        // share at which only one side does
-  bool misses_something;  // a thin thing lies in the wedge, beside the slice
+  float missed_share;     // of the fan's height, by a thin thing in the wedge beside the slice; 0: none
 };
 
 // Number of parts into which a slice must be divided: at borders where it disagrees too much with a
 // neighbour, if it misses a thin thing, and if the range ends in it. Errors are relative to the elevations at
 // which the beam receives an echo, and add like independent errors.
 SHARED int parts_of_slice(SliceErrors slice, DivisionLimits limits) {
-  bool lone = max(slice.mismatch, slice.curvature) > lone_share * slice.beam_ensonified;
+  float most_alone = lone_share * slice.beam_ensonified;
+  bool lone =
+      max(slice.mismatch, slice.curvature) > most_alone || slice.missed_share > min(most_alone, tall_share);
   int most_divisions = lone ? limits.most_divisions_of_lone_echoes : limits.most_divisions;
   if (slice.share_of_beam * float(most_divisions) < 1.5F) {
     return 1;
   }
   float most = limits.disagreement * slice.beam_ensonified / slice.share_of_beam;
   float most_mismatch = most / sqrt(slice.beam_in_error);
+  bool misses_something = slice.missed_share > 0.0F;
   bool shifted = slice.shift_lines * slice.share_of_beam > limits.shift_lines;
   float ending = slice.one_sided * slice.one_sided / max(slice.ensonified, least_ensonified);
-  if (slice.misses_something || slice.mismatch > most_mismatch || shifted) {
+  if (misses_something || slice.mismatch > most_mismatch || shifted) {
     bool is_first = slice.share_of_beam * float(limits.slices_per_beam) > 0.9F;
-    bool three_will_do = !slice.misses_something && slice.mismatch < three_helps_by * most_mismatch;
+    bool three_will_do = !misses_something && slice.mismatch < three_helps_by * most_mismatch;
     return three_will_do && !(is_first && limits.first_in_five) ? parts_of_curves : parts_at_edges;
   }
   return slice.curvature > curves_per_edge * most || ending > ends_per_edge * most ? parts_of_curves : 1;

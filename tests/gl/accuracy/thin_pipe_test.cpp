@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pipe of 5 cm at 30 m is found at any place between two samples, upright or lying.
+// A pipe of 5 cm at 30 m is found at any place between two samples, upright or lying. A thinner one ends
+// where it ends, although its height is below the spacing of samples.
 #include <cmath>
 #include <numbers>
 
+#include "tests/bench/reference.hpp"
 #include "tests/gl/accuracy/accuracy_case.hpp"
 #include "tests/scenes/shapes.hpp"
 #include "tests/support/degree.hpp"
@@ -12,6 +14,7 @@ namespace {
 
 constexpr double range_m = 30, radius_m = 0.025, half_length_m = 0.4;
 constexpr int pipes = 50;
+using Preset = render::Sampling::Preset;
 
 class ThinPipe : public AccuracyTest {
  protected:
@@ -82,6 +85,74 @@ TEST_P(ThinPipe, Lying) {
   const double share = detected(false);
   std::printf("detected %.3f\n", share);
   EXPECT_GE(share, targets().pipes_detected);
+}
+
+/// Engine `cpu`: the rasteriser samples elevations.
+class LyingRod : public AccuracyTest {
+ protected:
+  static constexpr double distance_m = 40, beam_rad = 120.0 / 256 * degree;
+
+  /// Echo of the beam that holds the rod's end, re the echo of the next beam, which the rod fills.
+  double share_in_last_beam(const render::TriangleMesh& rod) const {
+    const Scene scene = forward_looking_scene({make_body("rod", rod)}, {1200, 0.04, 0, false});
+    const render::EchoImage image = render(scene);
+    const auto total = [&](int beam) {
+      double sum = 0;
+      for (int k = 0; k < 1200; ++k) {
+        sum += static_cast<double>(image.at(beam, k));
+      }
+      return sum;
+    };
+    return total(last_beam) / total(last_beam + 1);
+  }
+
+  /// The end at a share of the beam, counted from its starboard edge.
+  static double end_m(double share) {
+    return distance_m * std::tan((128 - last_beam - 1 + share) * beam_rad);
+  }
+
+  static constexpr int last_beam = 122;  // from 5 to 6 beams to port of the middle
+  double allowed() const { return GetParam().preset == Preset::fast ? 0.04 : 0.01; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Accuracy, LyingRod,
+                         ::testing::Values(AccuracyCase{render::EngineKind::cpu, Preset::fast},
+                                           AccuracyCase{render::EngineKind::cpu, Preset::normal}),
+                         case_name);
+
+// The elevation of the rod is 0.5 mrad high, and profiles of slices have a probe every 1.4 mrad.
+TEST_P(LyingRod, EndsWithItsLid) {
+  for (const double share : {0.05, 0.2, 0.45, 0.55, 0.7, 0.9}) {
+    const auto rod = make_tube({distance_m, -3, 0}, {distance_m, end_m(share), 0}, 0.01, 12, 1);
+    EXPECT_NEAR(share_in_last_beam(rod), share, allowed());
+  }
+}
+
+TEST_P(LyingRod, EndsWithoutALid) {
+  for (const double share : {0.05, 0.2, 0.45, 0.55, 0.7, 0.9}) {
+    const double length_m = end_m(share) + 3;
+    const auto strip =
+        make_quad({distance_m, -3, -0.01F}, {0, static_cast<float>(length_m), 0}, {0, 0, 0.02F});
+    EXPECT_NEAR(share_in_last_beam(strip), share, allowed());
+  }
+}
+
+// Many small triangles, as of a mesh from a CAD program: clusters of it lie within a beam.
+TEST_P(LyingRod, EndsIfItIsFinelyDivided) {
+  for (const double share : {0.2, 0.7}) {
+    const auto rod = make_tube({distance_m, -3, 0}, {distance_m, end_m(share), 0}, 0.01, 32, 64);
+    EXPECT_NEAR(share_in_last_beam(rod), share, allowed());
+  }
+}
+
+// Against the oracle: 40 pipes of 2 to 20 cm at 5 to 80 m, upright and lying.
+TEST_P(LyingRod, AndOthersAreAsTheOracleSeesThem) {
+  const Scene scene = make_scene("b7_pipes");
+  const auto reference = bench::find_reference(scene, SONARD_SOURCE_DIR "/tests/data/oracle");
+  const ImageAccuracy found = measure(render(scene), reference.value().image);
+  const bool fast = GetParam().preset == Preset::fast;
+  EXPECT_LE(found.bin_rms, fast ? 0.12 : 0.06);
+  EXPECT_LE(found.beam_total, fast ? 0.2 : 0.03);
 }
 
 }  // namespace
