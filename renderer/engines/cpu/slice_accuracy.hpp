@@ -30,7 +30,7 @@ struct SliceAccuracy {
   /// sagitta displaces the first and the last line, which counts more the fewer lines there are.
   float sagitta_lines = 6e-4F;
   float linearity = 0.03F;     ///< see SlicePatcher::Request
-  float change = 0.005F;       ///< RMS relative change of a wall's echo allowed within a first slice
+  float change = 0.002F;       ///< RMS relative change of a wall's echo allowed within a first slice
   float mapped_lines = 2.5F;   ///< see SlicePatcher::Request
   float facet_slopes = 0.17F;  ///< see SlicePatcher::Request
   float facet_lines = 0.006F;  ///< see SlicePatcher::Request
