@@ -80,7 +80,7 @@ def draw(sets, path):
 
     def place(name):
         """Time as the mean ratio to `fast` over the scenes, and the largest error."""
-        rows = sets[name]
+        rows = {scene: row for scene, row in sets[name].items() if scene not in WITHOUT_PROMISE}
         logs = [math.log(row["cpu_ms"] / sets["fast"][scene]["cpu_ms"]) for scene, row in rows.items()]
         return math.exp(sum(logs) / len(logs)), max(row["bin_rms"] for row in rows.values()), name
 
