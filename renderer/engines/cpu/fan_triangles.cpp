@@ -85,7 +85,7 @@ bool lies_outside(const Fan& fan, std::uint32_t count, const Corners& at) {
   return to_port == all || to_starboard == all;
 }
 
-/// True if a whole cluster may lie between two probes of a side: a cable, a lying pipe far away.
+/// True if a whole cluster may lie between two probes of a side.
 SONARD_SIMD_CLONES
 bool is_low(const Fan& fan, std::uint32_t count, const Corners& at) {
   const float most = 0.75F * slices::probe_step(fan.tan_limit());
@@ -209,12 +209,24 @@ void FanTriangles::find(const std::vector<PlacedPart>& parts, const Fan& fan, co
     share.triangles.clear();
     share.beams.clear();
     share.per_beam.assign(beams, 0);
+    share.tall.assign(parts.size(), 0);
     share.culled = share.hidden = 0;
     collect(parts, fan, bend, cluster_count_ * j / share_count, cluster_count_ * (j + 1) / share_count,
             share);
   });
+  find_low_parts(parts.size());
   make_room_for_lists(beams);
   workers.run(share_count, [&](int job) { list(shares_[static_cast<std::size_t>(job)]); });
+}
+
+/// A part is low if all of its clusters in the fan are.
+void FanTriangles::find_low_parts(std::size_t parts) {
+  is_low_.assign(parts, 1);
+  for (const Share& share : shares_) {
+    for (std::size_t p = 0; p < parts; ++p) {
+      is_low_[p] &= static_cast<std::uint8_t>(1 - share.tall[p]);
+    }
+  }
 }
 
 std::uint64_t FanTriangles::faces_hidden() const {
@@ -268,7 +280,9 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
     bounds.tangent.gather(*part.clusters, cluster, at.tangent);
     bound(fan, cluster.triangle_count, bounds);
     const bool small = is_small(fan, cluster.triangle_count, bounds);
-    const bool low = is_low(fan, cluster.vertex_count, at);
+    if (!out && !is_low(fan, cluster.vertex_count, at)) {
+      share.tall[part_number] = 1;
+    }
     for (std::uint32_t n = 0; n < cluster.triangle_count; ++n) {
       if (bounds.in_elevation[n] == 0) {
         continue;
@@ -278,7 +292,9 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
       const std::size_t j = part.clusters->corners[1][t];
       const std::size_t k = part.clusters->corners[2][t];
       const std::uint32_t shell = part.clusters->shell[t];
-      if (shell != Shells::none && turned_away(at, i, j, k, hiding_[part_number][shell])) {
+      // A thin face counts although it is hidden: the lid of a lying pipe shows where the pipe ends.
+      if (shell != Shells::none && bounds.thin[n] == 0 &&
+          turned_away(at, i, j, k, hiding_[part_number][shell])) {
         ++share.hidden;
         continue;
       }
@@ -291,7 +307,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
            0,
            !out && bounds.thin[n] != 0,
            !out && small,
-           !out && low,
+           false,  // found later
            bounds.upright[n] != 0,
            whole_turn ? -half_turn : bounds.low_azimuth[n],
            whole_turn ? half_turn : bounds.high_azimuth[n]},
@@ -357,6 +373,7 @@ void FanTriangles::list(Share& share) {
   for (std::size_t i = 0; i < share.triangles.size(); ++i) {
     FanTriangle& triangle = share.triangles[i];
     triangle.number = static_cast<std::uint32_t>(share.first + i);
+    triangle.low = is_low_[triangle.part] != 0;
     for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
       listed_[share.per_beam[static_cast<std::size_t>(b)]++] = {&triangle, triangle.low_azimuth_rad,
                                                                 triangle.high_azimuth_rad};

@@ -37,7 +37,7 @@ struct FanTriangle {
   bool thin = false;                ///< much taller than wide, as seen from the sonar: the leg of a frame
   /// Part of an object that may lie between two slices: a stone, a plate.
   bool small = false;
-  bool low = false;      ///< part of a surface that may lie between two probes of SliceSides: a cable
+  bool low = false;      ///< of a part that may lie between two probes of SliceSides: a cable
   bool upright = false;  ///< has an edge that runs along slices, Fan::upright_rad()
   /// Azimuths of its sides; -pi and pi if it may contain the sonar's vertical axis.
   float low_azimuth_rad = 0.0F, high_azimuth_rad = 0.0F;
@@ -86,6 +86,7 @@ class FanTriangles {
     std::vector<FanTriangle> triangles;
     std::vector<Fan::BeamRange> beams;    ///< of each triangle
     std::vector<std::uint32_t> per_beam;  ///< number of triangles; later the place of the next one in listed_
+    std::vector<std::uint8_t> tall;       ///< per part: 1 if a cluster in the fan is not low
     std::uint64_t culled = 0, hidden = 0;
     std::size_t first = 0;  ///< number of its first triangle
 
@@ -97,6 +98,7 @@ class FanTriangles {
                std::size_t begin, std::size_t end, Share& share) const;
   static void add(const FanTriangle& triangle, const std::array<float, 3>& azimuth, const Fan& fan,
                   Share& share);
+  void find_low_parts(std::size_t parts);
   void make_room_for_lists(std::size_t beams);
   void list(Share& share);
 
@@ -104,6 +106,7 @@ class FanTriangles {
   std::vector<Share> shares_;
   std::vector<ListedTriangle> listed_;
   std::vector<std::size_t> first_of_beam_;
+  std::vector<std::uint8_t> is_low_;  ///< per part
   std::size_t cluster_count_ = 0;
   std::size_t count_ = 0;
   bool cull_ = true;
