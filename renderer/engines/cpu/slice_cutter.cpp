@@ -340,7 +340,7 @@ void SliceCutter::clip_behind(const Slice& slice, float tan_limit, std::size_t i
   const auto cosine = static_cast<double>(slice.cosine), sine = static_cast<double>(slice.sine);
   double s[3], h[3], z[3];
   for (int k = 0; k < 3; ++k) {
-    const double x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
+    const auto x = static_cast<double>(x_[k][i]), y = static_cast<double>(y_[k][i]);
     s[k] = y * cosine - x * sine;
     h[k] = x * cosine + y * sine;
     z[k] = static_cast<double>(z_[k][i]);

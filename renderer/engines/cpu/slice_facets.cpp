@@ -38,8 +38,8 @@ struct Quadrature {
       constexpr float off = 0.38729833F, at_middle = 8.0F / 18, beside = 5.0F / 18;
       const float strides =
           std::clamp(std::ceil(slopes / per_stride), 1.0F, static_cast<float>(most_strides));
-      for (float k = 0.5F; k < strides; ++k) {
-        const float middle = k / strides - 0.5F;
+      for (int k = 0; k < static_cast<int>(strides); ++k) {
+        const float middle = (static_cast<float>(k) + 0.5F) / strides - 0.5F;
         add(middle - off / strides, beside / strides);
         add(middle, at_middle / strides);
         add(middle + off / strides, beside / strides);

@@ -23,8 +23,7 @@ SHARED float probe_at(float tan_limit, int probe) {
 SHARED int probe_above(float t, float tan_limit) {
   // Negative numbers become 0, so truncation equals floor.
   float place = (t - first_probe(tan_limit)) * (1.0F / probe_step(tan_limit)) + 1.0F;
-  float end = float(side_probes);
-  return int(place < 0.0F ? 0.0F : (place > end ? end : place));
+  return int(place < 0.0F ? 0.0F : (place > float(side_probes) ? float(side_probes) : place));
 }
 
 // The slope of a segment's end (dt / d azimuth) as a straight line over a wedge of the fan. An end at t moves

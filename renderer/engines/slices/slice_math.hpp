@@ -33,10 +33,10 @@ SHARED float min(float a, float b) {
 SHARED float max(float a, float b) {
   return a < b ? b : a;
 }
-SHARED int floatBitsToInt(float x) {
+SHARED int floatBitsToInt(float x) {  // NOLINT(readability-identifier-naming): its name in GLSL
   return std::bit_cast<int>(x);
 }
-SHARED float intBitsToFloat(int bits) {
+SHARED float intBitsToFloat(int bits) {  // NOLINT(readability-identifier-naming): as above
   return std::bit_cast<float>(bits);
 }
 SHARED bool both(bool a, bool b) {
