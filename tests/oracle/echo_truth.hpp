@@ -26,7 +26,7 @@ struct EchoTruth {
   }
 };
 
-/// Relative error over the bins above a threshold (docs/physics.md 3.3 and 3.4).
+/// Relative error over the bins above a threshold (docs/physics.md 3.3).
 struct RelativeError {
   double rms = 0.0;  ///< over all bins above 1e-2 of their beam's maximum
   double max = 0.0;  ///< largest over all bins above 1e-4 of their beam's maximum

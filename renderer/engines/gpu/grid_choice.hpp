@@ -23,7 +23,7 @@ struct BeamDensity {
   bool operator==(const BeamDensity&) const = default;
 };
 
-/// Accuracy that a preset guarantees for every image (docs/physics.md 6).
+/// Accuracy that a preset guarantees for every image (docs/accuracy.md).
 struct GridTargets {
   double bins;     ///< relative RMS of bins above 1e-2 of their beam's maximum
   BeamError beam;  ///< of the worst beam

@@ -12,7 +12,7 @@
 
 namespace sonard::test {
 
-/// Largest errors that a preset may make (docs/physics.md 6). "Bins" are range lines.
+/// Largest errors that a preset may make (docs/accuracy.md). "Bins" are range lines.
 struct AccuracyLimits {
   double bin_rms;           ///< pooled over all bins above 1e-2 of their beam's maximum
   double beam_total;        ///< relative, of 99 % of the beams

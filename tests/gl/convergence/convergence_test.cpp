@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the error falls with the number of rows (docs/physics.md 3.5), against closed forms. The grids are
-// fixed, because an error preset chooses its own samples. Limits of the finest errors are 1.1 times a
-// measured error.
+// How fast the error falls with the number of rows, against closed forms. The grids are fixed, because an
+// error preset chooses its own samples. Limits of the finest errors are 1.1 times a measured error.
 #include <cmath>
 #include <vector>
 

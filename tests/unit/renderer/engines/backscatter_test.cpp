@@ -62,7 +62,7 @@ TEST(Backscatter, LeavesOutWhatIsNegligible) {
     EXPECT_LE(left_out, 1.01e-3F) << name;
     EXPECT_EQ(backscatter.has_facets(Facets::near_normal, 1.0F), name != "default") << name;
   }
-  // docs/physics.md 2.15 gives 4 atan m; there the facets of clean steel are still stronger than the rest.
+  // docs/skipping.md gives 4 atan m; there the facets of clean steel are still stronger than the rest.
   const Backscatter steel(find_acoustic_material("steel").value());
   const float at_4m = std::cos(4 * std::atan(0.05F));
   EXPECT_GT(steel.facets(at_4m), steel.lambert(at_4m));
