@@ -307,7 +307,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
            0,
            !out && bounds.thin[n] != 0,
            !out && small,
-           false,  // found later
+           !out,  // if its part is low: list()
            bounds.upright[n] != 0,
            whole_turn ? -half_turn : bounds.low_azimuth[n],
            whole_turn ? half_turn : bounds.high_azimuth[n]},
@@ -373,7 +373,7 @@ void FanTriangles::list(Share& share) {
   for (std::size_t i = 0; i < share.triangles.size(); ++i) {
     FanTriangle& triangle = share.triangles[i];
     triangle.number = static_cast<std::uint32_t>(share.first + i);
-    triangle.low = is_low_[triangle.part] != 0;
+    triangle.low = triangle.low && is_low_[triangle.part] != 0;
     for (int b = share.beams[i].first; b <= share.beams[i].last; ++b) {
       listed_[share.per_beam[static_cast<std::size_t>(b)]++] = {&triangle, triangle.low_azimuth_rad,
                                                                 triangle.high_azimuth_rad};

@@ -133,14 +133,13 @@ void SliceCutter::list_thin() {
   std::sort(thin_.begin(), thin_.end(), [](const ThinThing& a, const ThinThing& b) {
     return std::tie(a.kind, a.part, a.low_azimuth_rad) < std::tie(b.kind, b.part, b.low_azimuth_rad);
   });
+  thin_triangles_ = thin_;
   std::size_t things = 0;
   for (const ThinThing& thing : thin_) {
     if (things > 0 && thin_[things - 1].kind == thing.kind && thin_[things - 1].part == thing.part &&
         thing.low_azimuth_rad <= thin_[things - 1].high_azimuth_rad) {
-      ThinThing& whole = thin_[things - 1];
-      whole.high_azimuth_rad = std::max(whole.high_azimuth_rad, thing.high_azimuth_rad);
-      whole.low_t = std::min(whole.low_t, thing.low_t);
-      whole.high_t = std::max(whole.high_t, thing.high_t);
+      thin_[things - 1].high_azimuth_rad =
+          std::max(thin_[things - 1].high_azimuth_rad, thing.high_azimuth_rad);
     } else {
       thin_[things++] = thing;
     }
@@ -270,13 +269,31 @@ float SliceCutter::missed_height(const Slice& slice) const {
     // A neighbouring slice may hit it, but a thing that reaches into this wedge must be hit here. The margin
     // is the error of azimuths: a slice along the very edge of a thing may miss it too.
     if ((starboard > -azimuth_error_rad && starboard < half) || (port < azimuth_error_rad && port > -half)) {
-      height = std::max({height, thing.high_t - thing.low_t, least_missed});
+      height = std::max({height, height_within(slice, thing), least_missed});
     }
   }
   const bool low_thing_ends = std::any_of(low_ends_.begin(), low_ends_.end(), [&](float at) {
     return lies_well_inside(static_cast<double>(at), slice);
   });
   return low_thing_ends ? std::max(height, least_missed) : height;
+}
+
+/// Height in t of the triangles of a thing that reach into the wedge of a slice. It does not depend on what
+/// else is loaded.
+float SliceCutter::height_within(const Slice& slice, const ThinThing& thing) const {
+  const auto azimuth = static_cast<float>(slice.azimuth_rad);
+  const float half = 0.5F * slice.width_rad;
+  float low = 0.0F, high = 0.0F;
+  bool any = false;
+  for (const ThinThing& t : thin_triangles_) {
+    if (t.kind == thing.kind && t.part == thing.part && t.low_azimuth_rad < azimuth + half &&
+        t.high_azimuth_rad > azimuth - half) {
+      low = any ? std::min(low, t.low_t) : t.low_t;
+      high = any ? std::max(high, t.high_t) : t.high_t;
+      any = true;
+    }
+  }
+  return high - low;
 }
 
 void SliceCutter::cut(const Slice& slice, float tan_limit, Segments& segments) {

@@ -89,9 +89,19 @@ class SliceCutter {
   const float* normal_z() const { return normal_z_.data(); }
 
  private:
+  enum class Kind : std::uint8_t { thin, small, low };
+  /// One triangle, or several of one kind and part that touch in azimuth.
+  struct ThinThing {
+    Kind kind;
+    std::uint32_t part;
+    float low_azimuth_rad, high_azimuth_rad;
+    float low_t, high_t;  ///< of the first triangle
+  };
+
   void load_normals();
   void drop_back_faces();
   void list_thin();
+  float height_within(const Slice& slice, const ThinThing& thing) const;
   void list_upright_edges(double low_rad, double high_rad, const Fan& fan);
   void add_edge_parts(const FanTriangle& triangle, double low_rad, double high_rad, const Fan& fan);
   ProbeSet probes_of_edge(std::size_t begin, std::size_t end) const;
@@ -103,15 +113,9 @@ class SliceCutter {
   std::vector<float> x_[3], y_[3], z_[3];
   std::vector<float> normal_x_, normal_y_, normal_z_;
   std::vector<std::uint32_t> part_;
-  enum class Kind : std::uint8_t { thin, small, low };
-  struct ThinThing {
-    Kind kind;
-    std::uint32_t part;
-    float low_azimuth_rad, high_azimuth_rad;
-    float low_t, high_t;
-  };
-  std::vector<ThinThing> thin_;  ///< thin or small
-  std::vector<float> low_ends_;  ///< azimuths at which low things end
+  std::vector<ThinThing> thin_triangles_;  ///< one each, by kind, part and azimuth
+  std::vector<ThinThing> thin_;            ///< thin or small
+  std::vector<float> low_ends_;            ///< azimuths at which low things end
   /// An upright edge of one triangle.
   struct EdgePart {
     double azimuth_rad;
