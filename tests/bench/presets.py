@@ -35,12 +35,13 @@ def by_set(path):
     sets = collections.defaultdict(dict)
     with open(path, encoding="utf-8") as file:
         for row in json.load(file):
-            sets[row["set"]][row["scene"]] = row
+            # JSON has no infinity, the centroid error of a beam without an echo.
+            sets[row["set"]][row["scene"]] = {key: math.inf if value is None else value for key, value in row.items()}
     return sets
 
 
 def text_of(value):
-    return "0" if value == 0 else f"{value:.2g}"
+    return "0" if value == 0 else "-" if value == math.inf else f"{value:.2g}"
 
 
 def promises(scene):

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -130,7 +131,9 @@ class PooledError {
     bins_ += static_cast<double>(error->bins);
     for (const bench::BeamError& beam : bench::compare_beams(image, truth)) {
       totals_.push_back(beam.total);
-      centroids_.push_back(beam.centroid_lines);
+      // A beam without an echo has no centroid.
+      centroids_.push_back(std::isnan(beam.centroid_lines) ? std::numeric_limits<double>::infinity()
+                                                           : beam.centroid_lines);
       first_echoes_.push_back(beam.first_echo_lines);
     }
   }
