@@ -324,20 +324,27 @@ class Diagnosis(OwnMachine):
             sender.sendto(b"hello", POSES)
             self.wait_for_finding(self.inputs_findings, "^1 message from 127[.0-9:]* could not be read: message: is not a PoseUpdate")
 
-    # What is made of the seconds since the first pose. The interval is measured by arrivals, so a stall of the publisher
-    # or of the machine moves it.
-    STANDING = {
+    STANDING = {  # what is made of the seconds since the first pose
         "left out": (lambda since_s: 0, "The stamps do not change while the vehicle moves(, so the heads do not ping .*)?: is time_ns missing\\?"),
         "all alike": (lambda since_s: 1732800000123456789, "The stamps do not change while the vehicle moves"),
         "whole seconds": (lambda since_s: int(1732800000 + since_s) * 10**9,
-                          "The stamps change only every (1|1\\.[0-4]\\d?|0\\.[6-9]\\d?) s while the vehicle moves: is time_ns in whole"),
+                          "The stamps change only every (1|0\\.9\\d?) s while the vehicle moves: is time_ns in whole"),
     }
+
+    def listen_without_stall(self):
+        """What `check --listen` prints. It measures intervals by arrivals, so it listens again if a pose came late because
+        the machine stalled."""
+        for _ in range(5):
+            printed = self.check("--listen", "5", self.config())
+            if int(re.search(r"longest_gap_ms=(\d+)", printed)[1]) < 150:
+                break
+        return printed
 
     def test_stamps_that_stand_still_are_named(self):
         for name, (stamp, says) in self.STANDING.items():
             with self.subTest(name):
                 publisher = self.publish(GOOD, speed_mps=0.5, stamp=stamp)
-                self.assertRegex(self.check("--listen", "5", self.config()), "wrong\\?   " + says)
+                self.assertRegex(self.listen_without_stall(), "wrong\\?   " + says)
                 for clock in ("wall", "source"):
                     daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}")
                     daemon.wait_for_line("warning pose stream udp .*" + says, PATIENCE_S)
