@@ -5,9 +5,6 @@
 bool both(bool a, bool b) {
   return a && b;
 }
-bool either(bool a, bool b) {
-  return a || b;
-}
 float with_sign_of(float x, float sign) {
   return intBitsToFloat((floatBitsToInt(x) & 0x7fffffff) | (floatBitsToInt(sign) & ~0x7fffffff));
 }

@@ -9,8 +9,7 @@
 // - Constants begin with CONSTANT.
 // - Functions begin with SHARED. They return results by value, so that loops around them can be vectorised.
 // - Results that decide what is visible are `precise`: they are not fused into multiply-adds.
-// - both() and either() join conditions in vectorised loops: GLSL has no & of bools, and GCC 12 does not
-//   vectorise &&.
+// - both() joins conditions in vectorised loops: GLSL has no & of bools, and GCC 12 does not vectorise &&.
 #pragma once
 
 #include <bit>
@@ -24,7 +23,6 @@
 namespace sonard::render::slices {
 
 using std::abs;
-using std::floor;
 using std::sqrt;
 
 SHARED float min(float a, float b) {
@@ -41,9 +39,6 @@ SHARED float intBitsToFloat(int bits) {  // NOLINT(readability-identifier-naming
 }
 SHARED bool both(bool a, bool b) {
   return a & b;
-}
-SHARED bool either(bool a, bool b) {
-  return a | b;
 }
 SHARED float with_sign_of(float x, float sign) {
   return std::copysign(x, sign);
