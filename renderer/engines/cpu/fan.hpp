@@ -9,27 +9,13 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 
-/// Angle of (x, y) from the x axis, towards y, in (-pi, pi]; error below `azimuth_error_rad`. Without
-/// branches, so that loops over it are vectorised.
-inline constexpr float azimuth_error_rad = 2e-5F;
-inline float fast_azimuth(float y, float x) {
-  const float ax = x < 0 ? -x : x;
-  const float ay = y < 0 ? -y : y;
-  const float shorter = ax < ay ? ax : ay;
-  const float longer = ax < ay ? ay : ax;
-  const float q = shorter / (longer + 1e-30F);
-  const float q2 = q * q;
-  // Abramowitz and Stegun 4.4.49: arctan on [0, 1].
-  float angle =
-      q * (0.9998660F + q2 * (-0.3302995F + q2 * (0.1801410F + q2 * (-0.0851330F + q2 * 0.0208351F))));
-  angle = ax < ay ? 1.57079633F - angle : angle;
-  angle = x < 0 ? 3.14159265F - angle : angle;
-  return y < 0 ? -angle : angle;
-}
+using slices::azimuth_error_rad;
+using slices::fast_azimuth;
 
 /// The fan of one ping.
 class Fan {

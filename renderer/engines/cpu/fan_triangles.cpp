@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/simd.hpp"
@@ -13,9 +12,7 @@ namespace sonard::render {
 
 namespace {
 
-constexpr float thin_ratio = 3.0F;      // angular height over width
-constexpr float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges have little effect
-constexpr auto half_turn = static_cast<float>(std::numbers::pi);
+using slices::half_turn;
 
 /// Vertices of one cluster in the sonar frame.
 struct Corners {
@@ -23,27 +20,34 @@ struct Corners {
   std::array<float, MeshClusters::most_vertices> azimuth;
   std::array<float, MeshClusters::most_vertices> horizontal_squared;
   std::array<float, MeshClusters::most_vertices> tangent;  ///< of the elevation
+
+  [[gnu::always_inline]] void set(std::size_t i, const slices::Corner& at) {
+    const slices::Sight sight = slices::sight_of(at);
+    x[i] = at.x;
+    y[i] = at.y;
+    z[i] = at.z;
+    azimuth[i] = sight.azimuth;
+    horizontal_squared[i] = sight.horizontal_squared;
+    tangent[i] = sight.tangent;
+  }
+  slices::Corner corner(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
+
+slices::Placement placement_of(const PlacedPart& part) {
+  const glm::mat3& m = part.R_sonar_part;  // columns are the axes of the part
+  const glm::vec3& t = part.t_sonar_part_m;
+  return {m[0].x, m[1].x, m[2].x, t.x, m[0].y, m[1].y, m[2].y, t.y, m[0].z, m[1].z, m[2].z, t.z};
+}
 
 SONARD_SIMD_CLONES
 void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Corners& out) {
   const float* x = &part.clusters->x[cluster.first_vertex];
   const float* y = &part.clusters->y[cluster.first_vertex];
   const float* z = &part.clusters->z[cluster.first_vertex];
-  const glm::mat3 m = part.R_sonar_part;  // columns are the axes of the part
-  const glm::vec3 t = part.t_sonar_part_m;
-  const auto count = static_cast<int>(cluster.vertex_count);
-  for (int i = 0; i < count; ++i) {
-    const float px = m[0].x * x[i] + m[1].x * y[i] + m[2].x * z[i] + t.x;
-    const float py = m[0].y * x[i] + m[1].y * y[i] + m[2].y * z[i] + t.y;
-    out.x[static_cast<std::size_t>(i)] = px;
-    out.y[static_cast<std::size_t>(i)] = py;
-    const float pz = m[0].z * x[i] + m[1].z * y[i] + m[2].z * z[i] + t.z;
-    const float horizontal_squared = px * px + py * py;
-    out.z[static_cast<std::size_t>(i)] = pz;
-    out.azimuth[static_cast<std::size_t>(i)] = fast_azimuth(py, px);
-    out.horizontal_squared[static_cast<std::size_t>(i)] = horizontal_squared;
-    out.tangent[static_cast<std::size_t>(i)] = pz / std::sqrt(horizontal_squared + 1e-30F);
+  const slices::Placement placement = placement_of(part);
+  const auto count = static_cast<std::size_t>(cluster.vertex_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out.set(i, slices::place(placement, x[i], y[i], z[i]));
   }
 }
 
@@ -51,12 +55,7 @@ void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Cor
 void refract_corners(const Refraction& bend, std::uint32_t count, Corners& at) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const glm::vec3 p = bend.point({at.x[i], at.y[i], at.z[i]});
-    at.x[i] = p.x;
-    at.y[i] = p.y;
-    at.z[i] = p.z;
-    at.azimuth[i] = fast_azimuth(p.y, p.x);
-    at.horizontal_squared[i] = p.x * p.x + p.y * p.y;
-    at.tangent[i] = p.z / std::sqrt(at.horizontal_squared[i] + 1e-30F);
+    at.set(i, {p.x, p.y, p.z});
   }
 }
 
@@ -122,56 +121,21 @@ struct Bounds {
   std::array<std::int32_t, MeshClusters::most_triangles> in_elevation, thin, upright;
 };
 
-inline float least(float a, float b, float c) {
-  const float ab = a < b ? a : b;
-  return ab < c ? ab : c;
-}
-inline float most(float a, float b, float c) {
-  const float ab = a > b ? a : b;
-  return ab > c ? ab : c;
-}
-
 SONARD_SIMD_CLONES
 void bound(const Fan& fan, std::size_t count, Bounds& out) {
-  const float room_per_square = fan.tan_limit() * fan.tan_limit();
-  const float upright_rad = fan.upright_rad();
-  const float upright_t = least_upright * fan.tan_limit();
-  const auto is_upright = [&](float lean, float rise) {
-    return (lean < upright_rad) & (lean > -upright_rad) & ((rise > upright_t) | (rise < -upright_t));
-  };
+  const slices::FanLimits limits{fan.tan_limit(), fan.upright_rad()};
   for (std::size_t t = 0; t < count; ++t) {
-    // The farthest corner has the most height within the elevation limits.
-    const float far =
-        most(out.horizontal_squared.a[t], out.horizontal_squared.b[t], out.horizontal_squared.c[t]);
-    const float room = far * room_per_square;
-    const float bottom = least(out.height.a[t], out.height.b[t], out.height.c[t]);
-    const float top = most(out.height.a[t], out.height.b[t], out.height.c[t]);
-    out.in_elevation[t] =
-        ((bottom > 0) & (bottom * bottom > room)) | ((top < 0) & (top * top > room)) ? 0 : 1;
-    const float azimuth_a = out.azimuth.a[t], azimuth_b = out.azimuth.b[t], azimuth_c = out.azimuth.c[t];
-    const float tangent_a = out.tangent.a[t], tangent_b = out.tangent.b[t], tangent_c = out.tangent.c[t];
-    const float low = least(azimuth_a, azimuth_b, azimuth_c), high = most(azimuth_a, azimuth_b, azimuth_c);
-    out.low_azimuth[t] = low;
-    out.high_azimuth[t] = high;
-    const float tall = most(tangent_a, tangent_b, tangent_c) - least(tangent_a, tangent_b, tangent_c);
-    out.thin[t] = tall > thin_ratio * (high - low) ? 1 : 0;
-    const bool upright_ab = is_upright(azimuth_a - azimuth_b, tangent_a - tangent_b);
-    const bool upright_bc = is_upright(azimuth_b - azimuth_c, tangent_b - tangent_c);
-    const bool upright_ca = is_upright(azimuth_c - azimuth_a, tangent_c - tangent_a);
-    out.upright[t] = (upright_ab | upright_bc | upright_ca) ? 1 : 0;
+    const slices::TriangleBounds bounds =
+        slices::bounds_of_triangle({out.azimuth.a[t], out.horizontal_squared.a[t], out.tangent.a[t]},
+                                   {out.azimuth.b[t], out.horizontal_squared.b[t], out.tangent.b[t]},
+                                   {out.azimuth.c[t], out.horizontal_squared.c[t], out.tangent.c[t]},
+                                   out.height.a[t], out.height.b[t], out.height.c[t], limits);
+    out.in_elevation[t] = bounds.in_elevation;
+    out.low_azimuth[t] = bounds.low_azimuth;
+    out.high_azimuth[t] = bounds.high_azimuth;
+    out.thin[t] = bounds.thin;
+    out.upright[t] = bounds.upright;
   }
-}
-
-/// Whether a triangle turns its inner side to the sonar, by more than rounding can change.
-/// @param outwards as Shell::outwards; 0 if either side may be seen
-bool turned_away(const Corners& at, std::size_t i, std::size_t j, std::size_t k, float outwards) {
-  constexpr float least_sine = 1e-5F;
-  const glm::vec3 a(at.x[i], at.y[i], at.z[i]);
-  const glm::vec3 b(at.x[j], at.y[j], at.z[j]);
-  const glm::vec3 c(at.x[k], at.y[k], at.z[k]);
-  const glm::vec3 across = glm::cross(b - a, c - a);
-  const float away = outwards * glm::dot(across, a);
-  return away > 0 && away * away > least_sine * least_sine * glm::dot(across, across) * glm::dot(a, a);
 }
 
 /// True if a whole cluster may lie between two slices: a stone, a plate.
@@ -294,7 +258,7 @@ void FanTriangles::collect(const std::vector<PlacedPart>& parts, const Fan& fan,
       const std::uint32_t shell = part.clusters->shell[t];
       // A thin face counts although it is hidden: the lid of a lying pipe shows where the pipe ends.
       if (shell != Shells::none && bounds.thin[n] == 0 &&
-          turned_away(at, i, j, k, hiding_[part_number][shell])) {
+          slices::is_turned_away(at.corner(i), at.corner(j), at.corner(k), hiding_[part_number][shell])) {
         ++share.hidden;
         continue;
       }

@@ -47,6 +47,7 @@ SHARED float with_sign_of(float x, float sign) {
 // In the order of a ping; a file may use those before it.
 // clang-format off
 #include "renderer/engines/slices/cut.glsl"
+#include "renderer/engines/slices/place.glsl"
 #include "renderer/engines/slices/sweep.glsl"
 #include "renderer/engines/slices/sides.glsl"
 #include "renderer/engines/slices/refine.glsl"

@@ -58,8 +58,8 @@ std::string shader_of(const Case& tested, std::size_t inputs) {
       "layout(local_size_x = 64) in;\n"
       "layout(std430, binding = 0) readonly buffer Inputs { float inputs[]; };\n"
       "layout(std430, binding = 1) writeonly buffer Outputs { float outputs[]; };\n";
-  for (const char* name : {"language.glsl", "cut.glsl", "sweep.glsl", "sides.glsl", "refine.glsl",
-                           "patches.glsl", "facets.glsl"}) {
+  for (const char* name : {"language.glsl", "cut.glsl", "place.glsl", "sweep.glsl", "sides.glsl",
+                           "refine.glsl", "patches.glsl", "facets.glsl"}) {
     text += text_of(name);
   }
   const std::string place = "int(gl_GlobalInvocationID.x) * ";
@@ -185,6 +185,52 @@ TEST_F(SliceMathTest, Cut) {
                                  cut.high_slope,
                                  cut.low_reach,
                                  cut.high_reach};
+                }});
+}
+
+TEST_F(SliceMathTest, PlacedTriangles) {
+  expect_equal({R"(
+    Corner a = Corner(get(0), get(1), get(2)), b = Corner(get(3), get(4), get(5)), c = Corner(get(6), get(7), get(8));
+    Sight at_a = sight_of(a), at_b = sight_of(b), at_c = sight_of(c);
+    put(at_a.azimuth); put(at_a.horizontal_squared); put(at_a.tangent);
+    TriangleBounds bounds = bounds_of_triangle(at_a, at_b, at_c, a.z, b.z, c.z, FanLimits(0.3, 5e-3));
+    put(float(bounds.in_elevation)); put(float(bounds.thin)); put(float(bounds.upright));
+    put(bounds.low_azimuth); put(bounds.high_azimuth);
+    put(is_turned_away(a, b, c, get(9)) ? 1.0 : 0.0);
+    Corner moved = place(Placement(get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8), get(0), get(1),
+                                   get(2)), a.x, a.y, a.z);
+    put(moved.x); put(moved.y); put(moved.z);
+)",
+                12, false,
+                [](std::mt19937& random) {
+                  Numbers numbers = corners(random);
+                  if (uniform(random, 0, 1) < 0.3F) {  // an upright edge
+                    numbers[3] = numbers[0] * (1 + uniform(random, -1e-3, 1e-3));
+                    numbers[4] = numbers[1] * (1 + uniform(random, -1e-3, 1e-3));
+                  }
+                  numbers.push_back(std::floor(uniform(random, -1, 2)));
+                  return numbers;
+                },
+                [](const Numbers& x) {
+                  const slices::Corner a{x[0], x[1], x[2]}, b{x[3], x[4], x[5]}, c{x[6], x[7], x[8]};
+                  const slices::Sight at_a = slices::sight_of(a);
+                  const auto bounds = slices::bounds_of_triangle(
+                      at_a, slices::sight_of(b), slices::sight_of(c), a.z, b.z, c.z, {0.3F, 5e-3F});
+                  const slices::Corner moved =
+                      slices::place({x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[0], x[1], x[2]},
+                                    a.x, a.y, a.z);
+                  return Numbers{at_a.azimuth,
+                                 at_a.horizontal_squared,
+                                 at_a.tangent,
+                                 static_cast<float>(bounds.in_elevation),
+                                 static_cast<float>(bounds.thin),
+                                 static_cast<float>(bounds.upright),
+                                 bounds.low_azimuth,
+                                 bounds.high_azimuth,
+                                 slices::is_turned_away(a, b, c, x[9]) ? 1.0F : 0.0F,
+                                 moved.x,
+                                 moved.y,
+                                 moved.z};
                 }});
 }
 
