@@ -266,7 +266,6 @@ bool look_like_radians(const glm::dvec3& angles) {
 }
 
 void read_mount(YamlSection& section, HeadConfig& head) {
-  section.introduce("The pose of the sonar on the vehicle, T_vehicle_sonar.");
   read_pose(section, head.T_vehicle_sonar,
             "origin of the sonar in the vehicle frame (x forward, y to port, z up)",
             "rotation, as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
@@ -325,7 +324,7 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   head.adaptive_quality = context.adaptive_quality;
   section.require("name", "a name of this head for the log");
   section.text("name", head.name, "unique name; appears in every log line of this head");
-  section.section("mount", "pose of the sonar on the vehicle",
+  section.section("mount", "pose of the sonar on the vehicle, T_vehicle_sonar",
                   [&](YamlSection& inner) { read_mount(inner, head); });
   section.boolean("hides_vehicle", head.hides_vehicle,
                   "true: the vehicle's own model (`world.vehicle_model`) is left out of the images of this "

@@ -90,21 +90,25 @@ std::string schema_of(const std::vector<Keys>& of_kinds) {
 
 // ---- The tables
 
+struct Row {
+  KeyReference key;      ///< its name is the path below the mapping of the table: "tcp[].bind"
+  std::string defaults;  ///< default, and kinds with another default
+};
+
 struct Table {
   std::vector<std::string> paths;  ///< paths of the mappings with these keys: "heads[].mount"
   std::vector<std::string> kinds;  ///< kinds of heads with these mappings
   std::string introduction;
-  Keys keys;
-  std::vector<std::string> defaults;  ///< defaults of the keys, and kinds with other defaults
+  std::vector<Row> rows;
 };
 
 std::string default_of(const KeyReference& key) {
   return key.required ? "**required**" : key.default_text;
 }
 
-bool same_but_for_defaults(const KeyReference& one, const KeyReference& other) {
-  return one.name == other.name && one.type == other.type && one.meaning == other.meaning &&
-         one.required == other.required;
+bool same_but_for_defaults(const Row& one, const Row& other) {
+  return one.key.name == other.key.name && one.key.type == other.key.type &&
+         one.key.meaning == other.key.meaning && one.key.required == other.key.required;
 }
 
 void add_once(std::vector<std::string>& list, const std::string& text) {
@@ -113,31 +117,149 @@ void add_once(std::vector<std::string>& list, const std::string& text) {
   }
 }
 
+std::string path_of(const std::string& path, const KeyReference& key) {
+  return (path.empty() ? "" : path + ".") + key.name + (key.is_list ? "[]" : "");
+}
+
+/// A small mapping gets no table of its own: its keys follow its row.
+bool is_small(const KeyReference& key) {
+  constexpr std::size_t most_keys = 4;
+  return !key.keys.empty() && key.keys.size() <= most_keys;
+}
+
+/// Adds rows for keys and for the keys of small mappings in them.
+void add_rows(const Keys& keys, const std::string& path, bool with_small, std::vector<Row>& rows) {
+  for (const KeyReference& key : keys) {
+    const bool merged = with_small && is_small(key);
+    Row row = {key, default_of(key)};
+    row.key.name = path_of(path, key);
+    if (!merged && key.is_list) {
+      row.key.name.resize(row.key.name.size() - 2);
+    }
+    if (merged && !key.introduction.empty()) {
+      row.key.meaning += ". " + key.introduction;
+      row.key.meaning.erase(row.key.meaning.find_last_not_of('.') + 1);
+    }
+    rows.push_back(row);
+    if (merged) {
+      add_rows(key.keys, row.key.name, true, rows);
+    }
+  }
+}
+
+void add_defaults(Table& table, const std::vector<Row>& rows, const std::string& kind) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string other = fmt::format("; {}: {}", kind, rows[i].defaults);
+    if (rows[i].defaults != default_of(table.rows[i].key) && !table.rows[i].defaults.ends_with(other)) {
+      table.rows[i].defaults += other;
+    }
+  }
+}
+
+void add_inner_tables(const Keys& keys, const std::string& path, bool with_small, const std::string& kind,
+                      std::vector<Table>& tables);
+
 /// Adds a mapping and all mappings inside it. If a table has the same keys, the mapping joins this table.
 void add_tables(const Keys& keys, const std::string& path, const std::string& introduction,
                 const std::string& kind, std::vector<Table>& tables) {
+  const bool with_small = !path.empty();
+  std::vector<Row> rows;
+  add_rows(keys, "", with_small, rows);
   auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& other) {
     return other.introduction == introduction &&
-           std::equal(other.keys.begin(), other.keys.end(), keys.begin(), keys.end(), same_but_for_defaults);
+           std::equal(other.rows.begin(), other.rows.end(), rows.begin(), rows.end(), same_but_for_defaults);
   });
   if (table == tables.end()) {
-    table = tables.insert(table, {{}, {}, introduction, keys, {}});
-    std::transform(keys.begin(), keys.end(), std::back_inserter(table->defaults), default_of);
+    table = tables.insert(table, {{}, {}, introduction, rows});
   }
   add_once(table->paths, path);
   add_once(table->kinds, kind);
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::string other = fmt::format("; {}: {}", kind, default_of(keys[i]));
-    if (default_of(keys[i]) != default_of(table->keys[i]) && !table->defaults[i].ends_with(other)) {
-      table->defaults[i] += other;
-    }
-  }
+  add_defaults(*table, rows, kind);
+  add_inner_tables(keys, path, with_small, kind, tables);
+}
+
+void add_inner_tables(const Keys& keys, const std::string& path, bool with_small, const std::string& kind,
+                      std::vector<Table>& tables) {
   for (const KeyReference& key : keys) {
-    if (!key.keys.empty()) {
-      add_tables(key.keys, (path.empty() ? "" : path + ".") + key.name + (key.is_list ? "[]" : ""),
-                 key.introduction, kind, tables);
+    if (with_small && is_small(key)) {
+      add_inner_tables(key.keys, path_of(path, key), true, kind, tables);
+    } else if (!key.keys.empty()) {
+      add_tables(key.keys, path_of(path, key), key.introduction, kind, tables);
     }
   }
+}
+
+std::vector<Row>::iterator find_row(Table& table, const Row& row) {
+  return std::find_if(table.rows.begin(), table.rows.end(),
+                      [&](const Row& other) { return same_but_for_defaults(row, other); });
+}
+
+/// The rows that all of these tables have, with the defaults of each.
+std::vector<Row> common_rows(std::vector<Table>& tables, const std::vector<std::size_t>& places) {
+  std::vector<Row> common;
+  for (Row row : tables[places.front()].rows) {
+    const std::string first = row.defaults;
+    const bool everywhere = std::all_of(places.begin(), places.end(), [&](std::size_t place) {
+      const auto other = find_row(tables[place], row);
+      if (other == tables[place].rows.end()) {
+        return false;
+      }
+      row.defaults += other->defaults == first
+                          ? ""
+                          : fmt::format("; {}: {}", tables[place].kinds.front(), other->defaults);
+      return true;
+    });
+    if (everywhere) {
+      common.push_back(row);
+    }
+  }
+  return common;
+}
+
+/// Moves rows that these tables share to a table of their own, in front of the first, if it is worth a table.
+void share_rows(std::vector<Table>& tables, const std::vector<std::size_t>& places) {
+  constexpr std::size_t least_rows = 4;
+  Table shared = {tables[places.front()].paths, {}, "", common_rows(tables, places)};
+  if (places.size() < 2 || shared.rows.size() < least_rows) {
+    return;
+  }
+  for (const std::size_t place : places) {
+    shared.kinds.push_back(tables[place].kinds.front());
+    for (const Row& row : shared.rows) {
+      tables[place].rows.erase(find_row(tables[place], row));
+    }
+  }
+  tables.insert(tables.begin() + static_cast<std::ptrdiff_t>(places.front()), shared);
+}
+
+/// The tables of one kind for mappings with this path.
+std::vector<std::size_t> places_of(const std::vector<Table>& tables, const std::string& path) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    if (tables[i].paths.front() == path && tables[i].kinds.size() == 1) {
+      places.push_back(i);
+    }
+  }
+  return places;
+}
+
+void share_rows_of(std::vector<Table>& tables, const std::string& path) {
+  share_rows(tables, places_of(tables, path));
+  const std::size_t count = places_of(tables, path).size();
+  for (std::size_t one = 0; one < count; ++one) {
+    for (std::size_t other = one + 1; other < count; ++other) {
+      const std::vector<std::size_t> places = places_of(tables, path);
+      share_rows(tables, {places.at(one), places.at(other)});
+    }
+  }
+}
+
+/// Tables of all kinds come first, then those of the first kind.
+std::size_t order_of(const Table& table, const std::vector<std::string>& kinds) {
+  return table.kinds.size() == kinds.size()
+             ? 0
+             : 1 + static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), table.kinds.front()) -
+                                            kinds.begin());
 }
 
 std::string cell(const std::string& text) {
@@ -166,13 +288,11 @@ std::string folded(const std::string& paragraph) {
 std::string text_of(const Table& table, std::size_t kind_count) {
   std::string text = table.paths.front().empty() ? "\n### Top level"
                                                  : fmt::format("\n### `{}`", fmt::join(table.paths, "`, `"));
-  text += table.kinds.size() < kind_count ? fmt::format(" ({})\n\n", fmt::join(table.kinds, ", ")) : "\n\n";
+  text += table.kinds.size() < kind_count ? fmt::format(" ({})\n", fmt::join(table.kinds, ", ")) : "\n";
   text += table.introduction.empty() ? "" : folded(table.introduction) + "\n\n";
   text += "| key | type | default | meaning |\n|---|---|---|---|\n";
-  for (std::size_t i = 0; i < table.keys.size(); ++i) {
-    const KeyReference& key = table.keys[i];
-    text +=
-        fmt::format("| `{}` | {} |{}|{}|\n", key.name, key.type, cell(table.defaults[i]), cell(key.meaning));
+  for (const auto& [key, defaults] : table.rows) {
+    text += fmt::format("| `{}` | {} |{}|{}|\n", key.name, key.type, cell(defaults), cell(key.meaning));
   }
   return text;
 }
@@ -186,11 +306,19 @@ std::string read(const std::filesystem::path& file) {
 
 int write_or_check(const std::string& program, bool check) {
   std::vector<Keys> of_kinds;
+  std::vector<std::string> kinds;
   std::vector<Table> tables;
   for (const HeadKind* kind : head_kinds()) {
+    kinds.emplace_back(kind->type());
     of_kinds.push_back(describe_config(*kind));
-    add_tables(of_kinds.back(), "", "", std::string(kind->type()), tables);
+    add_tables(of_kinds.back(), "", "", kinds.back(), tables);
   }
+  for (const char* path : {"heads[]", "heads[].acoustics"}) {
+    share_rows_of(tables, path);
+  }
+  std::stable_sort(tables.begin(), tables.end(), [&](const Table& one, const Table& other) {
+    return order_of(one, kinds) < order_of(other, kinds);
+  });
   const std::filesystem::path source = SONARD_SOURCE_DIR;
   const std::filesystem::path page = source / "docs/configuration.md";
   std::string text = read(page);
