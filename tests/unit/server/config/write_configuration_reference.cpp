@@ -128,9 +128,9 @@ bool is_small(const KeyReference& key) {
 }
 
 /// Adds rows for keys and for the keys of small mappings in them.
-void add_rows(const Keys& keys, const std::string& path, bool with_small, std::vector<Row>& rows) {
+void add_rows(const Keys& keys, const std::string& path, std::vector<Row>& rows) {
   for (const KeyReference& key : keys) {
-    const bool merged = with_small && is_small(key);
+    const bool merged = is_small(key);
     Row row = {key, default_of(key)};
     row.key.name = path_of(path, key);
     if (!merged && key.is_list) {
@@ -142,7 +142,7 @@ void add_rows(const Keys& keys, const std::string& path, bool with_small, std::v
     }
     rows.push_back(row);
     if (merged) {
-      add_rows(key.keys, row.key.name, true, rows);
+      add_rows(key.keys, row.key.name, rows);
     }
   }
 }
@@ -156,15 +156,14 @@ void add_defaults(Table& table, const std::vector<Row>& rows, const std::string&
   }
 }
 
-void add_inner_tables(const Keys& keys, const std::string& path, bool with_small, const std::string& kind,
+void add_inner_tables(const Keys& keys, const std::string& path, const std::string& kind,
                       std::vector<Table>& tables);
 
 /// Adds a mapping and all mappings inside it. If a table has the same keys, the mapping joins this table.
 void add_tables(const Keys& keys, const std::string& path, const std::string& introduction,
                 const std::string& kind, std::vector<Table>& tables) {
-  const bool with_small = !path.empty();
   std::vector<Row> rows;
-  add_rows(keys, "", with_small, rows);
+  add_rows(keys, "", rows);
   auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& other) {
     return other.introduction == introduction &&
            std::equal(other.rows.begin(), other.rows.end(), rows.begin(), rows.end(), same_but_for_defaults);
@@ -175,14 +174,14 @@ void add_tables(const Keys& keys, const std::string& path, const std::string& in
   add_once(table->paths, path);
   add_once(table->kinds, kind);
   add_defaults(*table, rows, kind);
-  add_inner_tables(keys, path, with_small, kind, tables);
+  add_inner_tables(keys, path, kind, tables);
 }
 
-void add_inner_tables(const Keys& keys, const std::string& path, bool with_small, const std::string& kind,
+void add_inner_tables(const Keys& keys, const std::string& path, const std::string& kind,
                       std::vector<Table>& tables) {
   for (const KeyReference& key : keys) {
-    if (with_small && is_small(key)) {
-      add_inner_tables(key.keys, path_of(path, key), true, kind, tables);
+    if (is_small(key)) {
+      add_inner_tables(key.keys, path_of(path, key), kind, tables);
     } else if (!key.keys.empty()) {
       add_tables(key.keys, path_of(path, key), key.introduction, kind, tables);
     }
