@@ -59,7 +59,7 @@ struct SkipRuleEntry {
 /// In the order of SkipRule.
 inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::nobody_listening, "nobody_listening",
-                  "the ping was cancelled before its turn to be rendered: topside gone, reboot, new settings",
+                  "the ping was cancelled before its turn to be rendered: client gone, reboot, new settings",
                   "pings", 0},
     SkipRuleEntry{
         SkipRule::unchanged_scene, "unchanged_scene",

@@ -273,10 +273,10 @@ function gemini.dissector(tvb, pinfo, root)
   end
 end
 
--- UDP ports of heads and topsides (1.1).
+-- UDP ports of heads and clients (1.1).
 local udp_ports = DissectorTable.get("udp.port")
 local ports_in_use = "52900,52901"
-gemini.prefs.ports = Pref.range("UDP ports", ports_in_use, "Ports that topsides and heads listen on", 65535)
+gemini.prefs.ports = Pref.range("UDP ports", ports_in_use, "Ports that clients and heads listen on", 65535)
 udp_ports:add(ports_in_use, gemini)
 function gemini.prefs_changed()
   udp_ports:remove(ports_in_use, gemini)

@@ -179,7 +179,7 @@ local function dissect_frame(tvb, pinfo, root)
   local body = tvb(0, tvb:len() - 1):tvb()
   tables.add(tree, body, messages.frame, 0)
   local length, count, type = tvb(5, 2):le_uint(), tvb(9, 1):uint(), tvb(10, 1):uint()
-  -- The host sends as node 255. Messages of host and head differ.
+  -- The client sends as node 255. Messages of client and head differ.
   local from_head = tvb(7, 1):uint() ~= 0xFF
   tree:add(extra.from_head, tvb(7, 1), from_head):set_generated()
   if count ~= (length - 5) % 256 and not (type == 2 and count == 0) then

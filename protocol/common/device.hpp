@@ -84,7 +84,7 @@ struct Outgoing {
   SharedBytes bytes;
 };
 
-/// A line for the program's log: "topside 192.168.2.5 connected".
+/// A line for the program's log: "client 192.168.2.5 connected".
 struct Notice {
   enum class Level : std::uint8_t { info, warning };
   Level level = Level::info;

@@ -17,8 +17,8 @@ namespace sonard::gemini {
 /// shorter than 8 bytes.
 Result<Header, WireError> decode_header(std::span<const std::uint8_t> datagram);
 
-/// Decodes a datagram from a topside. Ignores bytes beyond the message. Returns Unknown for a type that no
-/// topside sends. Returns an error if the datagram is too short for its type or has an inconsistent count.
+/// Decodes a datagram from a client. Ignores bytes beyond the message. Returns Unknown for a type that no
+/// client sends. Returns an error if the datagram is too short for its type or has an inconsistent count.
 Result<Command, WireError> decode_command(std::span<const std::uint8_t> datagram);
 
 /// Decodes a datagram from a head, by the rules of decode_command(). PingLine::data views `datagram`.

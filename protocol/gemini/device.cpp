@@ -39,7 +39,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.gain.reference_spreading > 0.0, "gain.reference_spreading must be positive");
   require(config.status_period > nanoseconds{0}, "status_period must be positive");
   require(config.min_ping_period > nanoseconds{0}, "min_ping_period must be positive");
-  require(config.topside_timeout > nanoseconds{0}, "topside_timeout must be positive");
+  require(config.client_timeout > nanoseconds{0}, "client_timeout must be positive");
   require(config.reboot_time >= nanoseconds{0}, "reboot_time must not be negative");
   require(config.line_period > nanoseconds{0}, "line_period must be positive");
   require(config.burst_lines >= 1 && config.burst_lines <= 1024, "burst_lines must be 1..1024");
@@ -124,7 +124,7 @@ class Device::Impl {
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& datagram);
   void take(TimePoint, const ClientCame&) {}
-  void take(TimePoint, const ClientGone&) {}  // unused: the topside is the sender of the last command
+  void take(TimePoint, const ClientGone&) {}  // unused: the client is the sender of the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
   void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
   void take(TimePoint now, const TriggerEdge&);
@@ -142,7 +142,7 @@ class Device::Impl {
     return "{} commands were for another sonar ID: the last one for " + std::to_string(last_wrong_id_) +
            ", but this head has " + std::to_string(config_.sonar_id) + " (sonar_id)";
   }
-  Ipv4 topside() const { return topside_; }
+  Ipv4 client() const { return client_; }
   DeviceAddresses addresses() const { return addresses_; }
   void move_to(Ipv4 alternate, Ipv4 netmask) {
     addresses_.alternate = alternate;
@@ -157,8 +157,8 @@ class Device::Impl {
   bool locked_against(Ipv4 sender) const;
   Ipv4 holder() const;
   void connect(TimePoint now);
-  void notice_topside();
-  void check_topside(TimePoint now);
+  void notice_client();
+  void check_client(TimePoint now);
   void send_status(TimePoint now);
   Status make_status(TimePoint now) const;
 
@@ -195,12 +195,12 @@ class Device::Impl {
   void reply(Message message) {
     message.header.sonar_id = config_.sonar_id;
     actions_.send.push_back({Outgoing::To::peer,
-                             {0, {asker_.remote.address, config_.topside_port}, asker_.local},
+                             {0, {asker_.remote.address, config_.client_port}, asker_.local},
                              SharedBytes(encode(Report{message}))});
   }
-  void send_to_topside(SharedBytes bytes) {
+  void send_to_client(SharedBytes bytes) {
     actions_.send.push_back(
-        {Outgoing::To::peer, {0, {topside_, config_.topside_port}, reply_from_}, std::move(bytes)});
+        {Outgoing::To::peer, {0, {client_, config_.client_port}, reply_from_}, std::move(bytes)});
   }
   void reply_with_flash(std::uint32_t address) {
     FlashReadback readback;
@@ -216,11 +216,11 @@ class Device::Impl {
   DeviceAddresses addresses_;
   bool out_of_water_ = false;
 
-  Ipv4 topside_ = 0;
-  Ipv4 noticed_topside_ = 0;  ///< topside_ at the last notice
-  Ipv4 paused_for_ = 0;       ///< topside whose programme is paused, while Pinger::paused()
-  Ipv4 reply_from_ = 0;       ///< source address of pings
-  Peer asker_;                ///< sender of the command in progress
+  Ipv4 client_ = 0;
+  Ipv4 noticed_client_ = 0;  ///< client_ at the last notice
+  Ipv4 paused_for_ = 0;      ///< client whose programme is paused, while Pinger::paused()
+  Ipv4 reply_from_ = 0;      ///< source address of pings
+  Peer asker_;               ///< sender of the command in progress
   TimePoint last_command_{};
   std::uint16_t last_wrong_id_ = 0;  ///< of the newest command for another head
 
@@ -237,7 +237,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
   if (rebooting(now)) {
     return;
   }
-  check_topside(now);
+  check_client(now);
   const std::span<const std::uint8_t> bytes(datagram.bytes.data(), datagram.bytes.size());
   const auto header = decode_header(bytes);
   if (!header || datagram.from.remote.address == 0) {
@@ -258,7 +258,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& datagram) {
     return;
   }
   if (std::holds_alternative<Unknown>(*command)) {
-    ++counters_.unknown_type;  // dropped; it does not count as a sign of a topside either
+    ++counters_.unknown_type;  // dropped; it does not count as a sign of a client either
     return;
   }
   if (locked_against(datagram.from.remote.address)) {
@@ -286,26 +286,26 @@ void Device::Impl::take(TimePoint, const WaterChanged& water) {
 }
 
 bool Device::Impl::locked_against(Ipv4 sender) const {
-  return config_.lock_to_first && topside_ != 0 && topside_ != sender;
+  return config_.lock_to_first && client_ != 0 && client_ != sender;
 }
 
-/// The topside that receives pings, or whose programme is paused; 0: there is no such topside.
+/// The client that receives pings, or whose programme is paused; 0: there is no such client.
 Ipv4 Device::Impl::holder() const {
-  return topside_ == 0 && pinger_.paused() ? paused_for_ : topside_;
+  return client_ == 0 && pinger_.paused() ? paused_for_ : client_;
 }
 
 void Device::Impl::connect(TimePoint now) {
   const Ipv4 sender = asker_.remote.address;
-  if (topside_ != 0 && topside_ != sender) {
-    ++counters_.topside_changes;  // the newest wins and receives the rest of the ping on the wire
+  if (client_ != 0 && client_ != sender) {
+    ++counters_.client_changes;  // the newest wins and receives the rest of the ping on the wire
   }
-  topside_ = sender;
+  client_ = sender;
   reply_from_ = asker_.local;
   last_command_ = now;
   if (!pinger_.paused() || paused_for_ == sender) {
     pinger_.resume(now);
   }
-  notice_topside();
+  notice_client();
 }
 
 void Device::Impl::handle(TimePoint now, const StatusRequest&) {
@@ -316,13 +316,13 @@ void Device::Impl::handle(TimePoint now, const StatusRequest&) {
 }
 
 void Device::Impl::handle(TimePoint now, const PingConfig& command) {
-  pinger_.resume(now);  // this configuration replaces a paused programme of another topside
+  pinger_.resume(now);  // this configuration replaces a paused programme of another client
   pinger_.configure(now, command);
 }
 
-/// Only the topside may request repeats, because only it received the last ping.
+/// Only the client may request repeats, because only it received the last ping.
 void Device::Impl::handle(TimePoint now, const RetryRequest& command) {
-  if (asker_.remote.address == topside_) {
+  if (asker_.remote.address == client_) {
     pinger_.on_retry(now, command);
   } else {
     ++counters_.retries_received;
@@ -375,7 +375,7 @@ void Device::Impl::handle(TimePoint now, const Reboot& command) {
   ++counters_.reboots;
   boot_time_ = now + config_.reboot_time;
   next_status_ = boot_time_;
-  topside_ = 0;
+  client_ = 0;
   reply_from_ = 0;
   pinger_.reset(boot_time_);
   apply_programmed_addresses();
@@ -401,13 +401,13 @@ std::uint64_t Device::Impl::clock_us(TimePoint now) const {
   return now < boot_time_ ? 0 : static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
 }
 
-void Device::Impl::check_topside(TimePoint now) {
-  if (topside_ != 0 && now - last_command_ >= config_.topside_timeout) {
-    ++counters_.topside_timeouts;
+void Device::Impl::check_client(TimePoint now) {
+  if (client_ != 0 && now - last_command_ >= config_.client_timeout) {
+    ++counters_.client_timeouts;
     if (!pinger_.paused()) {
-      paused_for_ = topside_;
+      paused_for_ = client_;
     }
-    topside_ = 0;
+    client_ = 0;
     reply_from_ = 0;
     pinger_.suspend();
   }
@@ -429,7 +429,7 @@ Status Device::Impl::make_status(TimePoint now) const {
   status.fixed_ip = addresses_.fixed;
   status.alternate_ip = addresses_.alternate;
   status.subnet_mask = addresses_.netmask;
-  status.surface_ip = topside_;
+  status.surface_ip = client_;
   status.mac.octets = config_.mac;
   status.clock_us = clock_us(now);
   if (out_of_water_) {
@@ -445,43 +445,42 @@ void Device::Impl::advance(TimePoint now) {
   if (rebooting(now)) {
     return;
   }
-  check_topside(now);
+  check_client(now);
   send_status(now);
   ping_datagrams_.clear();
   pinger_.advance(now, ping_datagrams_);
   for (SharedBytes& bytes : ping_datagrams_) {
-    send_to_topside(std::move(bytes));
+    send_to_client(std::move(bytes));
   }
 }
 
 Actions Device::Impl::actions() {
-  notice_topside();
+  notice_client();
   Actions actions = std::exchange(actions_, {});
   actions.record = pinger_.take_record();
   actions.render = pinger_.take_job();
   actions.cancelled = pinger_.cancelled();
   actions.next_ping = pinger_.next_ping();
-  actions.nobody_there = topside_ == 0;
+  actions.nobody_there = client_ == 0;
   actions.wake_at = next_deadline();
   return actions;
 }
 
-void Device::Impl::notice_topside() {
-  if (noticed_topside_ == topside_) {
+void Device::Impl::notice_client() {
+  if (noticed_client_ == client_) {
     return;
   }
   actions_.notices.push_back(
-      {Notice::Level::info, topside_ != 0
-                                ? "topside " + address_text(topside_) + " connected"
-                                : "topside " + address_text(noticed_topside_) +
-                                      " lost: no command within the time-out, or a reboot command"});
-  noticed_topside_ = topside_;
+      {Notice::Level::info, client_ != 0 ? "client " + address_text(client_) + " connected"
+                                         : "client " + address_text(noticed_client_) +
+                                               " lost: no command within the time-out, or a reboot command"});
+  noticed_client_ = client_;
 }
 
 std::optional<TimePoint> Device::Impl::next_deadline() const {
   TimePoint next = next_status_;
-  if (topside_ != 0) {
-    next = std::min(next, last_command_ + config_.topside_timeout);
+  if (client_ != 0) {
+    next = std::min(next, last_command_ + config_.client_timeout);
   }
   return std::min(next, pinger_.next_deadline().value_or(next));
 }
@@ -525,17 +524,17 @@ std::vector<Counter> Device::counts() const {
           {"unsupported_data", count.unsupported_data, Shown::warns,
            "{} ping configurations requested unsupported data (I/Q, channels) or run mode 3"},
           {"locked_out", count.locked_out, Shown::warns,
-           "{} commands were dropped: another topside uses the head (lock_to_first)"},
-          {"topside_changes", count.topside_changes},
-          {"topside_timeouts", count.topside_timeouts},
+           "{} commands were dropped: another client uses the head (lock_to_first)"},
+          {"topside_changes", count.client_changes},
+          {"topside_timeouts", count.client_timeouts},
           {"reboots", count.reboots}};
 }
 
 const DeviceCounters& Device::counters() const {
   return impl_->counters();
 }
-Ipv4 Device::topside() const {
-  return impl_->topside();
+Ipv4 Device::client() const {
+  return impl_->client();
 }
 DeviceAddresses Device::addresses() const {
   return impl_->addresses();

@@ -38,8 +38,8 @@ class Device final : public sonard::Device {
   std::vector<Counter> counts() const override;
 
   const DeviceCounters& counters() const;
-  /// The connected topside; 0 if no topside is connected.
-  Ipv4 topside() const;
+  /// The connected client; 0 if no client is connected.
+  Ipv4 client() const;
   /// The addresses that the head answers on. They change when a reboot applies an address that a client has
   /// programmed (3.7, 3.9). The server then moves its sockets while the head is still silent.
   DeviceAddresses addresses() const;

@@ -19,8 +19,8 @@ struct DeviceConfig {
   Ipv4 alternate_address = 0;  ///< second reported address: non-zero, the client must reach it (1.2)
   Ipv4 netmask = 0xFFFFFF00;   ///< must be the real mask of the interface, or later clients stay silent
   std::array<std::uint8_t, 6> mac{0x00, 0x12, 0x34, 0x00, 0x02, 0x01};
-  bool accept_id_zero = false;         ///< also accept commands with header ID 0
-  std::uint16_t topside_port = 52900;  ///< every reply goes to this port of the topside (1.1)
+  bool accept_id_zero = false;        ///< also accept commands with header ID 0
+  std::uint16_t client_port = 52900;  ///< every reply goes to this port of the client (1.1)
 
   /// True speed of sound at the head, >= 0. 0: the speed of the ping configuration, so that the client's
   /// ranges are correct (6.7).
@@ -28,11 +28,11 @@ struct DeviceConfig {
   bool snap_sound_speed = false;  ///< report speeds on the device's grid: 3.2 m/s steps from 1400 m/s (5)
   GainLaw gain;
 
-  std::chrono::nanoseconds status_period{std::chrono::seconds{1}};    ///< > 0 (1.3)
-  std::chrono::nanoseconds min_ping_period{33'300'000};               ///< start to start, > 0 (8.4)
-  std::chrono::nanoseconds topside_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
-  std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};      ///< silence on reboot, >= 0 (3.9)
-  /// While a topside is connected, drop the commands of all other addresses (docs/security.md).
+  std::chrono::nanoseconds status_period{std::chrono::seconds{1}};   ///< > 0 (1.3)
+  std::chrono::nanoseconds min_ping_period{33'300'000};              ///< start to start, > 0 (8.4)
+  std::chrono::nanoseconds client_timeout{std::chrono::seconds{3}};  ///< > 0 (1.5)
+  std::chrono::nanoseconds reboot_time{std::chrono::seconds{5}};     ///< silence on reboot, >= 0 (3.9)
+  /// While a client is connected, drop the commands of all other addresses (docs/security.md).
   bool lock_to_first = false;
 
   std::chrono::nanoseconds line_period{27'000};     ///< minimum mean time between ping datagrams, > 0 (8.5)

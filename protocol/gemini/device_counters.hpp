@@ -8,20 +8,19 @@ namespace sonard::gemini {
 
 /// All counters only grow, also across reboots of the head.
 struct DeviceCounters {
-  std::uint64_t commands = 0;         ///< understood and for this head
-  std::uint64_t bad_datagrams = 0;    ///< too short, or with undecodable contents
-  std::uint64_t wrong_id = 0;         ///< for another head
-  std::uint64_t unknown_type = 0;     ///< for this head, of an unknown type
-  std::uint64_t locked_out = 0;       ///< not from the topside, with DeviceConfig::lock_to_first set
-  std::uint64_t topside_changes = 0;  ///< a command came from another address while one was connected
-  std::uint64_t topside_timeouts = 0;
+  std::uint64_t commands = 0;        ///< understood and for this head
+  std::uint64_t bad_datagrams = 0;   ///< too short, or with undecodable contents
+  std::uint64_t wrong_id = 0;        ///< for another head
+  std::uint64_t unknown_type = 0;    ///< for this head, of an unknown type
+  std::uint64_t locked_out = 0;      ///< not from the client, with DeviceConfig::lock_to_first set
+  std::uint64_t client_changes = 0;  ///< a command came from another address while one was connected
+  std::uint64_t client_timeouts = 0;
   std::uint64_t reboots = 0;
 
-  std::uint64_t pings_started = 0;  ///< given out for rendering
-  std::uint64_t pings_sent = 0;     ///< up to and including their original tail
-  std::uint64_t pings_failed = 0;   ///< could not be rendered, or the image had the wrong size
-  std::uint64_t pings_cancelled =
-      0;  ///< ended before their tail: topside gone, reboot, replaced by a command
+  std::uint64_t pings_started = 0;    ///< given out for rendering
+  std::uint64_t pings_sent = 0;       ///< up to and including their original tail
+  std::uint64_t pings_failed = 0;     ///< could not be rendered, or the image had the wrong size
+  std::uint64_t pings_cancelled = 0;  ///< ended before their tail: client gone, reboot, replaced by a command
   std::uint64_t pings_suppressed =
       0;  ///< not started: out of the water, or a trigger edge that came too early
   std::uint64_t configs_replaced = 0;  ///< requests of single pings that a newer configuration replaced

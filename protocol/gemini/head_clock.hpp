@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A topside's estimate of the clock of a head.
+// A client's estimate of the clock of a head.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace sonard::gemini {
 
 /// Computes the earliest time that the clock of the head can show, from the time stamps of datagrams. A stamp
-/// is never newer than its arrival. With this bound the topside recognises a ping that was transmitted before
+/// is never newer than its arrival. With this bound the client recognises a ping that was transmitted before
 /// the configuration was sent, however late the ping arrives.
 class HeadClock {
  public:
@@ -46,7 +46,7 @@ class HeadClock {
   /// 100 years, which still fits in nanoseconds.
   static constexpr std::uint64_t most_us = 3'153'600'000'000'000;
 
-  std::array<std::chrono::nanoseconds, 8> behind_{};  ///< topside time less head time, ring
+  std::array<std::chrono::nanoseconds, 8> behind_{};  ///< client time less head time, ring
   std::size_t next_ = 0;
   std::size_t count_ = 0;
 };

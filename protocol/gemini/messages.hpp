@@ -3,7 +3,8 @@
 // Source: docs/protocols/gemini.md, section numbers beside each struct. Members keep the device's own
 // integers and units, so that decode and encode lose nothing; member functions and helpers convert them.
 // Spare fields are written as zero and skipped on reading.
-// "Topside" is the computer of the vehicle; "head" is the sonar. Multi-byte integers are little-endian.
+// "Client" is the computer that commands the head; "head" is the sonar. Multi-byte integers are
+// little-endian.
 #pragma once
 
 #include <array>
@@ -17,9 +18,8 @@
 
 namespace sonard::gemini {
 
-inline constexpr std::uint16_t topside_port =
-    52900;                                         ///< everything from the head goes to this UDP port (1.1)
-inline constexpr std::uint16_t head_port = 52901;  ///< every command goes to this UDP port (1.1)
+inline constexpr std::uint16_t client_port = 52900;  ///< everything from the head goes to this UDP port (1.1)
+inline constexpr std::uint16_t head_port = 52901;    ///< every command goes to this UDP port (1.1)
 
 inline constexpr std::size_t header_size = 8;
 inline constexpr std::size_t max_datagram_size = 1472;  ///< no fragmentation at MTU 1500 (1.1)
@@ -95,7 +95,7 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// ---- Topside -> head
+// ---- Client -> head
 
 /// 0x20, 8 bytes: stay-alive. Answered by Acknowledge (3.2).
 struct StatusRequest {
@@ -377,7 +377,7 @@ struct DiagnosticRequest {
   bool operator==(const DiagnosticRequest&) const = default;
 };
 
-/// 0xC8, 10 bytes: the topside stops listening and the head must stop pinging (8.2). No answer.
+/// 0xC8, 10 bytes: the client stops listening and the head must stop pinging (8.2). No answer.
 struct GoingOffline {
   static constexpr MessageType type = MessageType::going_offline;
   Header header{};
@@ -385,7 +385,7 @@ struct GoingOffline {
   bool operator==(const GoingOffline&) const = default;
 };
 
-// ---- Head -> topside
+// ---- Head -> client
 
 /// Code of a board temperature in Status: bit 15 present, bits 9..0 two's complement in 0.25 degC (3.3).
 /// Clamps to -128 .. +127.75; rounds to the nearest step. The code of a missing sensor is 0.
@@ -420,7 +420,7 @@ struct Status {
   std::uint16_t sonar_id = 0;           ///< equals header.sonar_id
   std::uint32_t fixed_ip = 0x0A3D13C8;  ///< first octet most significant
   std::uint32_t alternate_ip = 0;       ///< must be non-zero and reachable, or later clients send nothing
-  std::uint32_t surface_ip = 0;         ///< address of the connected topside; 0: not connected
+  std::uint32_t surface_ip = 0;         ///< address of the connected client; 0: not connected
   std::uint16_t flags = 0;              ///< high byte: product code, 0 = 720i
   std::uint16_t vcc_int = 341;          ///< raw monitor code, 1.0 V
   std::uint16_t vcc_aux = 853;          ///< raw monitor code, 2.5 V
@@ -435,7 +435,7 @@ struct Status {
   std::uint16_t psu2_temperature = 0;
   std::uint64_t clock_us = 0;              ///< head clock, microseconds since boot
   std::uint16_t transducer = 1;            ///< 1 = 723 kHz, 0 = 868 kHz
-  std::uint32_t subnet_mask = 0xFFFFFF00;  ///< must equal the mask of the topside's interface
+  std::uint32_t subnet_mask = 0xFFFFFF00;  ///< must equal the mask of the client's interface
   std::uint16_t tx1_temperature = 0;
   std::uint16_t tx2_temperature = 0;
   std::uint16_t tx3_temperature = 0;
@@ -652,7 +652,7 @@ struct Diagnostic {
   bool operator==(const Diagnostic&) const = default;
 };
 
-/// All messages from a topside.
+/// All messages from a client.
 using Command = std::variant<StatusRequest, PingConfig, FlashWrite, FlashRead, InfoBlockWrite, InfoBlockRead,
                              SerialTransmit, Reboot, TestResultRequest, ProductionTest, PowerOnSelfTest,
                              AbortProductionTest, RetryRequest, NetworkConfig, MdioCommands, TxDriveTest,

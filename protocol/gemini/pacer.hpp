@@ -17,7 +17,7 @@ namespace sonard::gemini {
 /// wake_batch(). A longer delay delays the rest of the ping by as much, because the 100 Mbit/s link of a real
 /// head could not catch up either.
 ///
-/// The interPacketGap of the topside is a minimum time, not an average. If it exceeds 5 us, datagrams leave
+/// The interPacketGap of the client is a minimum time, not an average. If it exceeds 5 us, datagrams leave
 /// one by one.
 class Pacer {
  public:
@@ -25,7 +25,7 @@ class Pacer {
     set_gap({});
   }
 
-  /// Sets the minimum time between datagrams that the topside requests. A host needs a few microseconds per
+  /// Sets the minimum time between datagrams that the client requests. A host needs a few microseconds per
   /// datagram, so a burst observes shorter gaps anyway.
   void set_gap(std::chrono::nanoseconds gap) {
     period_ = std::max(configured_period_, gap);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assembles one ping at the topside. Head, lines and tail come in any order, may repeat or be lost.
+// Assembles one ping at the client. Head, lines and tail come in any order, may repeat or be lost.
 // Source: docs/protocols/gemini.md 6, 7.
 #pragma once
 
@@ -27,7 +27,7 @@ struct PingSamples {
   std::vector<std::uint16_t> u16;
 };
 
-/// True if a topside can make an image of the announced ping: beam magnitudes, at least one line, and sizes
+/// True if a client can make an image of the announced ping: beam magnitudes, at least one line, and sizes
 /// that fit the line numbers (15 bits) and datagrams of the protocol.
 bool is_receivable(const PingHead& head);
 

@@ -32,7 +32,7 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 /// layouts are undocumented.
 ///
 /// Clamps native lines to 32..20000 (8 bit) or 32..10000 (16 bit), the maxima of the client libraries. The
-/// ping head reports the clamped number, so that the topside expects the right number of lines. Clamps speeds
+/// ping head reports the clamped number, so that the client expects the right number of lines. Clamps speeds
 /// of sound to 1400..1588.8 m/s. Settings not named in PingPlan have no effect on a 720i or on this model.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transmission of one ping to the topside, in the order and at the times of a real head.
+// Transmission of one ping to the client, in the order and at the times of a real head.
 #pragma once
 
 #include <optional>

@@ -42,7 +42,7 @@ void Pinger::configure(TimePoint now, const PingConfig& config) {
   programme_.reset();
   pings_out_of_water_ = config.pings_out_of_water();
   if (acquisition_ && acquisition_->transmit_time > now) {
-    // This ping is being rendered ahead of its transmit time. The topside has not seen it, so replace it.
+    // This ping is being rendered ahead of its transmit time. The client has not seen it, so replace it.
     earliest_start_ = acquisition_->earliest_start_before;
     cancel_acquisition();
   }
@@ -266,8 +266,8 @@ void Pinger::cancel_acquisition() {
 // ---- On the wire
 // ------------------------------------------------------------------------------------------------
 
-// A new head waits while the topside still repairs the last ping (7.3): while requests are queued, and for
-// retry_hold after the last request. If the topside requested its next single ping after its last retry
+// A new head waits while the client still repairs the last ping (7.3): while requests are queued, and for
+// retry_hold after the last request. If the client requested its next single ping after its last retry
 // request, it has finished the old ping; then the head waits only for the queued requests.
 std::optional<TimePoint> Pinger::head_due() const {
   if (!acquisition_ || !acquisition_->encoded || sending()) {
@@ -289,7 +289,7 @@ std::optional<TimePoint> Pinger::head_due() const {
 }
 
 void Pinger::put_on_wire() {
-  // Requests have no ping ID. Serving one for the old ping now would make the topside request all of the new
+  // Requests have no ping ID. Serving one for the old ping now would make the client request all of the new
   // one.
   drop_retries(acquisition_->encoded->line_count());
   last_retry_arrival_.reset();
@@ -321,7 +321,7 @@ void Pinger::on_retry(TimePoint now, const RetryRequest& request) {
 }
 
 void Pinger::serve_retries(TimePoint now, std::vector<SharedBytes>& out) {
-  // A tail resent in the middle of a ping would make the topside request all remaining lines.
+  // A tail resent in the middle of a ping would make the client request all remaining lines.
   if (!transmission_ || sending()) {
     return;
   }

@@ -20,7 +20,7 @@
 
 namespace sonard::gemini {
 
-/// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the topside.
+/// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the client.
 ///
 /// A ping has three stages. *Wanted*: a configuration, the interval or a trigger edge requests it.
 /// *Acquired*: its transmit time is fixed, its job has been issued, its image is pending. *On the wire*: from
@@ -43,9 +43,9 @@ class Pinger {
   std::optional<NextPing> next_ping() const;
   void grant() { granted_ = true; }
 
-  /// Stops pinging because the topside goes offline. Finishes the ping on the wire.
+  /// Stops pinging because the client goes offline. Finishes the ping on the wire.
   void stop();
-  /// Stops sending because the topside is silent. A continuous or triggered programme waits for resume().
+  /// Stops sending because the client is silent. A continuous or triggered programme waits for resume().
   void suspend();
   void resume(TimePoint now);
   /// True if a programme waits for resume().

@@ -11,7 +11,7 @@
 namespace sonard::gemini {
 
 /// The record of an image that is sent with the complete `head`, without number, time and gain. Samples are
-/// as a topside has them after decoding: zero below the run-length threshold, and the high byte of 16 bits.
+/// as a client has them after decoding: zero below the run-length threshold, and the high byte of 16 bits.
 PingRecord record_of(const PingHead& head, const PingImage& image);
 
 /// The settings in a ping head, which does not contain the gain.

@@ -13,7 +13,7 @@
 
 namespace sonard::micron {
 
-/// Decodes a frame from a host, as returned by FrameBuffer. Ignores the lengths and counts in the frame and
+/// Decodes a frame from a client, as returned by FrameBuffer. Ignores the lengths and counts in the frame and
 /// bytes beyond the message. Fields at the end that a head does not need may be absent (layout.hpp). Returns
 /// Unknown for a type that a head does not serve. Returns an error if the frame is too short for its type or
 /// has an unknown form of head command.

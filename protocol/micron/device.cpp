@@ -24,7 +24,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   using std::chrono::nanoseconds;
   using std::chrono::seconds;
   constexpr nanoseconds zero{0};
-  require(config.node >= 1 && config.node < host_node, "node must be 1..254");
+  require(config.node >= 1 && config.node < client_node, "node must be 1..254");
   require(config.water_sound_speed_mps > 0.0, "water_sound_speed_mps must be positive");
   require(config.boot_time >= zero && config.boot_time < seconds{1}, "boot_time must be less than 1 s");
   require(config.least_centring_time >= zero && config.least_centring_time <= seconds{15},
@@ -225,7 +225,7 @@ bool Device::Impl::has_parameters() {
 }
 
 void Device::Impl::handle(TimePoint now, const SendData& command) {
-  if (config_.clock_follows_host && command.time_ms != 0) {
+  if (config_.clock_follows_client && command.time_ms != 0) {
     clock_zero_ = now - std::chrono::milliseconds{command.time_ms};
   }
   if (has_parameters()) {

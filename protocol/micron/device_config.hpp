@@ -15,7 +15,7 @@ namespace sonard::micron {
 /// Meaning of a sector with a left limit larger than the right limit (8.3).
 enum class LimitsOrder : std::uint8_t {
   clockwise,  ///< clockwise from left to right, through astern
-  swapped,    ///< the host has swapped the limits
+  swapped,    ///< the client has swapped the limits
 };
 
 /// Answer of a head to a request for its user blocks (6.4).
@@ -36,7 +36,7 @@ struct DeviceConfig {
 
   /// True speed of sound at the head, used to convert times to ranges. > 0 (4)
   double water_sound_speed_mps = 1500.0;
-  bool mounted_inverted = false;  ///< boot down; correct only if the host sets the invert bit (7.6)
+  bool mounted_inverted = false;  ///< boot down; correct only if the client sets the invert bit (7.6)
 
   std::chrono::nanoseconds boot_time{700'000'000};  ///< time without receiving or sending; >= 0, < 1 s (7.1)
   /// Minimum time of centring, even for a head at its centre; 0..15 s. The default is longer than
@@ -48,7 +48,7 @@ struct DeviceConfig {
   bool alive_while_scanning = true;                      ///< also send alives while lines are owed (8.5)
   bool alive_after_head_command = true;  ///< send an extra alive in answer to a HeadCommand (7.1)
   bool direction_bit_kept = false;       ///< alives report "off centre" after centring, too (6.2)
-  bool clock_follows_host = true;        ///< a SendData with a time sets the clock (7.5)
+  bool clock_follows_client = true;      ///< a SendData with a time sets the clock (7.5)
 
   NibbleOrder nibble_order = NibbleOrder::high_first;  ///< of 4-bit data (6.3)
   LimitsOrder limits_order = LimitsOrder::clockwise;   ///< (8.3)

@@ -100,12 +100,12 @@ FrameHeader frame_header(std::span<const std::uint8_t> frame) {
 
 std::vector<std::uint8_t> frame_to_head(std::uint8_t head_node, std::uint8_t type,
                                         std::span<const std::uint8_t> data) {
-  return make_frame({.tx_node = host_node, .rx_node = head_node, .type = type, .node = head_node}, data);
+  return make_frame({.tx_node = client_node, .rx_node = head_node, .type = type, .node = head_node}, data);
 }
 
 std::vector<std::uint8_t> frame_from_head(std::uint8_t head_node, std::uint8_t type,
                                           std::span<const std::uint8_t> data) {
-  return make_frame({.tx_node = head_node, .rx_node = host_node, .type = type, .node = head_node}, data);
+  return make_frame({.tx_node = head_node, .rx_node = client_node, .type = type, .node = head_node}, data);
 }
 
 std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_size) {

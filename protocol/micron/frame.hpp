@@ -14,7 +14,7 @@
 
 namespace sonard::micron {
 
-inline constexpr std::uint8_t host_node = 0xFF;
+inline constexpr std::uint8_t client_node = 0xFF;
 inline constexpr std::uint8_t broadcast_node = 0xFF;  ///< every head accepts frames to it (2.3)
 inline constexpr std::uint8_t default_head_node = 2;
 inline constexpr std::uint8_t frame_start = 0x40;  ///< '@'
@@ -23,7 +23,7 @@ inline constexpr std::size_t frame_header_size = 13;
 inline constexpr std::size_t min_frame_size = 14;
 inline constexpr std::size_t length_overhead = 6;            ///< frame bytes that the length does not count
 inline constexpr std::size_t max_command_frame_size = 1006;  ///< limit of a head: length 1000 (2.3)
-inline constexpr std::size_t max_report_frame_size = 4096;   ///< limit of a host (2.3)
+inline constexpr std::size_t max_report_frame_size = 4096;   ///< limit of a client (2.3)
 
 /// The header of a frame, without start and lengths (2.1). Receivers use only type and nodes, because public
 /// drivers send wrong counts.
@@ -41,7 +41,7 @@ struct FrameHeader {
 /// Reads the header of a frame of at least min_frame_size bytes.
 FrameHeader frame_header(std::span<const std::uint8_t> frame);
 
-/// Makes one frame with `data`, from a host to the head at `head_node` or from that head to a host.
+/// Makes one frame with `data`, from a client to the head at `head_node` or from that head to a client.
 std::vector<std::uint8_t> frame_to_head(std::uint8_t head_node, std::uint8_t type,
                                         std::span<const std::uint8_t> data);
 std::vector<std::uint8_t> frame_from_head(std::uint8_t head_node, std::uint8_t type,

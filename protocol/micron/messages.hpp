@@ -2,7 +2,7 @@
 // The messages of a Micron as values, both directions, one struct per message.
 // Source: docs/protocols/micron.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
-// and skipped on reading. "Host" is the computer of the vehicle; "head" is the sonar. Multi-byte integers
+// and skipped on reading. "Client" is the computer of the vehicle; "head" is the sonar. Multi-byte integers
 // are little-endian. Frame headers (frame.hpp) are not part of a message.
 #pragma once
 
@@ -45,7 +45,7 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// ---- Host -> head
+// ---- Client -> head
 
 /// Answered by VersionData (5.1).
 struct SendVersion {
@@ -169,7 +169,7 @@ struct ReverseCommand {
 using Command = std::variant<Unknown, SendVersion, SendBBUser, Reboot, StopAlives, SendFpgaVersion,
                              SendFpgaCalData, SendData, HeadCommand, GainCommand, ReverseCommand>;
 
-// ---- Head -> host
+// ---- Head -> client
 
 /// 25 bytes (6.1). The defaults are from a published example.
 struct VersionData {

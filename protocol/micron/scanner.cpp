@@ -163,7 +163,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   ++counters_.pings_started;
 }
 
-/// Makes a job at the bearing of the sweep with the parameters of the host.
+/// Makes a job at the bearing of the sweep with the parameters of the client.
 void Scanner::aim(TimePoint transmit_time) {
   job_ = make_line_job(*parameters_, config_, sweep_.bearing());
   job_->period = wanted_period();

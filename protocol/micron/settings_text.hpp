@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A host's settings as text for the log.
+// A client's settings as text for the log.
 #pragma once
 
 #include <string>

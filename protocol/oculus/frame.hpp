@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the messages of a host in a stream of bytes. Source: docs/protocols/oculus.md 3.1.
+// Finds the messages of a client in a stream of bytes. Source: docs/protocols/oculus.md 3.1.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace sonard::oculus {
 
-/// Maximum payload that a host may announce in a header; a larger value is not from a client of a head.
+/// Maximum payload that a client may announce in a header; a larger value is not from a client of a head.
 inline constexpr std::size_t most_command_payload = 4096;
 
 /// Reads the header of a message of at least header_size bytes.

@@ -33,11 +33,11 @@ enum class MessageId : std::uint16_t {
 /// The header of every message (1).
 struct Header {
   std::uint16_t magic = oculus_id;
-  std::uint16_t source = 0;  ///< ID of the head; 0 from a host
+  std::uint16_t source = 0;  ///< ID of the head; 0 from a client
   std::uint16_t destination = 0;
   MessageId id = MessageId::dummy;
   std::uint16_t version = 0;
-  std::uint32_t payload_size = 0;  ///< bytes after the header; 0 from some hosts (3.1)
+  std::uint32_t payload_size = 0;  ///< bytes after the header; 0 from some clients (3.1)
   std::uint16_t part_number = 0;
 
   bool operator==(const Header&) const = default;
@@ -89,14 +89,14 @@ struct SimpleFire {
 
 /// Address and mask are in the order of the message, first octet first (5).
 struct UserConfig {
-  std::array<std::uint8_t, 4> address{};  ///< all zero from a host: requests the current values
+  std::array<std::uint8_t, 4> address{};  ///< all zero from a client: requests the current values
   std::array<std::uint8_t, 4> netmask{};
   std::uint32_t dhcp = 0;
 
   bool operator==(const UserConfig&) const = default;
 };
 
-/// A message to which no known host needs an answer.
+/// A message to which no known client needs an answer.
 struct Unknown {
   MessageId id = MessageId::dummy;
 

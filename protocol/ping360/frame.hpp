@@ -20,7 +20,7 @@ inline constexpr std::size_t checksum_size = 2;
 inline constexpr std::size_t frame_overhead = frame_header_size + checksum_size;
 inline constexpr std::size_t max_payload_size = 4096;  ///< a longer one is not a frame (1.1)
 inline constexpr std::uint8_t default_device_id = 2;   ///< of the head
-inline constexpr std::uint8_t host_id = 0;             ///< of every known client
+inline constexpr std::uint8_t client_id = 0;           ///< of every known client
 inline constexpr std::uint8_t broadcast_id = 255;
 inline constexpr std::uint8_t baud_byte = 0x55;  ///< 'U', with which a serial head detects the baud rate
 

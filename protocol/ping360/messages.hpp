@@ -2,7 +2,7 @@
 // The messages of a Ping360 as values, both directions, one struct per message.
 // Source: docs/protocols/ping360.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
-// and skipped on reading. "Host" is the client's computer; "head" is the sonar. Multi-byte integers are
+// and skipped on reading. "Client" is the other end; "head" is the sonar. Multi-byte integers are
 // little-endian. Frame headers (frame.hpp) are not part of a message.
 #pragma once
 
@@ -37,7 +37,7 @@ struct Unknown {
   bool operator==(const Unknown&) const = default;
 };
 
-// ---- Host -> head
+// ---- Client -> head
 
 /// Requests the message `requested_id` (2.1, 3.1). An empty message with the id 4, 5 or 2300 is an older form
 /// of this request and decodes to it.
@@ -75,7 +75,7 @@ struct Reset {
 /// Moves the head and pings there once (3.2). Defaults: the settings of a head at boot (2.3).
 struct Transducer {
   static constexpr MessageId id = MessageId::transducer;
-  std::uint8_t mode = 1;  ///< hosts also send 0
+  std::uint8_t mode = 1;  ///< clients also send 0
   std::uint8_t gain_setting = 0;
   std::uint16_t angle = 0;  ///< gradians
   std::uint16_t transmit_duration_us = 32;
@@ -113,7 +113,7 @@ struct MotorOff {
 using Command = std::variant<Unknown, GeneralRequest, SetCommonDeviceId, SetDeviceId, Reset, Transducer,
                              AutoTransmit, MotorOff>;
 
-// ---- Head -> host
+// ---- Head -> client
 
 struct Ack {
   static constexpr MessageId id = MessageId::ack;

@@ -32,9 +32,9 @@ using sonard::fuzz::Script;
 
 constexpr std::uint16_t sonar_id = 601;
 constexpr Ipv4 alternate_address = 0xC0A802C9;
-constexpr Ipv4 topsides[] = {0xC0A80205, 0xC0A80206};
+constexpr Ipv4 clients[] = {0xC0A80205, 0xC0A80206};
 
-/// Kinds of events. The first three carry bytes: a datagram for each topside, and a recorded ping.
+/// Kinds of events. The first three carry bytes: a datagram for each client, and a recorded ping.
 enum Kind { byte_kinds = 3, feed = 2, trigger = 3, toggle_water = 4, image = 5, image_failed = 6, grant = 7 };
 
 /// The configuration that the first byte of an input selects.
@@ -105,7 +105,7 @@ class Bench {
         answer_job(false);
         break;
       default:
-        step(sonard::BytesReceived{{0, {topsides[event.kind], 52900}, alternate_address},
+        step(sonard::BytesReceived{{0, {clients[event.kind], 52900}, alternate_address},
                                    SharedBytes(event.datagram)});
     }
   }

@@ -34,7 +34,7 @@ using sonard::fuzz::Script;
 enum Kind {
   byte_kinds = 2,
   feed = 1,
-  host_gone = 2,
+  client_gone = 2,
   power_cycle = 3,
   lose_step = 4,
   line = 5,
@@ -67,7 +67,7 @@ class Bench {
           step(sonard::PingGranted{});
         }
         break;
-      case host_gone:
+      case client_gone:
         step(sonard::ClientGone{});
         break;
       case power_cycle:
@@ -134,7 +134,8 @@ class Bench {
       require(next_frame(frame, max_report_frame_size) == static_cast<std::ptrdiff_t>(frame.size()),
               "one whole frame at a time");
       const FrameHeader header = frame_header(frame);
-      require(header.tx_node == default_head_node && header.rx_node == host_node, "a head signs its frames");
+      require(header.tx_node == default_head_node && header.rx_node == client_node,
+              "a head signs its frames");
       const auto report = decode_report(frame);
       require(report.has_value() && !std::holds_alternative<Unknown>(*report),
               "a head speaks its own protocol");

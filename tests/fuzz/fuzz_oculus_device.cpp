@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
-#include "protocol/oculus/host.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
@@ -121,7 +121,7 @@ class Bench {
   void takes_place(const Peer& client) {
     client_ = client;
     came_ = now_;
-    host_.connected();
+    client_.connected();
   }
 
   void receive(const Event& event) {
@@ -150,9 +150,9 @@ class Bench {
       return;
     }
     require(client_ == outgoing.peer, "messages are for the client");
-    const HostStatistics before = host_.statistics();
-    host_.receive(now_, outgoing.bytes);
-    const HostStatistics& after = host_.statistics();
+    const ClientStatistics before = client_.statistics();
+    client_.receive(now_, outgoing.bytes);
+    const ClientStatistics& after = client_.statistics();
     require(after.messages == before.messages + 1, "one whole message at a time");
     require(after.bad_messages == 0 && after.dropped_bytes == 0, "a head speaks its own protocol");
     require(after.pings_missed == 0, "numbers of pings count up");
@@ -217,7 +217,7 @@ class Bench {
   TimePoint now_{};
   DeviceConfig config_;
   Device device_{config_, now_};
-  Host host_;
+  Client client_;
   std::optional<Peer> client_;
   TimePoint came_{};  ///< time at which the client came
   Actions last_;

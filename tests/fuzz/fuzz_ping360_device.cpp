@@ -99,7 +99,7 @@ class Bench {
     step(sonard::BytesReceived{
         peer_of(event.kind),
         SharedBytes(as_is ? event.datagram
-                          : make_frame(static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8), host_id, 0,
+                          : make_frame(static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8), client_id, 0,
                                        bytes.subspan(2)))});
   }
 

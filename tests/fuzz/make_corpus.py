@@ -3,13 +3,13 @@
 """Writes the fuzzing seeds in corpus/ from the byte examples in tests/data, and logs made here.
 
 gemini/datagrams/  one example each, as it is
-gemini/device/     scripts for fuzz_gemini_device: what a topside sends to a head, with time between
-gemini/topside/    scripts for fuzz_gemini_topside: what a head sends to a topside
+gemini/device/     scripts for fuzz_gemini_device: what a client sends to a head, with time between
+gemini/client/    scripts for fuzz_gemini_client: what a head sends to a client
 micron/frames/     one example each, and streams of some
-micron/device/     scripts for fuzz_micron_device: what a host sends to a head
-micron/host/       scripts for fuzz_micron_host: what a head sends to a host
+micron/device/     scripts for fuzz_micron_device: what a client sends to a head
+micron/client/       scripts for fuzz_micron_client: what a head sends to a client
 oculus/device/     scripts for fuzz_oculus_device: what clients send to a head
-oculus/host/       streams of a head
+oculus/client/       streams of a head
 ping360/           the same three for the Ping360
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
@@ -88,7 +88,7 @@ def device_scripts():
             PAUSE, delay=40)
 
     yield "played", bytes([PLAYS_BACK]) + start + fed() + fed(flags=2) + fed(lines=300, step_m=0.1, gain_percent=-1.0)
-    yield "played_two_topsides", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, continuous) + fed()
+    yield "played_two_clients", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, continuous) + fed()
     yield "not_played", bytes([PLAYS_BACK]) + start + fed(lines=0) + fed(flags=1) + fed(lines=65535) + fed(step_m=1e-300)
     yield "granted", bytes([WAITS]) + start + 3 * (event(GRANT, delay=40) + event(IMAGE))
 
@@ -108,7 +108,7 @@ def rendering_device_scripts():
     yield "trigger", event(FROM_A, single[:16] + b"\x02\x00" + single[18:]) + event(TRIGGER) + event(IMAGE)
     yield "out_of_water", event(WATER) + event(FROM_A, single[:18] + b"\x04\x00" + single[20:]) + event(WATER) + ping
     yield "failed_image", event(FROM_A, single) + event(IMAGE_FAILED) + ping
-    yield "two_topsides", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, example("status_request"))
+    yield "two_clients", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, example("status_request"))
     yield "reboot", event(FROM_A, example("observed_info_block_write")) + event(FROM_A, example("observed_reboot")) + event(
         PAUSE, delay=250) + ping
     yield "session", b"".join(
@@ -141,7 +141,7 @@ def ping_datagrams(lines, resent=()):
         yield example("ping_tail_resent")
 
 
-def topside_scripts():
+def client_scripts():
     meet = event(FROM_HEAD, example("status")) + event(FROM_HEAD, example("status"))
 
     def ping(*args, **kwargs):
@@ -199,7 +199,7 @@ def rendering_micron_device_scripts():
     yield "split", up + event(AS_IS | BYTES, whole[:20]) + event(AS_IS | BYTES, whole[20:]) + micron_frame("send_data")
 
 
-def micron_host_scripts():
+def micron_client_scripts():
     def meet(start):
         return micron_frame("alive_5d", as_is=True) + micron_frame("version_data") + micron_frame(
             "bb_user_data") + event(start) + micron_frame("alive_ca")
@@ -283,7 +283,7 @@ def ping360_device_scripts():
                          event(P360_GRANT, delay=255), event(P360_GRANT, delay=255))
 
 
-def ping360_host_scripts():
+def ping360_client_scripts():
     def meet(start):
         return (ping360_message("protocol_version", as_is=True) + ping360_message("device_information") +
                 ping360_message("device_data_at_boot") + event(start))
@@ -555,11 +555,11 @@ def main():
     write("micron/frames", "stream", b"@\n@0008".join(
         example(path.stem, "micron") for path in sorted((EXAMPLES / "micron").glob("*.hex"))
         if path.stat().st_size < 100))
-    for folder, scripts in (("gemini/device", device_scripts()), ("gemini/topside", topside_scripts()),
-                            ("micron/device", micron_device_scripts()), ("micron/host", micron_host_scripts()),
-                            ("oculus/device", oculus_device_scripts()), ("oculus/host", oculus_streams()),
+    for folder, scripts in (("gemini/device", device_scripts()), ("gemini/client", client_scripts()),
+                            ("micron/device", micron_device_scripts()), ("micron/client", micron_client_scripts()),
+                            ("oculus/device", oculus_device_scripts()), ("oculus/client", oculus_streams()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
-                            ("ping360/host", ping360_host_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
+                            ("ping360/client", ping360_client_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
                             ("configuration", configurations()), ("sdf", sdf_worlds()), ("ply", ply_files()),

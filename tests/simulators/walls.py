@@ -51,14 +51,14 @@ class WallTest(link_test.LinkTest):
             file.write(DAEMON.format(world=WORLD, poses=poses.strip("\n"), head=self.head_config(noisy=False)))
         self.daemon = self.lab.start(self.lab.head, os.path.join(link_test.PROGRAMS, "sonard"), "run", path)
         self.daemon.wait_for_line(r"sonard ready heads=1 ", link_test.START_S)
-        self.topside = link_test.RawTopside(self.lab)
-        self.addCleanup(self.topside.close)
+        self.client = link_test.RawClient(self.lab)
+        self.addCleanup(self.client.close)
 
     def ranges(self, beams):
         """Range of the first echo in each beam, metres; 0 without an echo. None without a ping, as there is no pose yet."""
-        self.topside.send(wire.ping_config(513, lines=1200, spreading=293))  # 10 m
+        self.client.send(wire.ping_config(513, lines=1200, spreading=293))  # 10 m
         try:
-            ping = self.topside.next_ping(seconds=2)
+            ping = self.client.next_ping(seconds=2)
         except AssertionError:
             return None
         step_m = wire.line_step_m(1500.0)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Gemini 720i and its topsides. Ping IDs wrap at 256; stamps are 64-bit microseconds.
+// A Gemini 720i and its clients. Ping IDs wrap at 256; stamps are 64-bit microseconds.
 #include <utility>
 #include <variant>
 
+#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/device.hpp"
-#include "protocol/gemini/topside.hpp"
 #include "tests/soak/visitor.hpp"
 
 namespace sonard::soak {
@@ -14,41 +14,41 @@ namespace {
 using namespace gemini;
 using namespace std::chrono_literals;
 
-constexpr Ipv4 head_address = 0xC0A802C9;   // 192.168.2.201
-constexpr Ipv4 first_topside = 0xC0A80205;  // 192.168.2.5
-constexpr std::uint64_t topsides = 100;
+constexpr Ipv4 head_address = 0xC0A802C9;  // 192.168.2.201
+constexpr Ipv4 first_client = 0xC0A80205;  // 192.168.2.5
+constexpr std::uint64_t clients = 100;
 constexpr std::chrono::milliseconds period_of_pings = 100ms;
 
 class GeminiVisitor final : public Visitor {
  public:
   GeminiVisitor(std::uint64_t visit, TimePoint now)
-      : peer_{0, {static_cast<Ipv4>(first_topside + visit % topsides), topside_port}, head_address},
-        topside_(TopsideConfig{}) {
+      : peer_{0, {static_cast<Ipv4>(first_client + visit % clients), client_port}, head_address},
+        client_(ClientConfig{}) {
     PingConfig config;
     config.run_mode = static_cast<std::uint16_t>(RunMode::continuous);
     config.ext_mode = ext_bits::eight_bit | ext_bits::ping_out_of_water;
     config.end_range = static_cast<std::uint16_t>(4 + visit % 3 * 6);
     config.interping_us = static_cast<std::uint32_t>(period_of_pings / 1us);
-    topside_.start(now, config, 0);
+    client_.start(now, config, 0);
   }
 
   void hear(TimePoint now, const Outgoing& message) override {
     if (message.to == Outgoing::To::everybody || message.peer.remote.address == peer_.remote.address) {
-      topside_.on_datagram(now, message.bytes);
+      client_.on_datagram(now, message.bytes);
     }
   }
   std::vector<Event> advance(TimePoint now) override {
-    topside_.advance(now);
+    client_.advance(now);
     std::vector<Event> said;
-    for (TopsideDatagram& datagram : topside_.take_outgoing()) {
+    for (ClientDatagram& datagram : client_.take_outgoing()) {
       said.emplace_back(BytesReceived{peer_, SharedBytes(std::move(datagram.bytes))});
     }
     return said;
   }
-  std::optional<TimePoint> next_deadline() const override { return topside_.next_deadline(); }
+  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
   std::vector<SeenPing> take_pings() override {
     std::vector<SeenPing> seen;
-    for (ReceivedPing& ping : topside_.take_pings()) {
+    for (ReceivedPing& ping : client_.take_pings()) {
       require(ping.complete(), "a ping has all its lines");
       const auto stamp_ns = static_cast<std::int64_t>(ping.head.transmit_time_us) * 1000;
       seen.push_back({ping.head.ping_id, std::move(ping.samples.u8), SeenPing::Stamp{stamp_ns, 1000}});
@@ -63,7 +63,7 @@ class GeminiVisitor final : public Visitor {
 
  private:
   Peer peer_;
-  Topside topside_;
+  Client client_;
 };
 
 class GeminiUnderSoak final : public HeadUnderSoak {

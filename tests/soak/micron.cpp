@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Micron and its hosts, on one line. Bearings wrap at 6400. The head's clock counts 32-bit milliseconds;
+// A Micron and its clients, on one line. Bearings wrap at 6400. The head's clock counts 32-bit milliseconds;
 // here it wraps an hour after the start.
 #include <utility>
 #include <variant>
 
+#include "protocol/micron/client.hpp"
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
-#include "protocol/micron/host.hpp"
 #include "tests/soak/visitor.hpp"
 
 namespace sonard::soak {
@@ -16,33 +16,33 @@ using namespace micron;
 using namespace std::chrono_literals;
 
 constexpr std::uint8_t step = 32;
-/// The host's clock at its first request of a line.
+/// The client's clock at its first request of a line.
 constexpr std::uint32_t an_hour_before_it_wraps_ms = UINT32_MAX - 3'600'000 + 1;
 
 class MicronVisitor final : public Visitor {
  public:
-  MicronVisitor(std::uint64_t visit, TimePoint now) : host_(HostConfig{}, now) {
+  MicronVisitor(std::uint64_t visit, TimePoint now) : client_(ClientConfig{}, now) {
     HeadCommand parameters;
     parameters.control = 0x2307;  // full turns, clockwise, 8 bits
     parameters.step = step;
     parameters.bins = static_cast<std::uint16_t>(20 + visit % 3 * 40);
-    host_.start(now, parameters, 0);
+    client_.start(now, parameters, 0);
   }
 
-  void hear(TimePoint now, const Outgoing& message) override { host_.on_bytes(now, message.bytes); }
+  void hear(TimePoint now, const Outgoing& message) override { client_.on_bytes(now, message.bytes); }
   std::vector<Event> advance(TimePoint now) override {
-    host_.advance(now);
+    client_.advance(now);
     std::vector<Event> said;
-    for (std::vector<std::uint8_t>& frame : host_.take_outgoing()) {
+    for (std::vector<std::uint8_t>& frame : client_.take_outgoing()) {
       said.emplace_back(BytesReceived{{}, SharedBytes(std::move(frame))});
     }
     return said;
   }
-  std::optional<TimePoint> next_deadline() const override { return host_.next_deadline(); }
+  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
   std::vector<SeenPing> take_pings() override {
-    require(host_.statistics().bad_frames == 0, "a host can read every frame");
+    require(client_.statistics().bad_frames == 0, "a client can read every frame");
     std::vector<SeenPing> seen;
-    for (ReceivedLine& line : host_.take_lines()) {
+    for (ReceivedLine& line : client_.take_lines()) {
       seen.push_back({line.head.bearing, std::move(line.bins), std::nullopt});
     }
     return seen;
@@ -54,7 +54,7 @@ class MicronVisitor final : public Visitor {
   }
 
  private:
-  Host host_;
+  Client client_;
 };
 
 class MicronUnderSoak final : public HeadUnderSoak {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
-#include "protocol/oculus/host.hpp"
 #include "tests/soak/visitor.hpp"
 
 namespace sonard::soak {
@@ -36,13 +36,13 @@ class OculusVisitor final : public Visitor {
       fire_.version = 2;
       fire_.extension.emplace();
     }
-    host_.connected();
+    client_.connected();
   }
 
   std::vector<Event> come() override { return {ClientCame{peer_}}; }
   void hear(TimePoint now, const Outgoing& message) override {
     if (message.to == Outgoing::To::peer && message.peer == peer_) {
-      host_.receive(now, message.bytes);
+      client_.receive(now, message.bytes);
     }
   }
   std::vector<Event> advance(TimePoint) override {
@@ -53,11 +53,11 @@ class OculusVisitor final : public Visitor {
   }
   std::optional<TimePoint> next_deadline() const override { return std::nullopt; }
   std::vector<SeenPing> take_pings() override {
-    const HostStatistics& statistics = host_.statistics();
+    const ClientStatistics& statistics = client_.statistics();
     require(statistics.bad_messages == 0 && statistics.dropped_bytes == 0, "a client can read every message");
-    host_.take_logs();
+    client_.take_logs();
     std::vector<SeenPing> seen;
-    for (const ReceivedPing& ping : host_.take_pings()) {
+    for (const ReceivedPing& ping : client_.take_pings()) {
       const auto image = ping.result.image;
       seen.push_back({ping.result.ping_id, {image.begin(), image.end()}, stamp_of(ping.result)});
     }
@@ -73,7 +73,7 @@ class OculusVisitor final : public Visitor {
   Peer peer_;
   SimpleFire fire_;
   bool fired_ = false;
-  Host host_;
+  Client client_;
 };
 
 class OculusUnderSoak final : public HeadUnderSoak {

@@ -3,9 +3,9 @@
 // 400.
 #include <utility>
 
+#include "protocol/ping360/client.hpp"
 #include "protocol/ping360/codec.hpp"
 #include "protocol/ping360/device.hpp"
-#include "protocol/ping360/host.hpp"
 #include "tests/soak/visitor.hpp"
 
 namespace sonard::soak {
@@ -17,38 +17,38 @@ using namespace std::chrono_literals;
 class Ping360Visitor final : public Visitor {
  public:
   Ping360Visitor(std::uint64_t visit, TimePoint now)
-      : peer_{0, {0x7F000001, static_cast<std::uint16_t>(1024 + visit % 60'000)}, 0}, host_(now) {
+      : peer_{0, {0x7F000001, static_cast<std::uint16_t>(1024 + visit % 60'000)}, 0}, client_(now) {
     const auto samples = static_cast<std::uint16_t>(100 + visit % 3 * 100);
     if (visit % 2 == 0) {
       AutoTransmit scan;
       scan.number_of_samples = samples;
-      host_.start(now, scan, 0);
+      client_.start(now, scan, 0);
     } else {
       Transducer ping;
       ping.angle = static_cast<std::uint16_t>(visit % 400);
       ping.number_of_samples = samples;
-      host_.start(now, ping, 1, 0);
+      client_.start(now, ping, 1, 0);
     }
   }
 
   void hear(TimePoint now, const Outgoing& message) override {
     if (message.peer == peer_) {
-      host_.on_bytes(now, message.bytes);
+      client_.on_bytes(now, message.bytes);
     }
   }
   std::vector<Event> advance(TimePoint now) override {
-    host_.advance(now);
+    client_.advance(now);
     std::vector<Event> said;
-    for (std::vector<std::uint8_t>& frame : host_.take_outgoing()) {
+    for (std::vector<std::uint8_t>& frame : client_.take_outgoing()) {
       said.emplace_back(BytesReceived{peer_, SharedBytes(std::move(frame))});
     }
     return said;
   }
-  std::optional<TimePoint> next_deadline() const override { return host_.next_deadline(); }
+  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
   std::vector<SeenPing> take_pings() override {
-    require(host_.statistics().bad_frames == 0, "a client can read every frame");
+    require(client_.statistics().bad_frames == 0, "a client can read every frame");
     std::vector<SeenPing> seen;
-    for (ReceivedPing& ping : host_.take_pings()) {
+    for (ReceivedPing& ping : client_.take_pings()) {
       seen.push_back({ping.form.settings.angle, std::move(ping.samples), std::nullopt});
     }
     return seen;
@@ -61,7 +61,7 @@ class Ping360Visitor final : public Visitor {
 
  private:
   Peer peer_;
-  Host host_;
+  Client client_;
 };
 
 class Ping360UnderSoak final : public HeadUnderSoak {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images of a Gemini as a client receives them: the head's job gives the settings, the head sends the
-// samples, and a topside assembles the image. There are no sockets, so nothing is lost.
+// samples, and a client assembles the image. There are no sockets, so nothing is lost.
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "protocol/gemini/bearings.hpp"
+#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/device.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/topside.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/ping.hpp"
 #include "server/config/config.hpp"
@@ -42,7 +42,7 @@ class GeminiClient {
   GeminiClient(server::HeadConfig head, const gemini::PingConfig& config, Render render)
       : head_(std::move(head)),
         device_(device_config(), now_),
-        topside_(gemini::TopsideConfig{}),
+        client_(gemini::ClientConfig{}),
         config_(config),
         render_(std::move(render)) {}
 
@@ -52,11 +52,11 @@ class GeminiClient {
   std::vector<GeminiImage> images(int pings) {
     using namespace std::chrono_literals;
     std::vector<GeminiImage> images;
-    topside_.start(now_, config_, static_cast<std::uint64_t>(pings));
+    client_.start(now_, config_, static_cast<std::uint64_t>(pings));
     const TimePoint begin = now_;
-    while (!topside_.finished() && now_ < begin + 1000s) {
+    while (!client_.finished() && now_ < begin + 1000s) {
       step();
-      for (const gemini::ReceivedPing& ping : topside_.take_pings()) {
+      for (const gemini::ReceivedPing& ping : client_.take_pings()) {
         EXPECT_TRUE(ping.complete());
         images.push_back({ping.lines, line_m_, {}});
         std::vector<double>& codes = images.back().codes;
@@ -78,9 +78,9 @@ class GeminiClient {
 
   void step() {
     happen(TimePassed{});
-    topside_.advance(now_);
-    for (const auto& datagram : topside_.take_outgoing()) {
-      happen(BytesReceived{{0, {topside_address, 52900}, head_address}, SharedBytes(datagram.bytes)});
+    client_.advance(now_);
+    for (const auto& datagram : client_.take_outgoing()) {
+      happen(BytesReceived{{0, {client_address, 52900}, head_address}, SharedBytes(datagram.bytes)});
     }
     now_ += std::chrono::microseconds(200);
   }
@@ -88,7 +88,7 @@ class GeminiClient {
   void happen(const Event& event) {
     const Actions actions = device_.step(now_, event);
     for (const Outgoing& datagram : actions.send) {
-      topside_.on_datagram(now_, datagram.bytes);
+      client_.on_datagram(now_, datagram.bytes);
     }
     if (actions.render) {
       happen(PingRendered{image_of(*actions.render)});
@@ -107,12 +107,12 @@ class GeminiClient {
   }
 
   static constexpr Ipv4 head_address = 0x7F000002;
-  static constexpr Ipv4 topside_address = 0x7F000001;
+  static constexpr Ipv4 client_address = 0x7F000001;
 
   server::HeadConfig head_;
   TimePoint now_{};
   gemini::Device device_;
-  gemini::Topside topside_;
+  gemini::Client client_;
   gemini::PingConfig config_;
   Render render_;
   double line_m_ = 0;

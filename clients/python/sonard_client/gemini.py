@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A topside for a Tritech Gemini 720i. Section numbers in comments refer to docs/protocols/gemini.md."""
+"""A client for a Tritech Gemini 720i. Section numbers in comments refer to docs/protocols/gemini.md."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REPORT_PORT, COMMAND_PORT = 52900, 52901  # 1.1
 LINE_RATE_HZ = 90422.0  # 6.7
 STATUS, PING_HEAD, PING_LINE, PING_TAIL = 0x40, 0x41, 0x42, 0x43
 _BUFFER_BYTES = 16 << 20  # several pings; the kernel may give less
-_KEEP_ALIVE_S = 1.0  # the head forgets a topside after 3 s (1.5)
+_KEEP_ALIVE_S = 1.0  # the head forgets a client after 3 s (1.5)
 _RETRIES = 6
 
 

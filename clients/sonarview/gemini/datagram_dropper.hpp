@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drops datagrams on purpose, to test head and topside on a lossy link.
+// Drops datagrams on purpose, to test head and client on a lossy link.
 #pragma once
 
 #include <cstdint>

@@ -25,10 +25,10 @@ Ipv4 address_of(const std::string& option, const std::string& text) {
 
 void GeminiArguments::declare_link(CLI::App& app) {
   app.add_option(
-         "--client-address", topside_address_,
+         "--client-address", client_address_,
          "Local address that sends commands, port 52901; default: the address that routes to the head")
       ->group("Link");
-  app.add_option("--surface-address", topside_address_)->group("");  // former name, not in --help
+  app.add_option("--surface-address", client_address_)->group("");  // former name, not in --help
   app.add_option("--bind", bind_address_,
                  "Local address that receives replies and status packets, port 52900")
       ->capture_default_str()
@@ -101,14 +101,14 @@ GeminiArguments::GeminiArguments(CLI::App& app) {
 GeminiOptions GeminiArguments::options() const {
   GeminiOptions options = options_;
   options.bind_address = address_of("--bind", bind_address_);
-  if (!topside_address_.empty()) {
-    options.topside_address = address_of("--client-address", topside_address_);
-    if (options.topside_address == 0) {
+  if (!client_address_.empty()) {
+    options.client_address = address_of("--client-address", client_address_);
+    if (options.client_address == 0) {
       throw CLI::ValidationError("--client-address", "must name one address of this machine");
     }
   }
   if (!head_address_.empty()) {
-    options.topside.head_address = address_of("--head", head_address_);
+    options.client.head_address = address_of("--head", head_address_);
   }
   std::set<std::uint16_t> ids;
   for (const std::uint16_t id : options.sonar_ids) {

@@ -8,8 +8,8 @@
 
 #include "clients/sonarview/common/run_options.hpp"
 #include "protocol/common/endpoint.hpp"
+#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/topside.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -18,9 +18,9 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 topside_address = 0;       ///< source address of commands; 0: the address that routes to the head
-  Ipv4 bind_address = 0;          ///< reports arrive here; 0: all addresses
-  gemini::TopsideConfig topside;  ///< template: each head gets its own sonar_id
+  Ipv4 client_address = 0;      ///< source address of commands; 0: the address that routes to the head
+  Ipv4 bind_address = 0;        ///< reports arrive here; 0: all addresses
+  gemini::ClientConfig client;  ///< template: each head gets its own sonar_id
   std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to view; 0: the first whose status arrives
   gemini::PingSettings settings;
 
@@ -49,7 +49,7 @@ class GeminiArguments {
   GeminiOptions options_;
   // As typed, before the conversion of units.
   RunArguments run_{900, 5.0};
-  std::string topside_address_;
+  std::string client_address_;
   std::string bind_address_ = "0.0.0.0";
   std::string head_address_;
   int bits_ = 8;

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "protocol/common/ping_job.hpp"
-#include "protocol/gemini/topside.hpp"
+#include "protocol/gemini/client.hpp"
 
 namespace sonard::client {
 
@@ -32,7 +32,7 @@ class PingRate {
   TimePoint last_{};
 };
 
-/// Counters of a head in the summary, beside the counters of its topside.
+/// Counters of a head in the summary, beside the counters of its client.
 struct ProgramCounters {
   std::uint16_t sonar_id = 0;
   double rate_hz = 0.0;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/sonarview/common/image_writer.hpp"
-#include "protocol/gemini/topside.hpp"
+#include "protocol/gemini/client.hpp"
 #include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {

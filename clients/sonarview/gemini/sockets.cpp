@@ -31,7 +31,7 @@ void enlarge_receive_buffer(udp::socket& socket) {
 
 const char* advice(const boost::system::error_code& error, std::uint16_t port) {
   if (error == boost::asio::error::address_in_use) {
-    return port == gemini::topside_port
+    return port == gemini::client_port
                ? "; another client of a sonar is running on this machine (ss -ulpn 'sport = :52900' shows it)"
                : "; another client, or a head that serves all addresses, runs on this machine (ss -ulpn "
                  "'sport = "
@@ -64,7 +64,7 @@ udp::socket open(boost::asio::io_context& io, std::uint32_t address, std::uint16
 }  // namespace
 
 udp::socket open_report_socket(boost::asio::io_context& io, std::uint32_t address) {
-  udp::socket socket = open(io, address, gemini::topside_port, "receive on");
+  udp::socket socket = open(io, address, gemini::client_port, "receive on");
   enlarge_receive_buffer(socket);
   const int on = 1;
   setsockopt(socket.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &on,

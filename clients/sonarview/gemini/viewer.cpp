@@ -51,8 +51,8 @@ class Viewer {
 
 Viewer::Viewer(const GeminiOptions& options)
     : options_(options), reports_(open_report_socket(io_, options.bind_address)), commands_(io_) {
-  if (options_.topside_address != 0) {
-    commands_ = open_command_socket(io_, options_.topside_address);
+  if (options_.client_address != 0) {
+    commands_ = open_command_socket(io_, options_.client_address);
   }
   for (std::size_t number = 0; number < options_.sonar_ids.size(); ++number) {
     heads_.emplace_back(options_, number, commands_);
@@ -109,8 +109,8 @@ void Viewer::advance() {
   const TimePoint at = now();
   for (WatchedHead& head : heads_) {
     if (const auto address = head.address(); address && !commands_.is_open()) {
-      options_.topside_address = address_towards(*address);
-      commands_ = open_command_socket(io_, options_.topside_address);
+      options_.client_address = address_towards(*address);
+      commands_ = open_command_socket(io_, options_.client_address);
     }
     head.advance(at);
   }

@@ -25,8 +25,8 @@ using boost::system::error_code;
 
 constexpr std::chrono::nanoseconds progress_period = std::chrono::seconds{1};
 
-gemini::TopsideConfig topside_of(const GeminiOptions& options, std::uint16_t sonar_id) {
-  gemini::TopsideConfig config = options.topside;
+gemini::ClientConfig client_of(const GeminiOptions& options, std::uint16_t sonar_id) {
+  gemini::ClientConfig config = options.client;
   config.sonar_id = sonar_id;
   return config;
 }
@@ -39,7 +39,7 @@ WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
       sonar_id_(options.sonar_ids[number]),
       says_(options.sonar_ids.size() > 1 ? fmt::format("sonarview: {}: ", sonar_id_) : "sonarview: "),
       commands_(commands),
-      topside_(topside_of(options, sonar_id_)),
+      client_(client_of(options, sonar_id_)),
       drop_rx_(options.drop_rx, options.seed, 2 * number),
       drop_tx_(options.drop_tx, options.seed, 2 * number + 1),
       pictures_({.radius_px = options.run.radius_px}, options.settings.sound_speed_mps) {
@@ -51,19 +51,19 @@ WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
 
 void WatchedHead::start(TimePoint at) {
   started_ = at;
-  topside_.start(at, make_ping_config(options_.settings), options_.run.pings);
+  client_.start(at, make_ping_config(options_.settings), options_.run.pings);
 }
 
 void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagram) {
   if (!ended_ && !drop_rx_.drop()) {
-    topside_.on_datagram(at, datagram);
+    client_.on_datagram(at, datagram);
     note_other_head(datagram);
   }
 }
 
 /// Records statuses of other heads until the wanted head is found.
 void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
-  if (head_met_ || topside_.head()) {
+  if (head_met_ || client_.head()) {
     return;
   }
   const auto report = gemini::decode_report(datagram);
@@ -90,12 +90,12 @@ void WatchedHead::advance(TimePoint at) {
   if (ended_) {
     return;
   }
-  topside_.advance(at);
+  client_.advance(at);
   send_commands();
-  for (auto& ping : topside_.take_pings()) {
+  for (auto& ping : client_.take_pings()) {
     take_ping(std::move(ping));
   }
-  if (topside_.head() && !head_met_) {
+  if (client_.head() && !head_met_) {
     head_met_ = last_ping_at_ = at;
     progress_due_ = at + progress_period;
     greet_head();
@@ -108,7 +108,7 @@ void WatchedHead::advance(TimePoint at) {
 }
 
 void WatchedHead::send_commands() {
-  for (const auto& datagram : topside_.take_outgoing()) {
+  for (const auto& datagram : client_.take_outgoing()) {
     if (drop_tx_.drop()) {
       continue;
     }
@@ -126,7 +126,7 @@ void WatchedHead::take_ping(gemini::ReceivedPing ping) {
   last_ping_at_ = ping.finished;
   rate_.add(ping.finished);
   if (options_.run.log_pings) {
-    fmt::print("{}\n", ping_line(ping, topside_.head()->status.sonar_id));
+    fmt::print("{}\n", ping_line(ping, client_.head()->status.sonar_id));
     std::fflush(stdout);
   }
   if (!writer_) {
@@ -147,27 +147,27 @@ void WatchedHead::refresh_picture() {
 }
 
 void WatchedHead::greet_head() {
-  const auto& head = *topside_.head();
+  const auto& head = *client_.head();
   const gemini::Status& status = head.status;
   if (!options_.run.quiet) {
     fmt::print(stderr, "{}head {} at {}, netmask {}, firmware {:#06x}\n", says_, status.sonar_id,
                address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
   }
-  const auto own_mask = interface_netmask(options_.topside_address);
-  const bool same_network = ((head.address ^ options_.topside_address) & status.subnet_mask) == 0;
+  const auto own_mask = interface_netmask(options_.client_address);
+  const bool same_network = ((head.address ^ options_.client_address) & status.subnet_mask) == 0;
   if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
     fmt::print(
         stderr,
         "{}warning: {} with netmask {} and {} with netmask {} are not on one network; later libraries of "
         "the vendor would send nothing\n",
         says_, address_text(head.address), address_text(status.subnet_mask),
-        address_text(options_.topside_address), own_mask ? address_text(*own_mask) : "unknown");
+        address_text(options_.client_address), own_mask ? address_text(*own_mask) : "unknown");
   }
 }
 
 void WatchedHead::show_progress(TimePoint at) {
   progress_due_ = at + progress_period;
-  const auto& statistics = topside_.statistics();
+  const auto& statistics = client_.statistics();
   const std::uint64_t pings = statistics.pings_complete + statistics.pings_incomplete;
   if (!options_.run.quiet) {
     fmt::print(stderr, "{}{} pings, {} in the last second; {} lines repaired, {} missing\n", says_, pings,
@@ -179,12 +179,12 @@ void WatchedHead::show_progress(TimePoint at) {
 void WatchedHead::check_limits(TimePoint at) {
   const bool out_of_time =
       head_met_ && options_.run.duration.count() > 0 && at - *head_met_ >= options_.run.duration;
-  if (topside_.finished() || out_of_time) {
+  if (client_.finished() || out_of_time) {
     end();
   } else if (!head_met_ && at - started_ >= options_.run.wait) {
     fail(ExitStatus::no_head,
          fmt::format("no status{} on port {} within {:.1f} s: {}",
-                     sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::topside_port,
+                     sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::client_port,
                      std::chrono::duration<double>(options_.run.wait).count(), advice()));
   } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
              at - last_ping_at_ >= options_.run.ping_wait) {
@@ -193,13 +193,13 @@ void WatchedHead::check_limits(TimePoint at) {
 }
 
 std::string WatchedHead::no_ping_text() const {
-  const gemini::HeadInfo& head = *topside_.head();
+  const gemini::HeadInfo& head = *client_.head();
   const std::string own = address_text(head.status.alternate_ip);
   return fmt::format(
       "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from {}, "
       "and that it has a pose{}",
       std::chrono::duration<double>(options_.run.ping_wait).count(), address_text(head.address),
-      gemini::head_port, address_text(options_.topside_address),
+      gemini::head_port, address_text(options_.client_address),
       head.address == head.status.alternate_ip
           ? ""
           : fmt::format(". Its status gives the address {} (to use it, omit --head)", own));
@@ -213,17 +213,17 @@ void WatchedHead::fail(ExitStatus status, const std::string& why) {
 
 void WatchedHead::end() {
   if (!std::exchange(ended_, true)) {
-    topside_.stop();
+    client_.stop();
     send_commands();
   }
 }
 
 std::optional<Ipv4> WatchedHead::address() const {
-  return topside_.head() ? std::optional(topside_.head()->address) : std::nullopt;
+  return client_.head() ? std::optional(client_.head()->address) : std::nullopt;
 }
 
 TimePoint WatchedHead::next_wake(TimePoint at) const {
-  TimePoint wake = topside_.next_deadline().value_or(TimePoint::max());
+  TimePoint wake = client_.next_deadline().value_or(TimePoint::max());
   if (!head_met_) {
     return std::min(wake, started_ + options_.run.wait);
   }
@@ -251,12 +251,12 @@ ExitStatus WatchedHead::sum_up(std::uint64_t kernel_drops) {
       failure_ = failure_.value_or(ExitStatus::system);
     }
   }
-  counters.sonar_id = topside_.head() ? topside_.head()->status.sonar_id : sonar_id_;
+  counters.sonar_id = client_.head() ? client_.head()->status.sonar_id : sonar_id_;
   counters.rate_hz = rate_.hz();
   counters.dropped_rx = drop_rx_.dropped();
   counters.dropped_tx = drop_tx_.dropped();
   counters.kernel_drops = kernel_drops;
-  const auto& statistics = topside_.statistics();
+  const auto& statistics = client_.statistics();
   fmt::print("{}\n", summary_line(statistics, counters));
   std::fflush(stdout);
   const bool all_complete = statistics.pings_complete > 0 && statistics.pings_incomplete == 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One of the heads that sonarview views: its topside, its pictures and its messages.
+// One of the heads that sonarview views: its client, its pictures and its messages.
 #pragma once
 
 #include <boost/asio/ip/udp.hpp>
@@ -16,7 +16,7 @@
 #include "clients/sonarview/gemini/options.hpp"
 #include "clients/sonarview/gemini/ping_log.hpp"
 #include "clients/sonarview/gemini/ping_pictures.hpp"
-#include "protocol/gemini/topside.hpp"
+#include "protocol/gemini/client.hpp"
 
 namespace sonard::client {
 
@@ -59,7 +59,7 @@ class WatchedHead {
   const std::uint16_t sonar_id_;
   const std::string says_;  ///< prefix of messages: "sonarview: ", with the head's ID if there are several
   boost::asio::ip::udp::socket& commands_;
-  gemini::Topside topside_;
+  gemini::Client client_;
   DatagramDropper drop_rx_, drop_tx_;
   bool send_failed_ = false;
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 
 namespace sonard::client {
 

@@ -49,7 +49,8 @@ void MicronArguments::declare_link(CLI::App& app) {
       ->check(CLI::Range(1, 254))
       ->capture_default_str()
       ->group(group);
-  app.add_flag("--reboot", options_.host.reboot_first, "Reboot the head first, which resets all its settings")
+  app.add_flag("--reboot", options_.client.reboot_first,
+               "Reboot the head first, which resets all its settings")
       ->group(group);
 }
 
@@ -114,7 +115,7 @@ micron::ScanSettings MicronArguments::scan() const {
 MicronOptions MicronArguments::options() const {
   MicronOptions options = options_;
   options.line = link_.address();
-  options.host.node = static_cast<std::uint8_t>(node_);
+  options.client.node = static_cast<std::uint8_t>(node_);
   options.scan = scan();
   options.run = run_.options();
   return options;

@@ -9,7 +9,7 @@
 
 #include "clients/sonarview/common/link_arguments.hpp"
 #include "clients/sonarview/common/run_options.hpp"
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 #include "protocol/micron/scan_settings.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
@@ -20,7 +20,7 @@ namespace sonard::client {
 
 struct MicronOptions {
   LineAddress line;
-  micron::HostConfig host;
+  micron::ClientConfig client;
   micron::ScanSettings scan;
 
   RunOptions run;             ///< a ping is a line

@@ -37,7 +37,7 @@ std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, dou
       (static_cast<double>(strongest - line.bins.begin()) + 0.5) * bin_m, crc.checksum());
 }
 
-std::string summary_text(const micron::HostStatistics& statistics, std::uint64_t sweeps,
+std::string summary_text(const micron::ClientStatistics& statistics, std::uint64_t sweeps,
                          std::uint64_t lines_missed, const RunCounters& counters) {
   return fmt::format(
       "summary turns={} lines={} lines_missed={} rate_hz={:.2f} requests={} timeouts={} head_commands={} "

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "clients/sonarview/common/line_viewer.hpp"
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 #include "protocol/micron/scan_settings.hpp"
 
 namespace sonard::client {
@@ -18,7 +18,7 @@ std::string scan_text(const micron::ScanSettings& settings);
 std::string line_text(const micron::ReceivedLine& line, std::uint64_t sweep, double bin_m);
 
 /// The last line of the program: "summary turns=... ".
-std::string summary_text(const micron::HostStatistics& statistics, std::uint64_t sweeps,
+std::string summary_text(const micron::ClientStatistics& statistics, std::uint64_t sweeps,
                          std::uint64_t lines_missed, const RunCounters& counters);
 
 }  // namespace sonard::client

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "clients/sonarview/common/sweep_pictures.hpp"
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 
 namespace sonard::client {
 

@@ -43,12 +43,12 @@ class Viewer final : public LineViewer {
 
  private:
   void begin(TimePoint at) override;
-  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { host_.on_bytes(at, bytes); }
+  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { client_.on_bytes(at, bytes); }
   void talk(TimePoint at) override;
-  std::optional<TimePoint> next_deadline() const override { return host_.next_deadline(); }
-  bool head_met() const override { return host_.statistics().frames > 0; }
+  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
+  bool head_met() const override { return client_.statistics().frames > 0; }
   void take_received() override;
-  bool finished() const override { return host_.finished(); }
+  bool finished() const override { return client_.finished(); }
   std::chrono::nanoseconds say_goodbye(TimePoint at) override;
   void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to, sweeps_.current()); }
   void finish_pictures(ImageWriter& to) override { pictures_.finish(to, sweeps_.current()); }
@@ -62,7 +62,7 @@ class Viewer final : public LineViewer {
   std::string head_text() const;
 
   const MicronOptions options_;
-  micron::Host host_;
+  micron::Client client_;
   ScanSweeps sweeps_;
   SweepPictures pictures_;
   std::uint64_t sweeps_done_ = 0;
@@ -74,7 +74,7 @@ class Viewer final : public LineViewer {
 Viewer::Viewer(const MicronOptions& options)
     : LineViewer(options.run),
       options_(options),
-      host_(options.host, started()),
+      client_(options.client, started()),
       sweeps_(micron::make_head_command(options.scan)),
       pictures_(form_of(options), options.run.every) {
   if (!options_.raw.empty()) {
@@ -85,24 +85,24 @@ Viewer::Viewer(const MicronOptions& options)
 void Viewer::begin(TimePoint at) {
   fmt::print("{}\n", scan_text(options_.scan));
   std::fflush(stdout);
-  host_.start(at, micron::make_head_command(options_.scan), options_.run.pings);
+  client_.start(at, micron::make_head_command(options_.scan), options_.run.pings);
   open_line(options_.line);
 }
 
 void Viewer::talk(TimePoint at) {
-  host_.advance(at);
-  for (const auto& frame : host_.take_outgoing()) {
+  client_.advance(at);
+  for (const auto& frame : client_.take_outgoing()) {
     send(frame);
   }
 }
 
 void Viewer::take_received() {
-  for (const micron::ReceivedLine& line : host_.take_lines()) {
+  for (const micron::ReceivedLine& line : client_.take_lines()) {
     if (!stopping()) {
       take_line(line);
     }
   }
-  if (std::exchange(parameters_sent_, host_.statistics().head_commands) != parameters_sent_) {
+  if (std::exchange(parameters_sent_, client_.statistics().head_commands) != parameters_sent_) {
     sweeps_.restart();
     greet_head();
   }
@@ -133,18 +133,18 @@ void Viewer::take_line(const micron::ReceivedLine& line) {
 }
 
 std::chrono::nanoseconds Viewer::say_goodbye(TimePoint) {
-  host_.stop();
+  client_.stop();
   return {};
 }
 
 // ---- Messages
 
 void Viewer::greet_head() {
-  const auto& head = host_.head();
-  if (options_.run.quiet || host_.statistics().head_commands != 1) {
+  const auto& head = client_.head();
+  if (options_.run.quiet || client_.statistics().head_commands != 1) {
     return;
   }
-  fmt::print(stderr, "sonarview: head {} at {}", options_.host.node, printable(options_.line.text()));
+  fmt::print(stderr, "sonarview: head {} at {}", options_.client.node, printable(options_.line.text()));
   if (head.version) {
     fmt::print(stderr, ", serial number {}, software {:#04x}", head.version->serial_number,
                head.version->software_version);
@@ -158,7 +158,7 @@ void Viewer::greet_head() {
 }
 
 std::string Viewer::head_text() const {
-  const auto& alive = host_.head().alive;
+  const auto& alive = client_.head().alive;
   if (!line_is_open()) {
     return "the line is lost";
   }
@@ -174,7 +174,7 @@ std::string Viewer::head_text() const {
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
-  const std::uint64_t lines = host_.statistics().lines;
+  const std::uint64_t lines = client_.statistics().lines;
   if (fresh == 0) {
     return fmt::format("{} lines, 0 in the last second; {}", lines, head_text());
   }
@@ -186,15 +186,15 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
-  const auto& others = host_.other_heads();
-  const std::uint64_t foreign = host_.statistics().dropped_bytes;
+  const auto& others = client_.other_heads();
+  const std::uint64_t foreign = client_.statistics().dropped_bytes;
   const std::string advice = others.empty() && foreign > 0 ? foreign_bytes_text(foreign, "a Micron")
                              : others.empty()
                                  ? "check its power, line, baud rate and node"
                                  : fmt::format("only node {} sent frames (to view one, use --node {})",
                                                fmt::join(others, ", node "), *others.begin());
   return fmt::format("{} is open, but head {} sent nothing within {:.1f} s: {}", options_.line.text(),
-                     options_.host.node, wait_s, advice);
+                     options_.client.node, wait_s, advice);
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {
@@ -205,7 +205,7 @@ bool Viewer::sum_up(const RunCounters& counters) {
   if (file_ && file_->failed()) {
     fail(ExitStatus::system, "cannot write " + file_->path().string());
   }
-  const micron::HostStatistics& statistics = host_.statistics();
+  const micron::ClientStatistics& statistics = client_.statistics();
   fmt::print("{}\n", summary_text(statistics, sweeps_done_, sweeps_.lines_missed(), counters));
   return statistics.lines > 0 && sweeps_.lines_missed() == 0;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clients/sonarview/common/image_writer.hpp"
-#include "protocol/oculus/host.hpp"
+#include "protocol/oculus/client.hpp"
 #include "renderer/picture/fan_image.hpp"
 
 namespace sonard::client {

@@ -17,8 +17,8 @@
 #include "clients/sonarview/oculus/ping_pictures.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
 #include "common/text/printable.hpp"
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
-#include "protocol/oculus/host.hpp"
 
 namespace sonard::client {
 namespace {
@@ -44,7 +44,7 @@ class Viewer final : public LineViewer {
  private:
   void begin(TimePoint at) override;
   void on_opened() override;
-  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { host_.receive(at, bytes); }
+  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { client_.receive(at, bytes); }
   bool head_met() const override { return connected_; }
   void take_received() override;
   bool finished() const override { return options_.run.pings > 0 && pings() >= options_.run.pings; }
@@ -64,7 +64,7 @@ class Viewer final : public LineViewer {
   std::optional<StatusListener> statuses_;  ///< until the connection is open
   std::set<std::string> addresses_;         ///< of the heads that sent a status
   bool connected_ = false;                  ///< whether the connection was ever open
-  oculus::Host host_;
+  oculus::Client client_;
   OculusPictures pictures_;
   std::optional<oculus::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
 };
@@ -103,17 +103,17 @@ void Viewer::on_opened() {
   if (statuses_) {
     statuses_->close();
   }
-  host_.connected();
+  client_.connected();
   send(oculus::encode(options_.fire));
 }
 
 void Viewer::take_received() {
-  for (const std::string& text : host_.take_logs()) {
+  for (const std::string& text : client_.take_logs()) {
     if (!options_.run.quiet) {
       fmt::print(stderr, "sonarview: log of the head: {}\n", one_line(text));
     }
   }
-  for (oculus::ReceivedPing& ping : host_.take_pings()) {
+  for (oculus::ReceivedPing& ping : client_.take_pings()) {
     if (!finished()) {
       take_ping(std::move(ping));
     }
@@ -161,7 +161,7 @@ void Viewer::finish_pictures(ImageWriter& to) {
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; {} missed", pings(), fresh,
-                     host_.statistics().pings_missed);
+                     client_.statistics().pings_missed);
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
@@ -178,21 +178,21 @@ std::string Viewer::not_open_advice() const {
 }
 
 std::string Viewer::no_ping_text(double wait_s) const {
-  const oculus::HostStatistics& host = host_.statistics();
+  const oculus::ClientStatistics& client = client_.statistics();
   return fmt::format("no ping for {:.1f} s: {}", wait_s,
-                     host.messages == 0 && host.dropped_bytes > 0
-                         ? foreign_bytes_text(host.dropped_bytes, "an Oculus")
+                     client.messages == 0 && client.dropped_bytes > 0
+                         ? foreign_bytes_text(client.dropped_bytes, "an Oculus")
                          : "check that the head has a pose");
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {
-  const oculus::HostStatistics& host = host_.statistics();
+  const oculus::ClientStatistics& client = client_.statistics();
   fmt::print(
       "summary pings={} rate_hz={:.2f} pings_missed={} reconnects={} messages={} messages_bad={} "
       "bytes_dropped={} images_written={} images_skipped={}\n",
-      counters.pings, counters.rate_hz, host.pings_missed, counters.reconnects, host.messages,
-      host.bad_messages, host.dropped_bytes, counters.images_written, counters.images_skipped);
-  return counters.pings > 0 && host.pings_missed == 0 && host.bad_messages == 0;
+      counters.pings, counters.rate_hz, client.pings_missed, counters.reconnects, client.messages,
+      client.bad_messages, client.dropped_bytes, counters.images_written, counters.images_skipped);
+  return counters.pings > 0 && client.pings_missed == 0 && client.bad_messages == 0;
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "clients/sonarview/common/sweep_pictures.hpp"
-#include "protocol/ping360/host.hpp"
+#include "protocol/ping360/client.hpp"
 
 namespace sonard::client {
 

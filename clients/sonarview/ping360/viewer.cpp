@@ -14,7 +14,7 @@
 #include "clients/sonarview/common/line_viewer.hpp"
 #include "clients/sonarview/ping360/sweeps.hpp"
 #include "common/text/printable.hpp"
-#include "protocol/ping360/host.hpp"
+#include "protocol/ping360/client.hpp"
 #include "protocol/ping360/units.hpp"
 
 namespace sonard::client {
@@ -54,18 +54,18 @@ class Viewer final : public LineViewer {
   explicit Viewer(const Ping360Options& options)
       : LineViewer(options.run),
         options_(options),
-        host_(started()),
+        client_(started()),
         sweeps_(options.all_round, options.ahead),
         pictures_(form_of(options), options.run.every) {}
 
  private:
   void begin(TimePoint at) override;
-  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { host_.on_bytes(at, bytes); }
+  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { client_.on_bytes(at, bytes); }
   void talk(TimePoint at) override;
-  std::optional<TimePoint> next_deadline() const override { return host_.next_deadline(); }
-  bool head_met() const override { return host_.statistics().frames > 0; }
+  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
+  bool head_met() const override { return client_.statistics().frames > 0; }
   void take_received() override;
-  bool finished() const override { return host_.finished(); }
+  bool finished() const override { return client_.finished(); }
   std::chrono::nanoseconds say_goodbye(TimePoint at) override;
   void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to, sweeps_.current()); }
   void finish_pictures(ImageWriter& to) override { pictures_.finish(to, sweeps_.current()); }
@@ -79,7 +79,7 @@ class Viewer final : public LineViewer {
   void greet_head();
 
   const Ping360Options options_;
-  ping360::Host host_;
+  ping360::Client client_;
   SweepCollector sweeps_;
   SweepPictures pictures_;
   std::uint64_t sweeps_done_ = 0;
@@ -94,28 +94,28 @@ void Viewer::begin(TimePoint at) {
       scan.num_steps, scan.start_angle, scan.stop_angle, options_.automatic ? 1 : 0);
   std::fflush(stdout);
   if (options_.automatic) {
-    host_.start(at, scan, options_.run.pings);
+    client_.start(at, scan, options_.run.pings);
   } else {
-    host_.start(at, first_order(scan), scan.num_steps, options_.run.pings);
+    client_.start(at, first_order(scan), scan.num_steps, options_.run.pings);
   }
   open_line(options_.line);
 }
 
 void Viewer::talk(TimePoint at) {
-  host_.advance(at);
-  for (const std::vector<std::uint8_t>& frame : host_.take_outgoing()) {
+  client_.advance(at);
+  for (const std::vector<std::uint8_t>& frame : client_.take_outgoing()) {
     send(frame);
   }
 }
 
 void Viewer::take_received() {
   greet_head();
-  for (const ping360::ReceivedPing& ping : host_.take_pings()) {
+  for (const ping360::ReceivedPing& ping : client_.take_pings()) {
     if (!stopping()) {
       take_ping(ping);
     }
   }
-  if (const auto& refusal = host_.refusal(); refusal && !stopping()) {
+  if (const auto& refusal = client_.refusal(); refusal && !stopping()) {
     give_up(ExitStatus::incomplete, "the head refused a command: " + refusal->text);
   }
 }
@@ -154,14 +154,14 @@ void Viewer::log_ping(const ping360::ReceivedPing& ping) const {
 
 /// Stops the scan, because a head continues without its client.
 std::chrono::nanoseconds Viewer::say_goodbye(TimePoint at) {
-  host_.stop(at);
+  client_.stop(at);
   return head_met() ? stop_patience : std::chrono::milliseconds{};
 }
 
 // ---- Messages
 
 void Viewer::greet_head() {
-  const auto& information = host_.head().information;
+  const auto& information = client_.head().information;
   if (greeted_ || options_.run.quiet || !information) {
     return;
   }
@@ -177,7 +177,7 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
-  const std::uint64_t foreign = host_.statistics().dropped_bytes;
+  const std::uint64_t foreign = client_.statistics().dropped_bytes;
   return fmt::format("{} is open, but no head answered within {:.1f} s{}", options_.line.text(), wait_s,
                      foreign > 0 ? ": " + foreign_bytes_text(foreign, "a Ping360") : "");
 }
@@ -187,12 +187,12 @@ std::string Viewer::no_ping_text(double wait_s) const {
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {
-  const ping360::HostStatistics& host = host_.statistics();
+  const ping360::ClientStatistics& client = client_.statistics();
   fmt::print(
       "summary turns={} pings={} rate_hz={:.2f} commands={} timeouts={} pings_unwanted={} reconnects={} "
       "frames={} frames_bad={} bytes_dropped={} images_written={} images_skipped={}\n",
-      sweeps_done_, counters.pings, counters.rate_hz, host.commands, host.timeouts, host.pings_unwanted,
-      counters.reconnects, host.frames, host.bad_frames, host.dropped_bytes, counters.images_written,
+      sweeps_done_, counters.pings, counters.rate_hz, client.commands, client.timeouts, client.pings_unwanted,
+      counters.reconnects, client.frames, client.bad_frames, client.dropped_bytes, counters.images_written,
       counters.images_skipped);
   return counters.pings > 0;
 }

@@ -107,7 +107,7 @@ class ConnectedGemini final : public ConnectedDevice {
     const auto owner = owner_of(addresses_.alternate, interface_addresses());
     std::vector<Endpoint> hosts;
     for (const Ipv4 host : status_hosts(config_.status, addresses_.alternate, addresses_.netmask)) {
-      hosts.push_back({host, config_.device.topside_port});
+      hosts.push_back({host, config_.device.client_port});
     }
     // Sets the source address of status packets. The kernel sets it on a socket bound to one address. On a
     // socket bound to all addresses, a limited broadcast would else leave by the interface of the default

@@ -24,7 +24,7 @@
 namespace sonard::server {
 namespace {
 
-constexpr Ipv4 loopback_topside = 0x7F000001;
+constexpr Ipv4 loopback_client = 0x7F000001;
 constexpr double bearing_tolerance_rad = 1e-3;
 
 double worst_bearing_error_rad(const LoggedHead& head) {
@@ -186,7 +186,7 @@ class GeminiKind final : public DeviceKind {
     config->device.alternate_address = address;
     config->device.netmask = 0xFF000000;
     config->bind_address = address;
-    config->status = {StatusDestination::Mode::unicast, {loopback_topside}};
+    config->status = {StatusDestination::Mode::unicast, {loopback_client}};
     config->allow = {{0x7F000000, 8}};
     head.device = std::move(config);
     head.name = logged.name.empty() ? fmt::format("gemini-{}", logged.device_id) : logged.name;

@@ -63,7 +63,7 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   section.integer("command_port", config.command_port, 1, 65535,
                   "port that receives commands and sends replies");
   section.renamed("surface_port", "client_port");
-  section.integer("client_port", device.topside_port, 1, 65535,
+  section.integer("client_port", device.client_port, 1, 65535,
                   "destination port of all replies and status packets");
 
   const std::uint16_t id = device.sonar_id;
@@ -86,8 +86,8 @@ void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
   section.duration("min_ping_period_ms", device.min_ping_period, Range::from(1.0, minute_ms),
                    "shortest time from ping to ping, whatever the client requests");
   section.renamed("surface_timeout_ms", "client_timeout_ms");
-  section.duration("client_timeout_ms", device.topside_timeout, Range::from(10.0, 3600.0 * 1000.0),
-                   "time without a command after which the head drops its topside and suspends pinging");
+  section.duration("client_timeout_ms", device.client_timeout, Range::from(10.0, 3600.0 * 1000.0),
+                   "time without a command after which the head drops its client and suspends pinging");
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms),
                    "silence after a reboot command");
   section.duration(

@@ -110,7 +110,7 @@ class MicronKind final : public DeviceKind {
   HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const override {
     HeadConfig head = make_default();
     auto config = std::make_shared<MicronConfig>();
-    if (logged.device_id >= 1 && logged.device_id < micron::host_node) {
+    if (logged.device_id >= 1 && logged.device_id < micron::client_node) {
       config->device.node = static_cast<std::uint8_t>(logged.device_id);
     }
     config->serial.tcp.push_back({{address, loopback_port}, {{0x7F000000, 8}}});

@@ -43,7 +43,8 @@ void read_device(YamlSection& section, micron::DeviceConfig& device) {
       "true: the head answers a head command at once with an alive, in addition to the regular ones");
   section.boolean("direction_bit_kept", device.direction_bit_kept,
                   "true: alives report \"off centre\" after centring too");
-  section.boolean("clock_follows_host", device.clock_follows_host,
+  section.renamed("clock_follows_host", "clock_follows_client");
+  section.boolean("clock_follows_client", device.clock_follows_client,
                   "true: a request with a time of day sets the clock of the head");
   section.integer("request_cap", device.request_cap, 1, 100,
                   "maximum number of stored requests; many clients request more lines than they wait for");
@@ -112,7 +113,7 @@ MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, 
       "vehicle, [0, 90, 0] a head that scans the upright plane across the vehicle.");
   MicronConfig config;
   apply_water(section, context, micron::carrier_hz, head);
-  // This sound speed turns times into ranges; hosts assume 1500 m/s (docs/protocols/micron.md 4).
+  // This sound speed turns times into ranges; clients assume 1500 m/s (docs/protocols/micron.md 4).
   config.device.waits_for_permission = context.pings_by_source;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;

@@ -110,7 +110,7 @@ class MicronSurvey final : public Survey {
   Sector sector() const override {
     Sector sector{-std::numbers::pi, 2.0 * std::numbers::pi, asked_.step * unit_rad};
     if (asked_.sector) {
-      // If the host does not set the invert bit, a boot-down head looks to the opposite side.
+      // If the client does not set the invert bit, a boot-down head looks to the opposite side.
       const bool mirrored = config_.device.mounted_inverted;
       sector.left_rad =
           mirrored ? -micron::bearing_rad(asked_.sector->right) : micron::bearing_rad(asked_.sector->left);

@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <boost/asio/io_context.hpp>
 
-#include "protocol/gemini/topside.hpp"
+#include "protocol/gemini/client.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
@@ -41,8 +41,8 @@ class ServingWithoutGpu : public testing::Test {
     device->device.alternate_address = head_address_;
     device->device.netmask = 0xFF000000;
     device->bind_address = head_address_;
-    device->status = {StatusDestination::Mode::unicast, {topside_address_}};
-    device->allow = {{topside_address_, 32}};
+    device->status = {StatusDestination::Mode::unicast, {client_address_}};
+    device->allow = {{client_address_, 32}};
     HeadConfig head = gemini_kind().make_default();
     head.name = "head";
     head.device = std::move(device);
@@ -52,36 +52,36 @@ class ServingWithoutGpu : public testing::Test {
   void TearDown() override { spdlog::set_level(spdlog::level::info); }
 
   /// Receives pings until all have arrived, for at most 120 s; then ends the daemon.
-  void play_topside() {
+  void play_client() {
     boost::asio::io_context io;
     const SteadyClock clock;
-    gemini::Topside topside({601, head_address_});
-    UdpEndpoint socket(io, {topside_address_, 52900});
-    socket.start([&](const Datagram& datagram) { topside.on_datagram(clock.now(), datagram.bytes); });
+    gemini::Client client({601, head_address_});
+    UdpEndpoint socket(io, {client_address_, 52900});
+    socket.start([&](const Datagram& datagram) { client.on_datagram(clock.now(), datagram.bytes); });
     gemini::PingConfig config;
     config.run_mode = static_cast<std::uint16_t>(gemini::RunMode::continuous);
     config.ext_mode = gemini::ext_bits::eight_bit | gemini::ext_bits::ping_out_of_water;
     config.end_range = 1100;
-    topside.start(clock.now(), config, wanted_pings);
+    client.start(clock.now(), config, wanted_pings);
     const TimePoint last = clock.now() + std::chrono::seconds{120};
     while (pings_.size() < wanted_pings && clock.now() < last) {
-      topside.advance(clock.now());
-      for (const gemini::TopsideDatagram& datagram : topside.take_outgoing()) {
+      client.advance(clock.now());
+      for (const gemini::ClientDatagram& datagram : client.take_outgoing()) {
         socket.send({{{datagram.to, 52901}, 0, SharedBytes(datagram.bytes)}});
       }
-      for (gemini::ReceivedPing& ping : topside.take_pings()) {
+      for (gemini::ReceivedPing& ping : client.take_pings()) {
         pings_.push_back(std::move(ping));
       }
       io.run_one_for(std::chrono::milliseconds{5});
       io.restart();
     }
-    statistics_ = topside.statistics();
+    statistics_ = client.statistics();
     socket.close();
     kill(getpid(), SIGTERM);
   }
 
   const Ipv4 head_address_ = test::own_loopback_address(2);
-  const Ipv4 topside_address_ = test::own_loopback_address(1);
+  const Ipv4 client_address_ = test::own_loopback_address(1);
   DaemonConfig config_;
   std::vector<gemini::ReceivedPing> pings_;
   gemini::LinkStatistics statistics_;
@@ -95,7 +95,7 @@ TEST_F(ServingWithoutGpu, LosesOnePingAtMost) {
   options.gpu.lose_context_at_image = 5;                     // the first is made at the start
   options.skip.turn_off(render::SkipRule::unchanged_scene);  // the sonar rests, but every ping is an image
   options.report = [&](const std::string& line) { lines.push_back(line); };
-  std::thread client([this] { play_topside(); });
+  std::thread client([this] { play_client(); });
   const int code = serve(config_, world, world_renderer_factory(world, options, {}));
   client.join();
   EXPECT_EQ(code, exit_clean);

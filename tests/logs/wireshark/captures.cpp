@@ -14,7 +14,7 @@
 namespace sonard::testing {
 namespace {
 
-constexpr pcapng::Endpoint topside{0x0A'3D'13'05, 52'900};
+constexpr pcapng::Endpoint client{0x0A'3D'13'05, 52'900};
 constexpr pcapng::Endpoint head{0x0A'3D'13'C8, 52'901};
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -100,11 +100,11 @@ std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::v
 }
 
 pcapng::Bytes to_head(pcapng::ByteView payload) {
-  return pcapng::udp_packet({topside.address, 52'901}, head, payload);
+  return pcapng::udp_packet({client.address, 52'901}, head, payload);
 }
 
 pcapng::Bytes from_head(pcapng::ByteView payload) {
-  return pcapng::udp_packet(head, topside, payload);
+  return pcapng::udp_packet(head, client, payload);
 }
 
 }  // namespace sonard::testing

@@ -20,7 +20,7 @@ std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::v
                          const std::vector<std::string>& options = {},
                          std::chrono::nanoseconds apart = std::chrono::microseconds{1});
 
-/// A datagram between a topside and a head on the ports of the Gemini.
+/// A datagram between a client and a head on the ports of the Gemini.
 pcapng::Bytes to_head(pcapng::ByteView payload);
 pcapng::Bytes from_head(pcapng::ByteView payload);
 

@@ -122,10 +122,10 @@ TEST(MicronDissector, FieldsOfExamples) {
   std::vector<std::string> fields{prefix + "message", expert_field};
   for (const Expectation& expected : expectations) {
     const Bytes frame = load_hex_fixture("micron", expected.fixture);
-    const pcapng::Endpoint host{0x7F000001, 50'000};
+    const pcapng::Endpoint client{0x7F000001, 50'000};
     const pcapng::Endpoint head{0x7F000001, 4002};
-    packets.push_back(is_command(frame) ? pcapng::udp_packet(host, head, frame)
-                                        : pcapng::udp_packet(head, host, frame));
+    packets.push_back(is_command(frame) ? pcapng::udp_packet(client, head, frame)
+                                        : pcapng::udp_packet(head, client, frame));
     for (const auto& [field, value] : expected.fields) {
       fields.push_back(prefix + field);
     }

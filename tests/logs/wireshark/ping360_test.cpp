@@ -20,17 +20,18 @@ using ::testing::HasSubstr;
 const std::string prefix = "ping360_sonar.";
 const std::string discovery_prefix = "ping360_discovery.";
 
-constexpr pcapng::Endpoint host{0x7F000001, 50'000};
+constexpr pcapng::Endpoint client{0x7F000001, 50'000};
 constexpr pcapng::Endpoint head{0x7F000002, 12'345};
 constexpr pcapng::Endpoint discovery{0x7F000002, 30'303};
 
-/// In all examples the host's number is 0, and the head's 2.
+/// In all examples the client's number is 0, and the head's 2.
 bool is_command(const Bytes& frame) {
   return frame[6] == 0;
 }
 
 pcapng::Bytes datagram_of(const Bytes& frame) {
-  return is_command(frame) ? pcapng::udp_packet(host, head, frame) : pcapng::udp_packet(head, host, frame);
+  return is_command(frame) ? pcapng::udp_packet(client, head, frame)
+                           : pcapng::udp_packet(head, client, frame);
 }
 
 Bytes text_bytes(std::string_view text) {
@@ -314,10 +315,10 @@ std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
   const Bytes commands = stream(true);
   const Bytes reports = stream(false);
   for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
-    packets.push_back(pcapng::udp_packet(host, head, bytes));
+    packets.push_back(pcapng::udp_packet(client, head, bytes));
   }
   for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
-    packets.push_back(pcapng::udp_packet(head, host, bytes));
+    packets.push_back(pcapng::udp_packet(head, client, bytes));
   }
   return packets;
 }
@@ -352,7 +353,7 @@ TEST(Ping360Dissector, AFrameInPiecesNamesThePacketWhereItBegan) {
   const Bytes data = load_hex_fixture("ping360", "device_data");
   std::vector<pcapng::Bytes> packets;
   for (const pcapng::ByteView bytes : pieces_of(data, 12)) {
-    packets.push_back(pcapng::udp_packet(head, host, bytes));
+    packets.push_back(pcapng::udp_packet(head, client, bytes));
   }
   const auto rows =
       dissect(packets, {prefix + "message", prefix + "begun_in", prefix + "piece", "_ws.col.Info"});
@@ -373,18 +374,19 @@ TEST(Ping360Dissector, FramesThatAreNeverFinished) {
   const auto rest = pcapng::ByteView{data}.subspan(12);
   const std::vector<std::string> fields{prefix + "message", prefix + "piece", prefix + "no_frame",
                                         prefix + "unfinished", expert_field};
-  const auto late = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
+  const auto late = dissect({pcapng::udp_packet(head, client, front), pcapng::udp_packet(head, client, rest)},
                             fields, {}, std::chrono::milliseconds{101});
   EXPECT_THAT(late[1].at(expert_field),
               HasSubstr("12 bytes from packet 1 on were never completed to a frame"));
   EXPECT_EQ(late[1].at(prefix + "message"), "");
   EXPECT_NE(late[1].at(prefix + "no_frame"), "");
-  const auto in_time = dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, rest)},
-                               fields, {}, std::chrono::milliseconds{99});
+  const auto in_time =
+      dissect({pcapng::udp_packet(head, client, front), pcapng::udp_packet(head, client, rest)}, fields, {},
+              std::chrono::milliseconds{99});
   EXPECT_EQ(in_time[1].at(prefix + "message"), "device_data");
   EXPECT_EQ(in_time[1].at(expert_field), "");
   const auto anew =
-      dissect({pcapng::udp_packet(head, host, front), pcapng::udp_packet(head, host, data)}, fields);
+      dissect({pcapng::udp_packet(head, client, front), pcapng::udp_packet(head, client, data)}, fields);
   EXPECT_EQ(anew[1].at(prefix + "message"), "device_data");
   EXPECT_NE(anew[1].at(prefix + "unfinished"), "");
 }
@@ -425,10 +427,10 @@ TEST(Ping360Dissector, JunkIsShownAndTheFrameBehindItFound) {
   Bytes behind{0x00, 0xFF, 'U', 'U', 'U', 'B'};
   append(behind, motor_off);
   const auto rows = dissect(
-      {datagram_of(behind), pcapng::udp_packet(host, head, Bytes{0x00, 0xFF}),
-       pcapng::udp_packet(host, head, text_bytes(std::string_view{"UUUUUUUUUU\0", 11})),
-       pcapng::udp_packet(host, head, {}),
-       pcapng::udp_packet({host.address, 50'001}, {host.address, 40'001}, {})},
+      {datagram_of(behind), pcapng::udp_packet(client, head, Bytes{0x00, 0xFF}),
+       pcapng::udp_packet(client, head, text_bytes(std::string_view{"UUUUUUUUUU\0", 11})),
+       pcapng::udp_packet(client, head, {}),
+       pcapng::udp_packet({client.address, 50'001}, {client.address, 40'001}, {})},
       {prefix + "message", prefix + "garbage", prefix + "no_frame", prefix + "between_frames", expert_field});
   EXPECT_EQ(rows[0].at(prefix + "message"), "motor_off");
   EXPECT_EQ(rows[0].at(prefix + "garbage"), "00ff55555542");
@@ -462,15 +464,15 @@ TEST(Ping360Dissector, PayloadsThatDoNotFitTheirMessage) {
 TEST(Ping360Dissector, FramesAreFoundOnAnyPort) {
   const Bytes request = load_hex_fixture("ping360", "request_protocol_version");
   const pcapng::Endpoint elsewhere{0x7F000002, 40'001};
-  pcapng::TcpConversation line{host, elsewhere};
+  pcapng::TcpConversation line{client, elsewhere};
   std::vector<pcapng::Bytes> packets = line.from_client(request);
-  packets.push_back(pcapng::udp_packet(host, elsewhere, request));
-  packets.push_back(pcapng::udp_packet(elsewhere, host, {}));
+  packets.push_back(pcapng::udp_packet(client, elsewhere, request));
+  packets.push_back(pcapng::udp_packet(elsewhere, client, {}));
   // A wrong length for its number, an unknown number, and text that begins like a frame are not dissected.
   const pcapng::Endpoint other{0x7F000003, 40'002};
-  packets.push_back(pcapng::udp_packet(host, other, frame(6, 0, {1, 2, 3})));
-  packets.push_back(pcapng::udp_packet(host, other, frame(1001, 0, {})));
-  packets.push_back(pcapng::udp_packet(host, other, text_bytes("BROKEN LINK")));
+  packets.push_back(pcapng::udp_packet(client, other, frame(6, 0, {1, 2, 3})));
+  packets.push_back(pcapng::udp_packet(client, other, frame(1001, 0, {})));
+  packets.push_back(pcapng::udp_packet(client, other, text_bytes("BROKEN LINK")));
   const auto rows = dissect(packets, {prefix + "message", prefix + "between_frames", "frame.protocols"});
   EXPECT_EQ(rows[0].at(prefix + "message"), "general_request");
   EXPECT_EQ(rows[1].at(prefix + "message"), "general_request");
@@ -482,7 +484,7 @@ TEST(Ping360Dissector, FramesAreFoundOnAnyPort) {
 
 TEST(Ping360Dissector, PortsAreAPreference) {
   const Bytes junk{0x00, 0xFF};
-  const auto at = [&](std::uint16_t port) { return pcapng::udp_packet(host, {head.address, port}, junk); };
+  const auto at = [&](std::uint16_t port) { return pcapng::udp_packet(client, {head.address, port}, junk); };
   const std::vector<pcapng::Bytes> packets{at(12'345), at(9092), at(40'001)};
   const auto found = [&](const std::vector<std::string>& options) {
     std::string ports;
@@ -505,7 +507,7 @@ TEST(Ping360Dissector, Discovery) {
     return pcapng::udp_packet(discovery, discovery, text_bytes(text));
   };
   const auto from_head = [](std::string_view text) {
-    return pcapng::udp_packet(discovery, host, text_bytes(text));
+    return pcapng::udp_packet(discovery, client, text_bytes(text));
   };
   const auto rows =
       dissect({to_head("Discovery"), to_head(" Discovery\r\n"), from_head(answer),

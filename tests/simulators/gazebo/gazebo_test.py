@@ -74,8 +74,8 @@ class Gazebo(link_test.LinkTest):
                                      head=self.head_config(noisy=False, more=more)))
         self.daemon = self.lab.start(self.lab.head, os.path.join(link_test.PROGRAMS, "sonard"), "run", path)
         self.daemon.wait_for_line(r"sonard ready heads=", link_test.START_S)
-        self.topside = link_test.RawTopside(self.lab)
-        self.addCleanup(self.topside.close)
+        self.client = link_test.RawClient(self.lab)
+        self.addCleanup(self.client.close)
 
     def publish(self, *entities, kind="ignition.msgs.Pose_V"):
         """Publishes until the test ends, or until the next call. An entity is (name, x, y, z, roll, pitch, yaw), in degrees."""
@@ -88,9 +88,9 @@ class Gazebo(link_test.LinkTest):
 
     def range_ahead(self, sonar_id, address):
         """Range of the first echo in the middle beam, metres. None without an echo, or without a ping (no pose yet)."""
-        self.topside.send(wire.ping_config(sonar_id, lines=840, spreading=293), address)  # 7 m
+        self.client.send(wire.ping_config(sonar_id, lines=840, spreading=293), address)  # 7 m
         try:
-            ping = self.topside.next_ping(seconds=2)
+            ping = self.client.next_ping(seconds=2)
         except AssertionError:
             return None
         first = next((i for i in range(ping.count) if ping.lines[i][128] > 0), None)
@@ -200,7 +200,7 @@ class Gazebo(link_test.LinkTest):
 
     def publish_from_elsewhere(self, relay):
         """Publishes from another machine, which sends discovery to the group, or only to `relay`."""
-        return self.lab.start(self.lab.topside, "env", f"IGN_RELAY={relay}", PUBLISHER, TOPIC, "200", "1",
+        return self.lab.start(self.lab.client, "env", f"IGN_RELAY={relay}", PUBLISHER, TOPIC, "200", "1",
                               "ignition.msgs.Pose_V", "rov", "-1", "1.1", "-2.3", "0", "0", "90")
 
     def test_other_machines_are_not_listened_to(self):
@@ -214,7 +214,7 @@ class Gazebo(link_test.LinkTest):
         time.sleep(4)  # discovery takes less than two
         elsewhere.kill()
         # To the multicast group, which a simulator on this machine joins on all interfaces unless IGN_IP sets an address.
-        self.lab.topside.ip("route", "add", "239.0.0.0/8", "dev", "eth0")
+        self.lab.client.ip("route", "add", "239.0.0.0/8", "dev", "eth0")
         self.lab.start(self.lab.head, PUBLISHER, "/bystander", "200", "1", "ignition.msgs.Pose_V", "rov", *["0"] * 6)
         self.publish_from_elsewhere(relay="")
         time.sleep(4)

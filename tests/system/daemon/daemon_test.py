@@ -55,7 +55,7 @@ GEMINI = """
     network:
       alternate_address: {head}
       netmask: 255.0.0.0
-      client_port: {topside_port}
+      client_port: {client_port}
       status: [127.0.0.1]
 """
 
@@ -382,15 +382,15 @@ class Signals(DaemonCase):
         """`timeout` sends two: to its child, and to the process group."""
         directory = os.path.join(self.folder.name, "logs")
         os.mkdir(directory)
-        topside = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.addCleanup(topside.close)
-        topside.bind(("127.0.0.1", 0))
+        gemini_client = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.addCleanup(gemini_client.close)
+        gemini_client.bind(("127.0.0.1", 0))
         daemon = self.start(more=f"recording: {{directory: {directory}}}",
-                            heads=GEMINI.format(head=HEAD, topside_port=topside.getsockname()[1]))
+                            heads=GEMINI.format(head=HEAD, client_port=gemini_client.getsockname()[1]))
         client = self.client()
         self.configured(client)
         self.lines(client, 20)
-        self.ping_gemini(topside)
+        self.ping_gemini(gemini_client)
         daemon.signal(signal.SIGTERM)
         for _ in range(20):
             time.sleep(0.001)
@@ -404,19 +404,19 @@ class Signals(DaemonCase):
         self.assertTrue(any(name.endswith(".glf") for name in names), names)
         self.assertFalse(any(name.endswith(".dat") for name in names), f"left unpacked: {names}")
 
-    def ping_gemini(self, topside):
+    def ping_gemini(self, client):
         """One ping, so that there is a log to pack."""
         config = bytearray(example("gemini", "ping_config"))
         config[2:4] = (513).to_bytes(2, "little")
         deadline = Deadline(PATIENCE_S)
-        topside.settimeout(1.0)
+        client.settimeout(1.0)
         while not deadline.over():
             try:
-                got = topside.recv(2048)
+                got = client.recv(2048)
             except TimeoutError:
                 continue
             if got[0] == 0x40:
-                topside.sendto(bytes(config), (HEAD, 52901))
+                client.sendto(bytes(config), (HEAD, 52901))
             if got[0] == 0x43:
                 return
         self.fail("no ping of the Gemini")
@@ -464,7 +464,7 @@ class Exhaustion(DaemonCase):
         self.assertIn("ready", found, "no limit was high enough")
 
     def test_of_descriptors(self):
-        self.outcomes(self.configuration(heads=GEMINI.format(head=HEAD, topside_port=free_port())), resource.RLIMIT_NOFILE,
+        self.outcomes(self.configuration(heads=GEMINI.format(head=HEAD, client_port=free_port())), resource.RLIMIT_NOFILE,
                       (*range(6, 20), 64), "(?m)^out of file descriptors .*ulimit -n")
 
     def as_nobody(self, engine="cpu"):
@@ -511,13 +511,13 @@ class Exhaustion(DaemonCase):
     def pings_of_two_heads(self, limit_bytes):
         """The heads that sent pings when one was set to 100 m and the other to 2 m, and the log. None: the daemon never got
         ready."""
-        topside_port = free_port()
+        client_port = free_port()
         second = GEMINI.replace("bow", "second").replace("513", "514").replace("{head}", SECOND_HEAD)
-        command = self.configuration(heads=(GEMINI + second).format(head=HEAD, topside_port=topside_port))
+        command = self.configuration(heads=(GEMINI + second).format(head=HEAD, client_port=client_port))
         log = os.path.join(self.folder.name, "log")
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as topside, open(log, "w+", encoding="utf-8") as output:
-            topside.bind(("127.0.0.1", topside_port))
-            topside.settimeout(0.1)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as client, open(log, "w+", encoding="utf-8") as output:
+            client.bind(("127.0.0.1", client_port))
+            client.settimeout(0.1)
             daemon = subprocess.Popen(command, stderr=output,
                                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit_bytes,) * 2))
             self.processes.append(daemon)
@@ -531,11 +531,11 @@ class Exhaustion(DaemonCase):
                 said = output.read()
             heads = set()
             for lines, sonar_id, address in ((12060, 513, HEAD), (241, 514, SECOND_HEAD)):
-                topside.sendto(wire.ping_config(sonar_id, lines=lines, continuous_ms=100), (address, 52901))
+                client.sendto(wire.ping_config(sonar_id, lines=lines, continuous_ms=100), (address, 52901))
             deadline = Deadline(PATIENCE_S)
             while not deadline.over() and daemon.poll() is None:
                 try:
-                    datagram = topside.recv(4096)
+                    datagram = client.recv(4096)
                 except TimeoutError:
                     continue
                 if wire.message_type(datagram) == wire.PING_HEAD:
@@ -597,7 +597,7 @@ class Faults(DaemonCase):
         self.assertRegex(output, rf"sonard.yaml:\d+:\d+: heads\[0\].serial: cannot bind TCP 127.0.0.1:{self.port}: Address already")
 
     def test_the_second_of_two_daemons_with_one_address_ends_and_the_first_goes_on(self):
-        head = GEMINI.format(head=HEAD, topside_port=free_port())
+        head = GEMINI.format(head=HEAD, client_port=free_port())
         first = self.start(heads=head)
         client = self.client()
         self.configured(client)
@@ -609,18 +609,18 @@ class Faults(DaemonCase):
         self.assertEqual(first.terminate(PATIENCE_S)[0], 0)
 
     def test_stopped_for_ten_seconds_it_goes_on_where_time_is_then(self):
-        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as topside:
-            topside.bind(("127.0.0.1", 0))
-            topside.settimeout(0.1)
-            daemon = self.start(heads=GEMINI.format(head=HEAD, topside_port=topside.getsockname()[1]))
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as gemini_client:
+            gemini_client.bind(("127.0.0.1", 0))
+            gemini_client.settimeout(0.1)
+            daemon = self.start(heads=GEMINI.format(head=HEAD, client_port=gemini_client.getsockname()[1]))
             client = self.client()
             self.configured(client)
-            topside.sendto(wire.ping_config(513, lines=64, continuous_ms=100), (HEAD, 52901))
-            before = self.ping_heads(topside, 5)
+            gemini_client.sendto(wire.ping_config(513, lines=64, continuous_ms=100), (HEAD, 52901))
+            before = self.ping_heads(gemini_client, 5)
             daemon.signal(signal.SIGSTOP)
             time.sleep(10)
             daemon.signal(signal.SIGCONT)
-            after = self.ping_heads(topside, 10)[1:]  # but the one that was under way
+            after = self.ping_heads(gemini_client, 10)[1:]  # but the one that was under way
         times_us = [time_us for _, time_us in after]
         self.assertTrue(all(later - earlier > 90_000 for earlier, later in zip(times_us, times_us[1:])),
                         f"it made up for pings that it had missed: {times_us}")
@@ -630,16 +630,16 @@ class Faults(DaemonCase):
         self.lines(client, 20)
         self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
 
-    def ping_heads(self, topside, count):
-        """Number and time of each ping, while the topside keeps the connection alive."""
+    def ping_heads(self, client, count):
+        """Number and time of each ping, while the client keeps the connection alive."""
         heads, said, deadline = [], Deadline(0), Deadline(PATIENCE_S)
         while len(heads) < count:
             self.assertFalse(deadline.over(), heads)
             if said.over():
-                topside.sendto(wire.status_request(513), (HEAD, 52901))
+                client.sendto(wire.status_request(513), (HEAD, 52901))
                 said = Deadline(0.5)
             try:
-                datagram = topside.recv(4096)
+                datagram = client.recv(4096)
             except TimeoutError:
                 continue
             if wire.message_type(datagram) == wire.PING_HEAD:

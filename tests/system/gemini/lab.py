@@ -18,9 +18,9 @@ import time
 import unittest
 
 HEAD_ADDRESS = "10.61.19.200"
-TOPSIDE_ADDRESS = "10.61.19.10"
+CLIENT_ADDRESS = "10.61.19.10"
 SECOND_HEAD_ADDRESS = "10.61.19.201"
-SECOND_TOPSIDE_ADDRESS = "10.61.19.11"
+SECOND_CLIENT_ADDRESS = "10.61.19.11"
 COMMAND_PORT = 52901
 REPORT_PORT = 52900
 
@@ -131,16 +131,16 @@ class OwnMachine(unittest.TestCase):
 
 
 class Lab:
-    """A head machine and one or two topside machines on one Ethernet. `with Lab() as lab: ...`"""
+    """A head machine and one or two client machines on one Ethernet. `with Lab() as lab: ...`"""
 
     _count = 0
 
-    def __init__(self, topsides=1):
+    def __init__(self, clients=1):
         Lab._count += 1
         self._prefix = f"sonard-{os.getpid()}-{Lab._count}"
         self._namespaces = []
         self._programs = []
-        self._wanted_topsides = topsides
+        self._wanted_clients = clients
 
     def __enter__(self):
         try:
@@ -160,21 +160,21 @@ class Lab:
 
     def _build(self):
         self.head = self._add("head")
-        self.topsides = [self._add(f"topside{i}") for i in range(self._wanted_topsides)]
-        self.topside = self.topsides[0]
-        # One wire; with two topsides a switch (a bridge, which is then the interface of the head machine).
-        switched = self._wanted_topsides > 1
+        self.clients = [self._add(f"client{i}") for i in range(self._wanted_clients)]
+        self.client = self.clients[0]
+        # One wire; with two clients a switch (a bridge, which is then the interface of the head machine).
+        switched = self._wanted_clients > 1
         if switched:
             self.head.ip("link", "add", "eth0", "type", "bridge")
-        for i, topside in enumerate(self.topsides):
+        for i, client in enumerate(self.clients):
             head_end = f"port{i}" if switched else "eth0"
-            self.head.ip("link", "add", head_end, "type", "veth", "peer", "name", "eth0", "netns", topside.name)
+            self.head.ip("link", "add", head_end, "type", "veth", "peer", "name", "eth0", "netns", client.name)
             if switched:
                 self.head.ip("link", "set", head_end, "master", "eth0")
                 self.head.ip("link", "set", head_end, "up")
-            address = [TOPSIDE_ADDRESS, SECOND_TOPSIDE_ADDRESS][i]
-            topside.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
-            topside.ip("link", "set", "eth0", "up")
+            address = [CLIENT_ADDRESS, SECOND_CLIENT_ADDRESS][i]
+            client.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
+            client.ip("link", "set", "eth0", "up")
         for address in (HEAD_ADDRESS, SECOND_HEAD_ADDRESS):
             self.head.ip("address", "add", f"{address}/24", "brd", "+", "dev", "eth0")
         self.head.ip("link", "set", "eth0", "up")

@@ -22,7 +22,7 @@ import unittest
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import glf_writer
 import wire
-from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SECOND_TOPSIDE_ADDRESS, TOPSIDE_ADDRESS, Deadline,
+from lab import (COMMAND_PORT, HEAD_ADDRESS, REPORT_PORT, SECOND_HEAD_ADDRESS, SECOND_CLIENT_ADDRESS, CLIENT_ADDRESS, Deadline,
                  Lab, need, receive)
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -93,8 +93,8 @@ class LinkTest(unittest.TestCase):
 
     # ---- Set-up ----
 
-    def make_lab(self, topsides=1):
-        lab = Lab(topsides)
+    def make_lab(self, clients=1):
+        lab = Lab(clients)
         lab.__enter__()
         self.addCleanup(lab.__exit__)
         return lab
@@ -131,9 +131,9 @@ class LinkTest(unittest.TestCase):
             self.assertIn(crc, written[at:])
             at = written.index(crc, at) + 1
 
-    def start_viewer(self, lab, *options, topside=None, range_m=4):
+    def start_viewer(self, lab, *options, client=None, range_m=4):
         """A viewer that finds its own address towards the head. Other jobs of a busy machine do not make it late."""
-        return lab.start(topside or lab.topside, "nice", "-n", "-15", os.path.join(PROGRAMS, "sonarview"),
+        return lab.start(client or lab.client, "nice", "-n", "-15", os.path.join(PROGRAMS, "sonarview"),
                          "--log-pings", "--wait", str(PATIENCE_S), "--ping-wait", str(PATIENCE_S), "--range", str(range_m), *options)
 
     # ---- Checks ----
@@ -212,7 +212,7 @@ class Pings(LinkTest):
                 self.run_pings(options, count=20)
 
 
-class Topsides(LinkTest):
+class Clients(LinkTest):
     """Clients that connect, leave, become silent and share the wire."""
 
     def test_killed_in_the_middle_of_a_ping_and_started_again(self):
@@ -229,12 +229,12 @@ class Topsides(LinkTest):
         self.check_pings(viewer, 20)
         self.end_daemon(daemon)
 
-    def test_two_heads_at_once_for_two_topsides(self):
-        lab = self.make_lab(topsides=2)
+    def test_two_heads_at_once_for_two_clients(self):
+        lab = self.make_lab(clients=2)
         daemon = self.start_daemon(lab, self.head_config(),
                                    self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
-        viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", topside=topside)
-                   for i, topside in enumerate(lab.topsides)]
+        viewers = [self.start_viewer(lab, "--sonar-id", str(513 + i), "--pings", "60", client=client)
+                   for i, client in enumerate(lab.clients)]
         for viewer, name in zip(viewers, ("bow", "stern")):
             self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
             self.check_pings(viewer, 60, name)
@@ -242,7 +242,7 @@ class Topsides(LinkTest):
                          "two heads with different seeds made the same image")
         self.end_daemon(daemon)
 
-    def test_two_heads_at_once_for_one_topside(self):
+    def test_two_heads_at_once_for_one_client(self):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config(),
                                    self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
@@ -258,7 +258,7 @@ class Topsides(LinkTest):
     def test_a_head_that_is_not_there_is_told_with_those_that_are(self):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config(), self.head_config("stern", 514, SECOND_HEAD_ADDRESS))
-        viewer = lab.start(lab.topside, os.path.join(PROGRAMS, "sonarview"), "--sonar-id", "600", "--wait", "4", "--pings", "1")
+        viewer = lab.start(lab.client, os.path.join(PROGRAMS, "sonarview"), "--sonar-id", "600", "--wait", "4", "--pings", "1")
         self.assertEqual(viewer.wait(PATIENCE_S), 3, viewer.tail())
         self.assertIn(f"no status of head 600 on port 52900 within 4.0 s: only head 513 at {HEAD_ADDRESS}, head 514 "
                       f"at {SECOND_HEAD_ADDRESS} sent a status (to view one, use --sonar-id 513)", viewer.output())
@@ -267,7 +267,7 @@ class Topsides(LinkTest):
     def test_a_wrong_address_is_told_with_the_address_in_the_status(self):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config())
-        viewer = lab.start(lab.topside, os.path.join(PROGRAMS, "sonarview"), "--head", HEAD_ADDRESS.rpartition(".")[0] + ".250",
+        viewer = lab.start(lab.client, os.path.join(PROGRAMS, "sonarview"), "--head", HEAD_ADDRESS.rpartition(".")[0] + ".250",
                            "--ping-wait", "2", "--pings", "1")
         self.assertEqual(viewer.wait(PATIENCE_S), 4, viewer.tail())
         self.assertIn(f"Its status gives the address {HEAD_ADDRESS} (to use it, omit --head)", viewer.output())
@@ -283,15 +283,15 @@ class Topsides(LinkTest):
         self.assertIn("head=bow: ended pings_sent=", daemon.output())
 
 
-class RawTopside:
-    """A topside of two sockets, with bytes from the document."""
+class RawClient:
+    """A client of two sockets, with bytes from the document."""
 
-    def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS, topside=0):
+    def __init__(self, lab, sonar_id=513, head=HEAD_ADDRESS, client=0):
         self.sonar_id = sonar_id
         self.head = head
-        self.reports = lab.topsides[topside].udp_socket("0.0.0.0", REPORT_PORT)
-        address = [TOPSIDE_ADDRESS, SECOND_TOPSIDE_ADDRESS][topside]
-        self.commands = lab.topsides[topside].udp_socket(address, COMMAND_PORT)
+        self.reports = lab.clients[client].udp_socket("0.0.0.0", REPORT_PORT)
+        address = [CLIENT_ADDRESS, SECOND_CLIENT_ADDRESS][client]
+        self.commands = lab.clients[client].udp_socket(address, COMMAND_PORT)
 
     def close(self):
         self.reports.close()
@@ -336,15 +336,15 @@ class Wire(LinkTest):
     def start(self, *heads, **keywords):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, *heads, **keywords)
-        topside = RawTopside(lab)
-        self.addCleanup(topside.close)
-        return lab, daemon, topside
+        client = RawClient(lab)
+        self.addCleanup(client.close)
+        return lab, daemon, client
 
     def test_status_is_broadcast_once_a_second(self):
-        _, _, topside = self.start(self.head_config())
+        _, _, client = self.start(self.head_config())
         arrivals = []
         for _ in range(4):
-            datagram, sender = topside.next_of(wire.STATUS)
+            datagram, sender = client.next_of(wire.STATUS)
             arrivals.append(time.monotonic())
             status = wire.Status(datagram)
             self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
@@ -352,15 +352,15 @@ class Wire(LinkTest):
             self.assertEqual(status.fixed, wire.address("10.61.19.200"))
             self.assertEqual(status.alternate, wire.address(HEAD_ADDRESS))
             self.assertEqual(status.netmask, wire.address("255.255.255.0"))
-            self.assertEqual(status.topside, 0)
+            self.assertEqual(status.client, 0)
             self.assertNotEqual(status.boot & 0x1FF, 0x001)
         # The first may have waited in the socket's queue.
         self.assertAlmostEqual(arrivals[3] - arrivals[1], 2.0, delta=0.5)
 
     def test_target_to_port_is_in_the_low_beams(self):
-        _, _, topside = self.start(self.head_config(noisy=False))
-        topside.send(wire.ping_config(513, lines=483, spreading=293))
-        ping = topside.next_ping()
+        _, _, client = self.start(self.head_config(noisy=False))
+        client.send(wire.ping_config(513, lines=483, spreading=293))
+        ping = client.next_ping()
         self.assertEqual((ping.count, ping.beams), (483, 256))
         energy = [sum(ping.lines[i][beam] for i in range(ping.count)) for beam in range(256)]
         self.assertGreater(sum(energy[:128]), 0)
@@ -380,7 +380,7 @@ class Wire(LinkTest):
         return math.degrees(sum(wire.bearing_rad(beam) for beam in beams) / len(beams))
 
     def test_poses_move_the_vehicle_and_the_bodies(self):
-        lab, _, topside = self.start(self.head_config(noisy=False))
+        lab, _, client = self.start(self.head_config(noisy=False))
         poses = lab.head.udp_socket("127.0.0.1", 0)
         self.addCleanup(poses.close)
 
@@ -388,8 +388,8 @@ class Wire(LinkTest):
             message = wire.pose_update(time.monotonic_ns(), *arguments, **keywords)
             poses.sendto(message, ("127.0.0.1", 14600))
             time.sleep(0.2)  # poses and commands come by different sockets
-            topside.send(wire.ping_config(513, lines=483, spreading=293))
-            return topside.next_ping()
+            client.send(wire.ping_config(513, lines=483, spreading=293))
+            return client.next_ping()
 
         # The sphere is 33.69 degrees to port of the x axis. If the sonar turns 60 degrees to port, it is 26.31 degrees to
         # starboard.
@@ -401,11 +401,11 @@ class Wire(LinkTest):
         self.assertAlmostEqual(self.place_of_target(moved), 33.69, delta=1.0)
 
     def test_link_slower_than_the_head_loses_nothing(self):
-        lab, daemon, topside = self.start(self.head_config())
+        lab, daemon, client = self.start(self.head_config())
         # 20 Mbit/s for the 80 that the head sends: the queue of the socket fills up, and the head must wait.
         lab.tc(lab.head, "qdisc", "add", "dev", "eth0", "root", "tbf", "rate", "20mbit", "burst", "5kb", "limit", "50mb")
-        topside.send(wire.ping_config(513, lines=10000))
-        ping = topside.next_ping()
+        client.send(wire.ping_config(513, lines=10000))
+        ping = client.next_ping()
         self.assertEqual(ping.crc32(), int(self.rendered()[ping.transmit_us], 16))
         self.end_daemon(daemon)
         socket_line = key_values(daemon.wait_for_line("head=bow: transport ", PATIENCE_S))
@@ -413,53 +413,53 @@ class Wire(LinkTest):
         self.assertEqual((socket_line["send_failed"], socket_line["overflowed"]), ("0", "0"))
 
     def test_silence_for_three_seconds_suspends_and_any_command_resumes(self):
-        _, daemon, topside = self.start(self.head_config())
-        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        topside.next_ping()
+        _, daemon, client = self.start(self.head_config())
+        client.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        client.next_ping()
         asked = time.monotonic()
         last_ping = asked
         while time.monotonic() - last_ping < 1.5:  # 15 periods without a ping: it has stopped
-            self.assertLess(time.monotonic() - asked, 30, "went on pinging without a topside")
-            if topside.next_of(wire.PING_HEAD, seconds=0.2):
+            self.assertLess(time.monotonic() - asked, 30, "went on pinging without a client")
+            if client.next_of(wire.PING_HEAD, seconds=0.2):
                 last_ping = time.monotonic()
         # The configuration was the last command: 3 s, plus the delay of a busy machine.
         self.assertGreater(last_ping - asked, 1.5)
         self.assertLess(last_ping - asked, 6.0)
-        daemon.wait_for_line(f"topside {TOPSIDE_ADDRESS} lost", PATIENCE_S)
-        topside.drain()
-        self.assertEqual(wire.Status(topside.next_of(wire.STATUS)[0]).topside, 0)
-        topside.send(wire.status_request(513))
-        self.assertIsNotNone(topside.next_of(wire.ACKNOWLEDGE))
-        topside.next_ping()
-        topside.drain()
-        self.assertEqual(wire.Status(topside.next_of(wire.STATUS)[0]).topside, wire.address(TOPSIDE_ADDRESS))
+        daemon.wait_for_line(f"client {CLIENT_ADDRESS} lost", PATIENCE_S)
+        client.drain()
+        self.assertEqual(wire.Status(client.next_of(wire.STATUS)[0]).client, 0)
+        client.send(wire.status_request(513))
+        self.assertIsNotNone(client.next_of(wire.ACKNOWLEDGE))
+        client.next_ping()
+        client.drain()
+        self.assertEqual(wire.Status(client.next_of(wire.STATUS)[0]).client, wire.address(CLIENT_ADDRESS))
 
     def test_commands_for_another_id_are_dropped(self):
-        _, _, topside = self.start(self.head_config())
-        topside.send(wire.status_request(600))
-        topside.send(wire.status_request(513))
-        self.assertIsNotNone(topside.next_of(wire.ACKNOWLEDGE))
-        self.assertIsNone(topside.next_of(wire.ACKNOWLEDGE, seconds=1.0))
+        _, _, client = self.start(self.head_config())
+        client.send(wire.status_request(600))
+        client.send(wire.status_request(513))
+        self.assertIsNotNone(client.next_of(wire.ACKNOWLEDGE))
+        self.assertIsNone(client.next_of(wire.ACKNOWLEDGE, seconds=1.0))
 
     def test_answers_come_from_the_address_that_was_addressed(self):
-        _, _, topside = self.start(self.head_config(bind="0.0.0.0"))
+        _, _, client = self.start(self.head_config(bind="0.0.0.0"))
         for address in (HEAD_ADDRESS, SECOND_HEAD_ADDRESS):
-            topside.send(wire.status_request(513), to=address)
-            _, sender = topside.next_of(wire.ACKNOWLEDGE)
+            client.send(wire.status_request(513), to=address)
+            _, sender = client.next_of(wire.ACKNOWLEDGE)
             self.assertEqual(sender, (address, COMMAND_PORT))
-        _, sender = topside.next_of(wire.STATUS)
+        _, sender = client.next_of(wire.STATUS)
         self.assertEqual(sender, (HEAD_ADDRESS, COMMAND_PORT))
 
 
-class SecondTopside(LinkTest):
-    """A second topside on the wire of a head that serves another (docs/security.md)."""
+class SecondClient(LinkTest):
+    """A second client on the wire of a head that serves another (docs/security.md)."""
 
     def start(self, lock_to_first):
-        lab = self.make_lab(topsides=2)
+        lab = self.make_lab(clients=2)
         daemon = self.start_daemon(lab, self.head_config(more="    lock_to_first: on\n" if lock_to_first else ""))
-        self.first, self.second = (RawTopside(lab, topside=i) for i in range(2))
-        for topside in (self.first, self.second):
-            self.addCleanup(topside.close)
+        self.first, self.second = (RawClient(lab, client=i) for i in range(2))
+        for client in (self.first, self.second):
+            self.addCleanup(client.close)
         self.first.send(wire.ping_config(513, lines=64, continuous_ms=100))
         self.first.next_ping()
         return daemon
@@ -488,7 +488,7 @@ class SecondTopside(LinkTest):
         daemon = self.start(lock_to_first=True)
         self.second.send(wire.ping_config(513, lines=128))
         self.assertEqual(self.ask_as_both(rounds=20), set())
-        daemon.wait_for_line(f"topside {TOPSIDE_ADDRESS} lost", PATIENCE_S)  # it says no more
+        daemon.wait_for_line(f"client {CLIENT_ADDRESS} lost", PATIENCE_S)  # it says no more
         self.second.send(wire.ping_config(513, lines=128))
         self.second.next_ping()
         self.end_daemon(daemon)
@@ -499,50 +499,50 @@ class StalePoses(LinkTest):
     def start(self, stale):
         lab = self.make_lab()
         daemon = self.start_daemon(lab, self.head_config(), stale=stale)
-        topside = RawTopside(lab)
-        self.addCleanup(topside.close)
+        client = RawClient(lab)
+        self.addCleanup(client.close)
         self.poses = lab.head.udp_socket("127.0.0.1", 0)
         self.addCleanup(self.poses.close)
-        return daemon, topside
+        return daemon, client
 
-    def send_poses(self, topside, seconds, x_m):
-        """50 poses a second; the topside keeps the connection alive."""
+    def send_poses(self, client, seconds, x_m):
+        """50 poses a second; the client keeps the connection alive."""
         deadline = Deadline(seconds)
         while not deadline.over():
             self.poses.sendto(wire.pose_update(time.monotonic_ns(), (x_m, 0.0, 0.0)), ("127.0.0.1", 14600))
-            topside.send(wire.status_request(513))
+            client.send(wire.status_request(513))
             time.sleep(0.02)
 
-    def pings_within(self, topside, seconds):
-        """Number of ping heads received, while the topside keeps the connection alive."""
+    def pings_within(self, client, seconds):
+        """Number of ping heads received, while the client keeps the connection alive."""
         heads, deadline = 0, Deadline(seconds)
         while not deadline.over():
-            topside.send(wire.status_request(513))
+            client.send(wire.status_request(513))
             step = Deadline(0.2)
             while not step.over():
-                got = receive(topside.reports, step.left())
+                got = receive(client.reports, step.left())
                 heads += 1 if got and wire.message_type(got[0]) == wire.PING_HEAD else 0
         return heads
 
     def test_hold_goes_on_from_the_last_pose(self):
-        _, topside = self.start("hold")
-        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        self.send_poses(topside, 0.5, 1.0)
+        _, client = self.start("hold")
+        client.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(client, 0.5, 1.0)
         time.sleep(0.5)  # beyond the limit of 300 ms
-        topside.drain()
-        self.assertGreater(self.pings_within(topside, 2.0), 3)
+        client.drain()
+        self.assertGreater(self.pings_within(client, 2.0), 3)
 
     def test_silence_sends_status_only_until_a_pose_arrives(self):
-        daemon, topside = self.start("silence")
-        topside.send(wire.ping_config(513, lines=64, continuous_ms=100))
-        self.send_poses(topside, 0.5, 1.0)
-        topside.next_ping()
+        daemon, client = self.start("silence")
+        client.send(wire.ping_config(513, lines=64, continuous_ms=100))
+        self.send_poses(client, 0.5, 1.0)
+        client.next_ping()
         time.sleep(1.0)
-        topside.drain()
-        self.assertEqual(self.pings_within(topside, 1.5), 0)
-        self.assertIsNotNone(topside.next_of(wire.STATUS))
-        self.send_poses(topside, 0.3, 2.0)
-        topside.next_ping()
+        client.drain()
+        self.assertEqual(self.pings_within(client, 1.5), 0)
+        self.assertIsNotNone(client.next_of(wire.STATUS))
+        self.send_poses(client, 0.3, 2.0)
+        client.next_ping()
         daemon.terminate(10)
         self.assertRegex(daemon.output(), r"head=bow: ended .* pings_without_pose=[1-9]")
 

@@ -47,7 +47,7 @@ class Status:
         assert len(datagram) == 110
         self.header_id = struct.unpack_from("<H", datagram, 2)[0]
         self.sonar_id = struct.unpack_from("<H", datagram, 10)[0]
-        self.fixed, self.alternate, self.topside = struct.unpack_from("<III", datagram, 12)
+        self.fixed, self.alternate, self.client = struct.unpack_from("<III", datagram, 12)
         self.netmask = struct.unpack_from("<I", datagram, 58)[0]
         self.boot = struct.unpack_from("<I", datagram, 68)[0]
 

@@ -13,7 +13,7 @@ import subprocess
 
 import messages
 from head import PATIENCE_S, HeadCase, main
-from lab import HEAD_ADDRESS, TOPSIDE_ADDRESS, Lab
+from lab import HEAD_ADDRESS, CLIENT_ADDRESS, Lab
 from messages import LOW
 
 
@@ -31,7 +31,7 @@ class TwoMachines(HeadCase):
         cls.lab.__enter__()
         cls.addClassCleanup(cls.lab.__exit__)
         cls.machine = cls.lab.head
-        cls.client_machine = cls.lab.topside
+        cls.client_machine = cls.lab.client
 
     def test_the_status_comes_by_broadcast_from_where_the_head_is(self):
         statuses = self.statuses("")
@@ -43,7 +43,7 @@ class TwoMachines(HeadCase):
         self.client()
         while (status := messages.status_of(statuses.recv(2048))).client == "0.0.0.0":
             pass
-        self.assertEqual(status.client, TOPSIDE_ADDRESS)
+        self.assertEqual(status.client, CLIENT_ADDRESS)
 
     def test_sonarview_finds_it_and_misses_only_what_the_head_dropped(self):
         self.view(10)
@@ -72,7 +72,7 @@ class TwoMachines(HeadCase):
         return json.loads(shown.stdout)[0]["drops"]
 
     def test_who_is_not_allowed_is_turned_away(self):
-        self.lab.topside.ip("address", "add", "10.61.20.9/24", "dev", "eth0")
+        self.lab.client.ip("address", "add", "10.61.20.9/24", "dev", "eth0")
         self.lab.head.ip("route", "add", "10.61.20.0/24", "dev", "eth0")
         connection = self.client_machine.tcp_socket()
         self.addCleanup(connection.close)

@@ -13,7 +13,7 @@ import time
 
 import messages
 from head import PATIENCE_S, HeadCase, UdpClient, main
-from lab import HEAD_ADDRESS, TOPSIDE_ADDRESS, Lab, receive
+from lab import HEAD_ADDRESS, CLIENT_ADDRESS, Lab, receive
 from messages import ACK, AUTO_DEVICE_DATA, DEVICE_DATA, DEVICE_INFORMATION, AutoTransmit, Transducer
 
 DISCOVERY_PORT = 30303
@@ -37,8 +37,8 @@ class Discovery(TwoMachines):
     discovery: {address: 10.61.19.200, mac: "54:10:ec:79:7d:c5", allow: [10.61.19.0/24]}
 """
 
-    def asker(self, address=TOPSIDE_ADDRESS, port=0, machine=None):
-        made = (machine or self.lab.topside).udp_socket(address, port, reuse=True)
+    def asker(self, address=CLIENT_ADDRESS, port=0, machine=None):
+        made = (machine or self.lab.client).udp_socket(address, port, reuse=True)
         made.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
         self.addCleanup(made.close)
         return made
@@ -65,7 +65,7 @@ class Discovery(TwoMachines):
         lines = self.ask(self.asker())[0].split(b"\r\n")
         self.assertEqual(len(lines), 5, "ping-viewer wants four, and nothing behind the last")
         address = ".".join(str(int(group)) for group in lines[3].split(b"- ")[1].split(b"."))
-        client = self.keep(UdpClient(self.lab.topside.udp_socket(TOPSIDE_ADDRESS, 0), (address, 12345)))
+        client = self.keep(UdpClient(self.lab.client.udp_socket(CLIENT_ADDRESS, 0), (address, 12345)))
         self.assertIsNotNone(client.ask(messages.request(DEVICE_INFORMATION), DEVICE_INFORMATION))
 
     def test_an_order_to_move_is_answered_and_not_followed(self):
@@ -106,7 +106,7 @@ class Link(TwoMachines):
              + HEAD.format(name="doubled", port=12348, scale=0.1, link="to_client: {duplicate: 1}"))
 
     def client_of(self, port):
-        client = UdpClient(self.lab.topside.udp_socket(TOPSIDE_ADDRESS, 0), (HEAD_ADDRESS, port))
+        client = UdpClient(self.lab.client.udp_socket(CLIENT_ADDRESS, 0), (HEAD_ADDRESS, port))
         self.addCleanup(client.close)
         return client
 
@@ -192,7 +192,7 @@ class Link(TwoMachines):
 
     def view(self, port, *options):
         viewer = self.start(os.path.join(self.PROGRAMS, "sonarview"), "ping360", "--udp", f"{HEAD_ADDRESS}:{port}", "--quiet",
-                            *options, machine=self.lab.topside)
+                            *options, machine=self.lab.client)
         self.assertEqual(viewer.wait(PATIENCE_S), 0, viewer.tail())
         return {name: int(value) for name, value in re.findall(r"(\w+)=(\d+)(?= |$)", viewer.lines[-1])}
 

@@ -28,7 +28,7 @@ sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests"
 import glf_reader  # noqa: E402
 import pcapng_reader  # noqa: E402
 import wire  # noqa: E402
-from lab import HEAD_ADDRESS, REPORT_PORT, TOPSIDE_ADDRESS, Lab, need  # noqa: E402
+from lab import HEAD_ADDRESS, REPORT_PORT, CLIENT_ADDRESS, Lab, need  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 DISSECTORS = os.path.join(SOURCE, "clients", "wireshark")
@@ -187,14 +187,14 @@ class RecordingTest(unittest.TestCase):
         return daemon
 
     def start_viewer(self, *options, range_m=4):
-        return self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonarview"), "--client-address", TOPSIDE_ADDRESS,
+        return self.lab.start(self.lab.client, os.path.join(PROGRAMS, "sonarview"), "--client-address", CLIENT_ADDRESS,
                               "--head", HEAD_ADDRESS, "--log-pings", "--quiet", "--wait", str(PATIENCE_S), "--ping-wait",
                               str(PATIENCE_S), "--range", str(range_m), *options)
 
     def start_scan(self, raw, *options, way=None):
         """A client of the Micron; writes its received lines to a file."""
         way = way or ["--tcp", f"{HEAD_ADDRESS}:4001"]
-        where = self.lab.topside if way[0] == "--tcp" else self.lab.head
+        where = self.lab.client if way[0] == "--tcp" else self.lab.head
         return self.lab.start(where, os.path.join(PROGRAMS, "sonarview"), "micron", *way, "--raw", raw, "--quiet", "--wait",
                               "30", *options)
 
@@ -353,7 +353,7 @@ class Logs(RecordingTest):
              for packet in self.packets()])
         self.assertGreater(sum(not message["to_client"] for message in messages["wire"]), 1)
         for message in messages["wire"]:
-            self.assertIn(message["peer"].split(":")[0], (TOPSIDE_ADDRESS, "255.255.255.255"))
+            self.assertIn(message["peer"].split(":")[0], (CLIENT_ADDRESS, "255.255.255.255"))
 
     def test_what_is_compressed_coded_or_of_16_bits(self):
         for number, options in enumerate((["--compression", "2"], ["--rle", "60"], ["--bits", "16"])):
@@ -477,7 +477,7 @@ class Logs(RecordingTest):
 
     def test_two_daemons_do_not_share_a_folder(self):
         self.start_daemon()
-        second = self.lab.start(self.lab.topside, os.path.join(PROGRAMS, "sonard"), "run",
+        second = self.lab.start(self.lab.client, os.path.join(PROGRAMS, "sonard"), "run",
                                 os.path.join(self.folder.name, "sonard.yaml"))
         self.assertEqual(second.wait(START_S), 2, second.tail())
         self.assertRegex(second.output(), r"sonard.yaml:\d+:\d+: recording.directory: another daemon records into ")
@@ -559,7 +559,7 @@ class Faults(RecordingTest):
     def test_a_poor_link_and_a_client_that_vanishes_and_comes_back(self):
         daemon = self.start_daemon(more=self.LINK)
         received = []
-        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its topside
+        vanished = (0.1, 4.0, 0.0)  # the second time for longer than a head waits for its client
         for pause_s in vanished:
             viewer = self.start_viewer("--continuous", "40")
             viewer.wait_for_line("^ping .*lines_lost=0 ", PATIENCE_S, count=15)  # over such a link not every ping is whole

@@ -75,7 +75,7 @@ class SimulatedTime(link_test.LinkTest):
             head = head.replace("speckle: off", "speckle: ou").replace("noise: false", "noise: true")
         lab = self.start(head, clock, transport)
         viewer = self.start_viewer(lab, "--continuous", str(PERIOD_MS), range_m=7)
-        self.daemon.wait_for_line(r"topside 10\.61\.19\.10 connected", PATIENCE_S)
+        self.daemon.wait_for_line(r"client 10\.61\.19\.10 connected", PATIENCE_S)
         if posecast:
             self.publish(lab.start(lab.head, os.path.join(link_test.PROGRAMS, "posecast"), *posecast))
         else:
@@ -89,7 +89,7 @@ class SimulatedTime(link_test.LinkTest):
 
     def run_micron(self, steps):
         lab = self.start(MICRON.format(dump=self.next_dump()), "lock_step", "tcp")
-        viewer = lab.start(lab.topside, os.path.join(link_test.PROGRAMS, "sonarview"), "micron", "--tcp",
+        viewer = lab.start(lab.client, os.path.join(link_test.PROGRAMS, "sonarview"), "micron", "--tcp",
                            f"{link_test.HEAD_ADDRESS}:4001", "--range", "7", "--bins", "300", "--line-wait", "0", "--quiet")
         self.daemon.wait_for_line(r"head=bow: ready", PATIENCE_S)
         self.simulate(lab, steps, "tcp")

@@ -84,7 +84,7 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
   EXPECT_EQ(options.settings.compression_log2, 1);
   EXPECT_EQ(options.settings.interval, std::chrono::microseconds{100'000});
   EXPECT_EQ(options.run.pings, 7U);
-  EXPECT_EQ(options.topside_address, 0U);
+  EXPECT_EQ(options.client_address, 0U);
   EXPECT_EQ(options.run.wait, 5s);
   EXPECT_EQ(options.run.radius_px, 900);
 }
@@ -92,7 +92,7 @@ TEST(CommandLine, WithoutASubcommandItIsAGemini) {
 TEST(CommandLine, CommandsLeaveFromTheAddressThatRoutesToTheHead) {
   EXPECT_EQ(address_towards(0x7F000002), 0x7F000001U);
   EXPECT_EQ(address_towards(0x7F000001), 0x7F000001U);
-  EXPECT_EQ(options_of<GeminiArguments>("gemini", {"--client-address", "127.0.0.3"}).topside_address,
+  EXPECT_EQ(options_of<GeminiArguments>("gemini", {"--client-address", "127.0.0.3"}).client_address,
             0x7F000003U);
 }
 
@@ -147,8 +147,8 @@ TEST(CommandLine, MicronSettingsBecomeThoseOfAScan) {
   EXPECT_EQ(options.scan.ad_span_db, 25.0);
   EXPECT_EQ(options.scan.sound_speed_mps, 1450.0);
   EXPECT_FALSE(options.scan.sector);
-  EXPECT_EQ(options.host.node, 7);
-  EXPECT_TRUE(options.host.reboot_first);
+  EXPECT_EQ(options.client.node, 7);
+  EXPECT_TRUE(options.client.reboot_first);
   EXPECT_EQ(options.sweeps, 3U);
   EXPECT_EQ(options.run.pings, 9U);
   EXPECT_EQ(options.run.duration, 1500ms);

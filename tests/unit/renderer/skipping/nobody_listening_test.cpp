@@ -65,9 +65,9 @@ class NobodyListening : public testing::Test {
     gemini_.device.netmask = 0xFF000000;
     gemini_.device.reboot_time = std::chrono::milliseconds{1};
     gemini_.bind_address = head_address_;
-    gemini_.status = {StatusDestination::Mode::unicast, {topside_address_}};
-    gemini_.allow = {{topside_address_, 32}};
-    topside_.start([this](const Datagram& datagram) { received_.push_back(datagram); });
+    gemini_.status = {StatusDestination::Mode::unicast, {client_address_}};
+    gemini_.allow = {{client_address_, 32}};
+    client_.start([this](const Datagram& datagram) { received_.push_back(datagram); });
   }
 
   ~NobodyListening() override {
@@ -108,7 +108,7 @@ class NobodyListening : public testing::Test {
     }
   }
 
-  void command(const Bytes& bytes) { topside_.send({{{head_address_, 52901}, 0, SharedBytes(bytes)}}); }
+  void command(const Bytes& bytes) { client_.send({{{head_address_, 52901}, 0, SharedBytes(bytes)}}); }
 
   std::vector<Bytes> datagrams_of_pings() const {
     std::vector<Bytes> found;
@@ -140,7 +140,7 @@ class NobodyListening : public testing::Test {
     ASSERT_TRUE(run_until([&] { return other_done_; }));
   }
 
-  /// Lines of the next ping that a topside receives, without head and tail, which hold times.
+  /// Lines of the next ping that a client receives, without head and tail, which hold times.
   std::vector<Bytes> lines_of_next_ping() {
     std::vector<Bytes> lines;
     const auto complete = [&] {
@@ -158,7 +158,7 @@ class NobodyListening : public testing::Test {
     return lines;
   }
 
-  /// With the rule on or off a topside receives only the ping that was not cancelled, number 1 from 0.
+  /// With the rule on or off a client receives only the ping that was not cancelled, number 1 from 0.
   static void expect_second_ping(const std::vector<Bytes>& lines) {
     ASSERT_EQ(lines.size(), 483u);
     for (int line = 0; line < 483; ++line) {
@@ -178,7 +178,7 @@ class NobodyListening : public testing::Test {
 
  private:
   const Ipv4 head_address_ = test::own_loopback_address(2);
-  const Ipv4 topside_address_ = test::own_loopback_address(1);
+  const Ipv4 client_address_ = test::own_loopback_address(1);
   boost::asio::io_context io_;
   SteadyClock clock_;
   std::shared_ptr<test::FakeRendererControl> renderer_ = std::make_shared<test::FakeRendererControl>();
@@ -195,7 +195,7 @@ class NobodyListening : public testing::Test {
   bool other_done_ = false;
   std::unique_ptr<RenderService> service_;
   std::unique_ptr<Head> head_;
-  UdpEndpoint topside_{io_, {topside_address_, 52900}};
+  UdpEndpoint client_{io_, {client_address_, 52900}};
   std::vector<Datagram> received_;
 };
 

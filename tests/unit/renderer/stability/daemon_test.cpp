@@ -264,7 +264,7 @@ class VirtualDaemon {
   }
 
   void command(const gemini::Command& message) {
-    happen(BytesReceived{{0, {gemini::topside_address, gemini::topside_port}, gemini::head_address},
+    happen(BytesReceived{{0, {gemini::client_address, gemini::client_port}, gemini::head_address},
                          SharedBytes(gemini::encode(message))});
   }
 

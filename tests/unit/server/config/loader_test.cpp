@@ -71,7 +71,7 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(gemini.device.water_sound_speed_mps, 0.0);
   EXPECT_EQ(gemini.bind_address, 0x7F000002U);
   EXPECT_EQ(gemini.command_port, 52901);
-  EXPECT_EQ(gemini.device.topside_port, 52900);
+  EXPECT_EQ(gemini.device.client_port, 52900);
   EXPECT_EQ(gemini.status.mode, StatusDestination::Mode::limited_broadcast);
   EXPECT_THAT(gemini.allow, ElementsAre(Cidr{0x7F000000, 8}));
   EXPECT_TRUE(gemini.link.to_client.transparent());

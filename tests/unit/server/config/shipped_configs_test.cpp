@@ -83,7 +83,7 @@ void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(head.kind, &gemini_kind());
   EXPECT_EQ(gemini_config(head).device.sonar_id, 513);
   EXPECT_EQ(gemini_config(head).command_port, 52901);
-  EXPECT_EQ(gemini_config(head).device.topside_port, 52900);
+  EXPECT_EQ(gemini_config(head).device.client_port, 52900);
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_EQ(config.poses.udp->bind, (Endpoint{0x7F000001, 14600}));
   EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());

@@ -17,7 +17,7 @@
 #include <unistd.h>
 #include <boost/asio/io_context.hpp>
 
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/devices/gemini/config.hpp"
@@ -57,10 +57,10 @@ Bytes continuous_config() {
   return config;
 }
 
-// Runs serve() on this thread while `topside` is the client on another thread.
+// Runs serve() on this thread while `client` is the client on another thread.
 struct DaemonTest : testing::Test {
   const Ipv4 head_address = test::own_loopback_address(2);
-  const Ipv4 topside_address = test::own_loopback_address(1);
+  const Ipv4 client_address = test::own_loopback_address(1);
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   DaemonConfig config;
 
@@ -78,8 +78,8 @@ struct DaemonTest : testing::Test {
     device->device.netmask = 0xFF000000;
     device->device.min_ping_period = std::chrono::milliseconds{1};
     device->bind_address = address;
-    device->status = {StatusDestination::Mode::unicast, {topside_address}};
-    device->allow = {{topside_address, 32}};
+    device->status = {StatusDestination::Mode::unicast, {client_address}};
+    device->allow = {{client_address, 32}};
     HeadConfig result = gemini_kind().make_default();
     result.name = name;
     result.device = std::move(device);
@@ -87,25 +87,25 @@ struct DaemonTest : testing::Test {
   }
 
   // A client that calls `react` for each datagram, until `react` returns true.
-  static void play_topside(UdpEndpoint& topside, boost::asio::io_context& io,
-                           const std::function<bool(const Datagram&)>& react) {
+  static void play_client(UdpEndpoint& client, boost::asio::io_context& io,
+                          const std::function<bool(const Datagram&)>& react) {
     bool done = false;
-    topside.start([&](const Datagram& datagram) { done = done || react(datagram); });
+    client.start([&](const Datagram& datagram) { done = done || react(datagram); });
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{20};
     while (!done && std::chrono::steady_clock::now() < deadline) {
       io.run_one_for(std::chrono::milliseconds{10});
       io.restart();
     }
     EXPECT_TRUE(done) << "the daemon did not answer in time";
-    topside.close();
+    client.close();
   }
 
   // Serves until `react` returns true. Then the client ends the daemon by a signal, as an operator does.
   int serve_until(const std::function<bool(UdpEndpoint&, const Datagram&)>& react, bool send_signal = true) {
     boost::asio::io_context io;
-    UdpEndpoint topside(io, {topside_address, 52900});
+    UdpEndpoint client(io, {client_address, 52900});
     std::thread client([&] {
-      play_topside(topside, io, [&](const Datagram& datagram) { return react(topside, datagram); });
+      play_client(client, io, [&](const Datagram& datagram) { return react(client, datagram); });
       if (send_signal) {
         kill(getpid(), SIGTERM);
       }
@@ -184,24 +184,24 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
     ASSERT_TRUE(test::wait_for([&] { return fan_is_busy.load(); }));
     const SteadyClock clock;
     test::Client client = test::Client::tcp({head_address, 4001});
-    micron::Host host({}, clock.now());
-    host.start(clock.now(), {}, 20);
+    micron::Client client({}, clock.now());
+    client.start(clock.now(), {}, 20);
     std::size_t consumed = 0;
     EXPECT_TRUE(test::wait_for([&] {
       const test::Bytes& heard = client.heard();
-      host.on_bytes(clock.now(), std::span(heard).subspan(consumed));
+      client.on_bytes(clock.now(), std::span(heard).subspan(consumed));
       consumed = heard.size();
-      host.advance(clock.now());
-      for (const auto& frame : host.take_outgoing()) {
+      client.advance(clock.now());
+      for (const auto& frame : client.take_outgoing()) {
         client.write(frame);
       }
-      return host.finished();
+      return client.finished();
     }));
     lines_are_here = true;
   });
-  const int code = serve_until([&](UdpEndpoint& topside, const Datagram& datagram) {
+  const int code = serve_until([&](UdpEndpoint& client, const Datagram& datagram) {
     if (is(datagram, 0x40) && !fan_is_busy) {
-      topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+      client.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
     }
     return lines_are_here.load() && is(datagram, 0x43);
   });
@@ -214,8 +214,8 @@ TEST_F(DaemonTest, RendererThatFailsWhileServingEndsItWithItsOwnCode) {
     throw render::RendererError("context lost");
   };
   const int code = serve_until(
-      [this](UdpEndpoint& topside, const Datagram&) {
-        topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+      [this](UdpEndpoint& client, const Datagram&) {
+        client.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
         return true;
       },
       /*send_signal=*/false);
@@ -247,9 +247,9 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
   for (int life = 0; life < 50; ++life) {
     int heads = 0;
     const auto started = std::chrono::steady_clock::now();
-    const int code = serve_until([&](UdpEndpoint& topside, const Datagram& datagram) {
+    const int code = serve_until([&](UdpEndpoint& client, const Datagram& datagram) {
       if (is(datagram, 0x40)) {
-        topside.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+        client.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
       }
       heads += is(datagram, 0x41) ? 1 : 0;
       return heads > life % 3;

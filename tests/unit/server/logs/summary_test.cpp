@@ -101,10 +101,10 @@ TEST(Capture, PingsAreCountedByTheirHeads) {
   pcapng::Writer writer("test");
   const std::uint32_t bow = writer.add_interface("bow");
   const pcapng::Endpoint head_end{0x7F000002, 52901};
-  const pcapng::Endpoint topside{0x7F000001, 52900};
+  const pcapng::Endpoint client{0x7F000001, 52900};
   const auto add = [&](std::uint64_t time_ns, const gemini::Report& report) {
     const auto bytes = gemini::encode(report);
-    writer.add_packet(bow, time_ns, pcapng::udp_packet(head_end, topside, bytes));
+    writer.add_packet(bow, time_ns, pcapng::udp_packet(head_end, client, bytes));
   };
   gemini::PingHead head;
   head.header.sonar_id = 600;

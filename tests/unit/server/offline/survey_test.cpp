@@ -161,7 +161,7 @@ TEST(GeminiSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
 
 // ---- Micron
 
-TEST(MicronSurvey, DoesWhatAHostWouldAskFor) {
+TEST(MicronSurvey, DoesWhatAClientWouldAskFor) {
   const std::unique_ptr<Survey> plain = survey(micron_kind());
   EXPECT_THAT(plain->frames(401), ElementsAre(0, 200, 400));
   EXPECT_EQ(plain->job(0).bins(), 400);

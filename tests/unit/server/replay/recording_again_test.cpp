@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A log that is played back and recorded again must be equal. The images come from the datagrams of a head,
-// joined as in a topside, and from the records of the head itself. Both are written as by the recorder.
+// joined as in a client, and from the records of the head itself. Both are written as by the recorder.
 #include <cmath>
 #include <deque>
 #include <numeric>
@@ -22,7 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint16_t sonar_id = 513;
-constexpr Ipv4 topside = 0x7F000001;
+constexpr Ipv4 client = 0x7F000001;
 constexpr GlfLogOrigin origin{.device_id = sonar_id};
 
 std::int64_t transmit_unix_ns(int number) {
@@ -71,8 +71,8 @@ std::vector<std::uint8_t> dat_of(const std::vector<glf::ImageRecord>& images) {
   return dat;
 }
 
-BytesReceived from_topside(const gemini::Command& command) {
-  return {{0, {topside, gemini::topside_port}, 0}, SharedBytes(gemini::encode(command))};
+BytesReceived from_client(const gemini::Command& command) {
+  return {{0, {client, gemini::client_port}, 0}, SharedBytes(gemini::encode(command))};
 }
 
 /// The request of a continuous client with other settings than the log.
@@ -85,7 +85,7 @@ BytesReceived request() {
   config.rle_threshold = 40;
   config.sound_speed = 15000;
   config.velocimeter_mode = 1;
-  return from_topside(config);
+  return from_client(config);
 }
 
 struct Received {
@@ -124,7 +124,7 @@ Played played(const GlfRecording& recording) {
   std::deque<Event> events{request()};
   for (TimePoint now = 0ns; !playback.finished(now) && now < 60s; now += 1ms) {
     if (now % 1s == 0s) {
-      events.emplace_back(from_topside(gemini::StatusRequest{{.sonar_id = sonar_id}}));
+      events.emplace_back(from_client(gemini::StatusRequest{{.sonar_id = sonar_id}}));
     }
     events.emplace_back(PingFed{playback.next_ping(0, now)});
     for (; !events.empty(); events.pop_front()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Statistics of speckle and noise on the 8-bit image in the client: the head's job gives the settings, the
-// receiver the samples, the head sends them, and a topside assembles the image (T12 of docs/physics.md 3.2).
+// receiver the samples, the head sends them, and a client assembles the image (T12 of docs/physics.md 3.2).
 // Expected values are from 2.8 and 2.16.
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 using Image = test::GeminiImage;
 
-/// Head and topside without losses between them; the world is an even echo.
+/// Head and client without losses between them; the world is an even echo.
 class Client {
  public:
   Client(const render::SonarSettings& acoustics, int native_lines, int compression_log2 = 0)

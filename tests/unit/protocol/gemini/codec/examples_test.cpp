@@ -75,7 +75,7 @@ TEST(Examples, LastAndResentLinesDifferFromTheFirstInTwoFields) {
   EXPECT_EQ(start, load_fixture("ping_line_resent_start"));
 }
 
-TEST(Examples, ProductionTestOfA32BitTopsideMeansTheSame) {
+TEST(Examples, ProductionTestOfA32BitClientMeansTheSame) {
   const auto short_form = decode_command(load_fixture("production_test_32_bit"));
   const auto long_form = decode_command(load_fixture("production_test"));
   ASSERT_TRUE(short_form && long_form);

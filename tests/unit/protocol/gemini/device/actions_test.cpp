@@ -19,44 +19,44 @@ std::vector<std::string> texts(const std::vector<Notice>& notices) {
 
 using Texts = std::vector<std::string>;
 
-TEST(Notices, TellOfATopsideThatComesAndGoes) {
+TEST(Notices, TellOfAClientThatComesAndGoes) {
   Bench bench;
   bench.run_until(500ms);
   EXPECT_TRUE(bench.notices.empty()) << "nobody is there yet, and was not before";
   bench.command(to_head<StatusRequest>());
-  EXPECT_EQ(texts(bench.last.notices), Texts{"topside 192.168.2.5 connected"});
+  EXPECT_EQ(texts(bench.last.notices), Texts{"client 192.168.2.5 connected"});
   bench.command(to_head<StatusRequest>());
   EXPECT_TRUE(bench.last.notices.empty()) << "once";
   bench.run_until(3499ms);
   EXPECT_EQ(bench.notices.size(), 1U);
   bench.run_until(3500ms);
   EXPECT_EQ(texts(bench.last.notices),
-            Texts{"topside 192.168.2.5 lost: no command within the time-out, or a reboot command"});
+            Texts{"client 192.168.2.5 lost: no command within the time-out, or a reboot command"});
   bench.run_until(20s);
   EXPECT_EQ(bench.notices.size(), 2U);
   bench.command(to_head<StatusRequest>());
-  EXPECT_EQ(texts(bench.last.notices), Texts{"topside 192.168.2.5 connected"});
+  EXPECT_EQ(texts(bench.last.notices), Texts{"client 192.168.2.5 connected"});
 }
 
-TEST(Notices, TellOfTheNewestTopside) {
+TEST(Notices, TellOfTheNewestClient) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<NetworkConfig>(), other_topside);
-  EXPECT_EQ(texts(bench.notices), (Texts{"topside 192.168.2.5 connected", "topside 192.168.2.6 connected"}));
+  bench.command(to_head<NetworkConfig>(), other_client);
+  EXPECT_EQ(texts(bench.notices), (Texts{"client 192.168.2.5 connected", "client 192.168.2.6 connected"}));
 }
 
-TEST(Notices, TellOfATopsideThatRebootsTheHead) {
+TEST(Notices, TellOfAClientThatRebootsTheHead) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
   bench.command(to_head<Reboot>());
   EXPECT_EQ(texts(bench.notices),
-            (Texts{"topside 192.168.2.5 connected",
-                   "topside 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
+            (Texts{"client 192.168.2.5 connected",
+                   "client 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
   bench.run_until(6s);
-  bench.command(to_head<Reboot>());  // the first command of this topside, and its last
+  bench.command(to_head<Reboot>());  // the first command of this client, and its last
   EXPECT_EQ(texts(bench.last.notices),
-            (Texts{"topside 192.168.2.5 connected",
-                   "topside 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
+            (Texts{"client 192.168.2.5 connected",
+                   "client 192.168.2.5 lost: no command within the time-out, or a reboot command"}));
 }
 
 TEST(Notices, CommandsForOthersConnectNobody) {
@@ -68,7 +68,7 @@ TEST(Notices, CommandsForOthersConnectNobody) {
   EXPECT_TRUE(bench.notices.empty());
 }
 
-TEST(NobodyThere, UntilATopsideSpeaksAndAfterItIsLost) {
+TEST(NobodyThere, UntilAClientSpeaksAndAfterItIsLost) {
   Bench bench;
   EXPECT_TRUE(bench.last.nobody_there);
   bench.run_until(1s);
@@ -90,9 +90,9 @@ TEST(NobodyThere, UntilATopsideSpeaksAndAfterItIsLost) {
 TEST(NobodyThere, IsNotSaidByTheTransport) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.step(ClientGone{{0, {topside_address, topside_port}, head_address}});
-  EXPECT_FALSE(bench.last.nobody_there) << "a topside is whoever sent the last command";
-  EXPECT_EQ(bench.device.topside(), topside_address);
+  bench.step(ClientGone{{0, {client_address, client_port}, head_address}});
+  EXPECT_FALSE(bench.last.nobody_there) << "a client is whoever sent the last command";
+  EXPECT_EQ(bench.device.client(), client_address);
 }
 
 TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
@@ -103,7 +103,7 @@ TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
   EXPECT_EQ(bench.last.cancelled, std::nullopt);
   bench.run_until(2900ms);
   EXPECT_EQ(bench.last.cancelled, std::nullopt);
-  bench.run_until(3s);  // the topside is lost
+  bench.run_until(3s);  // the client is lost
   EXPECT_EQ(bench.last.cancelled, 0U);
   bench.run_until(5s);
   EXPECT_EQ(bench.last.cancelled, 0U) << "as long as it is out";
@@ -145,17 +145,17 @@ TEST(Cancelled, ByAReboot) {
 
 TEST(Answers, GoToThePortOfTheConfiguration) {
   DeviceConfig config = example_config();
-  config.topside_port = 40'001;
+  config.client_port = 40'001;
   Bench bench(config);
   bench.step(
-      BytesReceived{{0, {topside_address, 55'555}, head_address}, SharedBytes(encode(Command{ping_of(32)}))});
+      BytesReceived{{0, {client_address, 55'555}, head_address}, SharedBytes(encode(Command{ping_of(32)}))});
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
   bench.command(to_head<StatusRequest>());
   ASSERT_FALSE(bench.last.send.empty());
   for (const Outgoing& answer : bench.last.send) {
     EXPECT_EQ(answer.to, Outgoing::To::peer);
-    EXPECT_EQ(answer.peer, (Peer{0, {topside_address, 40'001}, head_address}));
+    EXPECT_EQ(answer.peer, (Peer{0, {client_address, 40'001}, head_address}));
   }
 }
 

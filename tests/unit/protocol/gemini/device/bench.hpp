@@ -22,9 +22,9 @@ namespace sonard::gemini {
 
 using namespace std::chrono_literals;
 
-inline constexpr Ipv4 head_address = 0xC0A802C9;     // 192.168.2.201
-inline constexpr Ipv4 topside_address = 0xC0A80205;  // 192.168.2.5
-inline constexpr Ipv4 other_topside = 0xC0A80206;    // 192.168.2.6
+inline constexpr Ipv4 head_address = 0xC0A802C9;    // 192.168.2.201
+inline constexpr Ipv4 client_address = 0xC0A80205;  // 192.168.2.5
+inline constexpr Ipv4 other_client = 0xC0A80206;    // 192.168.2.6
 
 /// The bytes of hexadecimal text such as "20 01 59". All other characters are skipped.
 inline std::vector<std::uint8_t> from_hex(std::string_view text) {
@@ -114,7 +114,7 @@ class Bench {
   struct Sent {
     TimePoint at{};
     Outgoing::To to = Outgoing::To::peer;
-    Ipv4 topside = 0;
+    Ipv4 client = 0;
     Ipv4 reply_from = 0;
     SharedBytes bytes;
 
@@ -142,10 +142,10 @@ class Bench {
   std::vector<Notice> notices;
   Actions last;  ///< of the last step
 
-  void raw(std::span<const std::uint8_t> bytes, Ipv4 from = topside_address, Ipv4 to = head_address) {
-    step(BytesReceived{{0, {from, topside_port}, to}, SharedBytes(copy(bytes))});
+  void raw(std::span<const std::uint8_t> bytes, Ipv4 from = client_address, Ipv4 to = head_address) {
+    step(BytesReceived{{0, {from, client_port}, to}, SharedBytes(copy(bytes))});
   }
-  void command(const Command& command, Ipv4 from = topside_address) { raw(encode(command), from); }
+  void command(const Command& command, Ipv4 from = client_address) { raw(encode(command), from); }
   void image(const PingImage& image) { step(PingRendered{image}); }
   void trigger() { step(TriggerEdge{}); }
   void set_out_of_water(bool out) { step(WaterChanged{out}); }

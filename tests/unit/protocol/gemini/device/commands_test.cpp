@@ -5,14 +5,14 @@
 namespace sonard::gemini {
 namespace {
 
-/// The answers of the head to one command of the topside, one entry per datagram.
+/// The answers of the head to one command of the client, one entry per datagram.
 std::vector<std::vector<std::uint8_t>> answers(Bench& bench, std::span<const std::uint8_t> command) {
   const std::size_t before = bench.sent.size();
   bench.raw(command);
   std::vector<std::vector<std::uint8_t>> result;
   for (std::size_t i = before; i < bench.sent.size(); ++i) {
     EXPECT_EQ(bench.sent[i].to, Outgoing::To::peer);
-    EXPECT_EQ(bench.sent[i].topside, topside_address);
+    EXPECT_EQ(bench.sent[i].client, client_address);
     EXPECT_EQ(bench.sent[i].reply_from, head_address);
     result.push_back(copy(bench.sent[i].bytes));
   }
@@ -43,7 +43,7 @@ TEST(Commands, NetworkConfigIsTakenInSilence) {
   EXPECT_TRUE(answers(bench, "31 01 59 02 00 00 02 01 0f 0f 00 00 16 05 50 c3 00 00 00 01 10 27").empty());
   EXPECT_TRUE(answers(bench, "31 01 59 02 00 00 00 00 0f 0f 00 00 16 05 50 c3 00 00 00 00").empty());
   EXPECT_EQ(bench.device.counters().commands, 2U);
-  EXPECT_EQ(bench.device.topside(), topside_address);
+  EXPECT_EQ(bench.device.client(), client_address);
 }
 
 TEST(Commands, TestsSerialAndModemGetTheirHarmlessAnswers) {
@@ -194,7 +194,7 @@ TEST(Commands, RebootIsFiveSecondsOfSilenceAndAClockFromZero) {
   bench.run_until(2500ms);
   bench.command(to_head<Reboot>());
   const std::size_t at_reboot = bench.sent.size();
-  EXPECT_EQ(bench.device.topside(), 0U);
+  EXPECT_EQ(bench.device.client(), 0U);
   bench.run_until(5s);
   bench.command(to_head<StatusRequest>());
   bench.command(ping_of(100));
@@ -236,7 +236,7 @@ TEST(Commands, OnlyTheOwnIdIsHeard) {
   }
   EXPECT_EQ(bench.count(MessageType::acknowledge), 0U);
   EXPECT_EQ(bench.device.counters().wrong_id, 5U);
-  EXPECT_EQ(bench.device.topside(), 0U) << "a command for another head connects nobody";
+  EXPECT_EQ(bench.device.client(), 0U) << "a command for another head connects nobody";
 }
 
 TEST(Commands, IdZeroCanBeAllowed) {
@@ -266,7 +266,7 @@ TEST(Commands, UnknownAndShortMessagesAreTakenInSilence) {
     EXPECT_TRUE(answers(bench, bad).empty()) << bad;
   }
   EXPECT_EQ(bench.device.counters().bad_datagrams, 6U);
-  EXPECT_EQ(bench.device.topside(), 0U) << "neither connects a topside";
+  EXPECT_EQ(bench.device.client(), 0U) << "neither connects a client";
 }
 
 TEST(Commands, TrailingBytesAreIgnored) {
@@ -274,22 +274,22 @@ TEST(Commands, TrailingBytesAreIgnored) {
   EXPECT_EQ(answers(bench, "20 01 59 02 00 00 00 00 de ad be ef").size(), 1U);
 }
 
-TEST(Commands, NewestTopsideGetsTheAnswers) {
+TEST(Commands, NewestClientGetsTheAnswers) {
   Bench bench;
   bench.command(to_head<StatusRequest>());
-  bench.command(to_head<GpoWrite>(), other_topside);
+  bench.command(to_head<GpoWrite>(), other_client);
   ASSERT_EQ(bench.sent.size(), 3U);
-  EXPECT_EQ(bench.sent[1].topside, topside_address);
-  EXPECT_EQ(bench.sent[2].topside, other_topside);
-  EXPECT_EQ(bench.device.topside(), other_topside);
-  EXPECT_EQ(bench.device.counters().topside_changes, 1U);
+  EXPECT_EQ(bench.sent[1].client, client_address);
+  EXPECT_EQ(bench.sent[2].client, other_client);
+  EXPECT_EQ(bench.device.client(), other_client);
+  EXPECT_EQ(bench.device.counters().client_changes, 1U);
 }
 
 TEST(Commands, AnswersComeFromTheAddressThatWasAddressed) {
   Bench bench;
-  bench.raw(encode(Command{to_head<StatusRequest>()}), topside_address, 0x0A3D13C8);
+  bench.raw(encode(Command{to_head<StatusRequest>()}), client_address, 0x0A3D13C8);
   EXPECT_EQ(bench.sent.back().reply_from, 0x0A3D13C8U);
-  bench.raw(encode(Command{to_head<StatusRequest>()}), topside_address, head_address);
+  bench.raw(encode(Command{to_head<StatusRequest>()}), client_address, head_address);
   EXPECT_EQ(bench.sent.back().reply_from, head_address);
 }
 

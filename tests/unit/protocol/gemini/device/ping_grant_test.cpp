@@ -91,7 +91,7 @@ TEST_F(PingGrant, AnEdgeOfTheTriggerMakesAPingNext) {
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 
-TEST_F(PingGrant, ASilentTopsideHasNoNextPing) {
+TEST_F(PingGrant, ASilentClientHasNoNextPing) {
   bench.command(ping_of(64, RunMode::continuous));
   bench.run_for(4s);
   EXPECT_FALSE(bench.last.next_ping);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The record of a ping for logs equals the image that a topside decodes.
+// The record of a ping for logs equals the image that a client decodes.
 #include <cmath>
 
 #include "bench.hpp"
@@ -70,14 +70,14 @@ TEST(PingRecord, SaysWhatThePingWasMadeWith) {
   EXPECT_NEAR(record.bearings_rad.front(), -1.0405, 1e-4) << "port first";
 }
 
-TEST(PingRecord, KeepsTheSpeedThatTheTopsideReckonsWithAndSaysWhoseItIs) {
+TEST(PingRecord, KeepsTheSpeedThatTheClientReckonsWithAndSaysWhoseItIs) {
   DeviceConfig device = example_config();
   device.water_sound_speed_mps = 1480.0;
   Bench told(device);
   PingConfig config = ping_of(100);
   const PingRecord from_config = record(told, config);
   EXPECT_DOUBLE_EQ(from_config.settings.sound_speed_mps, 1500.0);
-  EXPECT_DOUBLE_EQ(from_config.settings.bin_m, 1500.0 / (2 * 90422.0)) << "wrong, and what a topside shows";
+  EXPECT_DOUBLE_EQ(from_config.settings.bin_m, 1500.0 / (2 * 90422.0)) << "wrong, and what a client shows";
   EXPECT_TRUE(from_config.settings.sound_speed_from_config);
 
   Bench measured(device);

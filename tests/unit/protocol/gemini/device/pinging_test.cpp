@@ -273,8 +273,8 @@ TEST(Pinging, ThreeSecondsOfSilenceSuspendAndAnyCommandResumes) {
   ASSERT_FALSE(bench.ping_datagrams().empty());
   EXPECT_LT(bench.ping_datagrams().back().at, 3s);
   EXPECT_GT(bench.ping_datagrams().back().at, 2900ms);
-  EXPECT_EQ(bench.device.topside(), 0U);
-  EXPECT_EQ(bench.device.counters().topside_timeouts, 1U);
+  EXPECT_EQ(bench.device.client(), 0U);
+  EXPECT_EQ(bench.device.counters().client_timeouts, 1U);
   EXPECT_EQ(bench.count(MessageType::status), 11U) << "status goes on";
 
   const std::size_t before = bench.sent.size();
@@ -309,7 +309,7 @@ TEST(Pinging, AnyValidCommandKeepsTheHeadAwake) {
   bench.run_for(2s);
   bench.raw(from_hex("20 01 5a 02 00 00 00 00"));  // for another head
   bench.run_for(2s);
-  EXPECT_EQ(bench.device.counters().topside_timeouts, 1U);
+  EXPECT_EQ(bench.device.counters().client_timeouts, 1U);
 }
 
 TEST(Pinging, SilenceCutsAPingThatIsLongerThanThat) {
@@ -328,16 +328,16 @@ TEST(Pinging, SilenceCutsAPingThatIsLongerThanThat) {
   EXPECT_TRUE(bench.ping_datagrams(before).empty()) << "nothing is left of it";
 }
 
-TEST(Pinging, DataFollowTheNewestTopside) {
+TEST(Pinging, DataFollowTheNewestClient) {
   Bench bench;
   bench.command(ping_of(100, RunMode::continuous, 100ms));
   bench.run_until(250ms);
   const std::size_t before = bench.sent.size();
-  bench.command(to_head<NetworkConfig>(), other_topside);
+  bench.command(to_head<NetworkConfig>(), other_client);
   bench.run_until(500ms);
   EXPECT_GT(bench.ping_datagrams(before).size(), 100U);
   for (const auto& datagram : bench.ping_datagrams(before)) {
-    EXPECT_EQ(datagram.topside, other_topside);
+    EXPECT_EQ(datagram.client, other_client);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head in playback sends the pings that it is fed when they are due, whatever the topside requests.
+// A head in playback sends the pings that it is fed when they are due, whatever the client requests.
 #include <algorithm>
 
 #include "bench.hpp"
@@ -173,7 +173,7 @@ TEST_F(Playback, OutOfTheWaterAPingIsKept) {
   EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
-TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheTopside) {
+TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheClient) {
   RecordedPing ping = recorded(7);
   ping.settings.gain_percent = -1.0;
   bench.step(PingFed{ping});

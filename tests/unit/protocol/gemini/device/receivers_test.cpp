@@ -203,7 +203,7 @@ class LossyBench {
       : bench(device), receiver_(std::move(receiver)), loss_(loss), random_(seed) {
     bench.on_sent = [this](const Bench::Sent& sent) {
       if (sent.to == Outgoing::To::peer && !lost(sent.bytes)) {
-        to_topside_.emplace(sent.at + latency, sent.bytes);
+        to_client_.emplace(sent.at + latency, sent.bytes);
       }
     };
   }
@@ -228,7 +228,7 @@ class LossyBench {
     while (const auto next = next_event(end)) {
       bench.run_until(*next);
       deliver(to_head_, [this](const auto& bytes) { bench.raw(bytes); });
-      deliver(to_topside_, [this](const auto& bytes) { receiver_->on_datagram(bench.now, bytes); });
+      deliver(to_client_, [this](const auto& bytes) { receiver_->on_datagram(bench.now, bytes); });
       if (receiver_->next_tick() && *receiver_->next_tick() <= bench.now) {
         receiver_->on_tick(bench.now);
       }
@@ -253,7 +253,7 @@ class LossyBench {
   std::optional<TimePoint> next_event(TimePoint end) const {
     TimePoint next =
         std::min(bench.next_event(), bench.now + 1ms);  // the application runs once per millisecond
-    next = to_topside_.empty() ? next : std::min(next, to_topside_.begin()->first);
+    next = to_client_.empty() ? next : std::min(next, to_client_.begin()->first);
     next = to_head_.empty() ? next : std::min(next, to_head_.begin()->first);
     next = std::min(next, receiver_->next_tick().value_or(next));
     return next <= end ? std::optional(std::max(next, bench.now)) : std::nullopt;
@@ -267,7 +267,7 @@ class LossyBench {
   std::unique_ptr<Receiver> receiver_;
   double loss_;
   std::mt19937 random_;
-  std::multimap<TimePoint, SharedBytes> to_topside_;
+  std::multimap<TimePoint, SharedBytes> to_client_;
   std::multimap<TimePoint, std::vector<std::uint8_t>> to_head_;
 };
 
@@ -418,7 +418,7 @@ TEST(Receivers, OneLostLineRunsAsDocumented) {
   Bench bench;
   EarlyReceiver receiver;
   std::vector<std::string> head_says;
-  std::vector<std::string> topside_says;
+  std::vector<std::string> client_says;
   bool dropped = false;
   bench.on_sent = [&](const Bench::Sent& sent) {
     const auto report = decode_report(sent.bytes).value();
@@ -438,11 +438,11 @@ TEST(Receivers, OneLostLineRunsAsDocumented) {
   while (bench.now < 100ms) {
     bench.run_for(100us);
     for (const RetryRequest& request : std::exchange(receiver.requests, {})) {
-      topside_says.push_back(request.kind == RetryKind::lines ? line_word(request.first_line) : "tail");
+      client_says.push_back(request.kind == RetryKind::lines ? line_word(request.first_line) : "tail");
       bench.command(request);
     }
   }
-  EXPECT_EQ(topside_says, (std::vector<std::string>{"line 10", "tail"}));
+  EXPECT_EQ(client_says, (std::vector<std::string>{"line 10", "tail"}));
   EXPECT_EQ(head_says, (std::vector<std::string>{"tail", "line 10", "tail again"}));
   ASSERT_EQ(receiver.completed.size(), 1U);
   EXPECT_EQ(receiver.completed[0].lost_lines, 0);

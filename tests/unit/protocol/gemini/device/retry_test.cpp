@@ -202,7 +202,7 @@ TEST(Retries, HoldAHeadThatWasAskedForBeforeThem) {
   Bench bench;
   bench.command(ping_of(2000));  // 54 ms
   bench.run_until(10ms);
-  bench.command(ping_of(100));  // this topside does not wait for the end of a ping
+  bench.command(ping_of(100));  // this client does not wait for the end of a ping
   bench.run_until(20ms);
   bench.command(retry_of(RetryKind::lines, 10));
   bench.run_until(60ms);  // less than 10 ms after r10, which left with the tail

@@ -76,7 +76,7 @@ TEST(Robustness, RandomDatagramsAtRandomTimes) {
         bytes[22] = static_cast<std::uint8_t>(draw(256));
         bytes[23] = static_cast<std::uint8_t>(draw(6));
       }
-      bench.raw(bytes, draw(50) == 0 ? other_topside : topside_address);
+      bench.raw(bytes, draw(50) == 0 ? other_client : client_address);
       if (draw(20) == 0) {
         bench.set_out_of_water(draw(2) == 0);
       }
@@ -99,7 +99,7 @@ TEST(Robustness, RandomDatagramsAtRandomTimes) {
 TEST(Robustness, HeadIsUsedThroughTheInterfaceOfAllHeads) {
   const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(example_config(), 0ns);
   EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U);
-  const Peer from{0, {topside_address, topside_port}, head_address};
+  const Peer from{0, {client_address, client_port}, head_address};
   const SharedBytes request(encode(Command{to_head<StatusRequest>()}));
   EXPECT_EQ(head->step(1ms, BytesReceived{from, request}).send.size(), 1U);
 }

@@ -8,7 +8,7 @@ namespace {
 TEST(Status, IsTheWorkedExampleByteForByte) {
   Device device(example_config(), 0ns);
   const TimePoint now = std::chrono::microseconds{0x12345678};
-  const BytesReceived command{{0, {topside_address, topside_port}, head_address},
+  const BytesReceived command{{0, {client_address, client_port}, head_address},
                               SharedBytes(encode(Command{to_head<NetworkConfig>()}))};
   const auto sent = device.step(now, command).send;
   ASSERT_EQ(sent.size(), 1U);
@@ -57,7 +57,7 @@ TEST(Status, KeepsItsPhaseWhenTheCallerWasLate) {
   EXPECT_EQ(late.wake_at, TimePoint{14s});
 }
 
-TEST(Status, NamesTheTopsideWhileItIsConnected) {
+TEST(Status, NamesTheClientWhileItIsConnected) {
   Bench bench;
   bench.run_until(500ms);
   bench.command(to_head<StatusRequest>());
@@ -66,7 +66,7 @@ TEST(Status, NamesTheTopsideWhileItIsConnected) {
   ASSERT_EQ(statuses.size(), 6U);
   EXPECT_EQ(statuses[0].second.surface_ip, 0U);
   for (const std::size_t connected : {1U, 2U, 3U}) {
-    EXPECT_EQ(statuses[connected].second.surface_ip, topside_address);
+    EXPECT_EQ(statuses[connected].second.surface_ip, client_address);
   }
   EXPECT_EQ(statuses[4].second.surface_ip, 0U) << "3 s without a command ended at 3.5 s";
 }

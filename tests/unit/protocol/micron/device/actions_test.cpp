@@ -132,7 +132,7 @@ TEST(Warnings, OfEqualLimitsComeOnce) {
   EXPECT_EQ(warnings(bench).size(), 1U);
 }
 
-TEST(Warnings, OfEqualLimitsAreNotForAHostThatMeansThem) {
+TEST(Warnings, OfEqualLimitsAreNotForAClientThatMeansThem) {
   for (const std::uint16_t control : {0x3305, 0x2315, 0x2307}) {  // stare, motor off, continuous
     Bench bench;
     HeadCommand command = sector(1600, 1600);
@@ -231,7 +231,7 @@ TEST(Frames, AreForEverybodyOnTheLine) {
   }
 }
 
-TEST(Jobs, SayWhatTheHostHasSet) {
+TEST(Jobs, SayWhatTheClientHasSet) {
   Bench bench;
   HeadCommand command = sector(2400, 4000, 16);
   command.ad_low = 40;

@@ -70,7 +70,7 @@ TEST(LineRecord, SaysWhatTheLineWasMadeWith) {
 
 TEST(LineRecord, LooksWhereTheBeamLookedAndSaysWhatTheHeadSaid) {
   DeviceConfig config;
-  config.mounted_inverted = true;  // the host ignores the mounting
+  config.mounted_inverted = true;  // the client ignores the mounting
   Bench bench(config);
   bench.make_ready(sector(3520, 4800));
   const HeadData line = bench.scan(1)[0];

@@ -64,7 +64,7 @@ TEST(Line, OfTheRockDriverBeginsAsRecorded) {
   EXPECT_EQ(bytes[42], 0xC8);
 }
 
-TEST(Line, EchoesWhateverTheHostSaid) {
+TEST(Line, EchoesWhateverTheClientSaid) {
   HeadCommand command = sector(2500, 3900);
   command.control = 0x2381;
   command.head_type = 2;
@@ -96,7 +96,7 @@ TEST(Line, EchoesWhateverTheHostSaid) {
   EXPECT_EQ(line.step, 88);
 }
 
-TEST(Line, HoldsTheSamplesAsRenderedEvenWhereTheHostSentALongLockout) {
+TEST(Line, HoldsTheSamplesAsRenderedEvenWhereTheClientSentALongLockout) {
   Bench bench;
   bench.run_until(10s);
   bench.raw(fixture("head_command_rock"));  // lockout 13333 us, which would blank 10 m

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A head in playback sends the lines that it is fed when they are due, whatever the host requests.
+// A head in playback sends the lines that it is fed when they are due, whatever the client requests.
 #include "bench.hpp"
 #include "protocol/micron/recorded_form.hpp"
 
@@ -91,7 +91,7 @@ TEST_F(MicronPlayback, TheJobIsWhatTheLineWasMadeWith) {
   EXPECT_EQ(job.listening_time, 1920us);
   EXPECT_DOUBLE_EQ(job.gain_db, 77 * 80.0 / 210);
   EXPECT_EQ(setting(job, "bits"), "8");
-  EXPECT_EQ(setting(job, "scan"), "") << "what the host asks for is not what is sent";
+  EXPECT_EQ(setting(job, "scan"), "") << "what the client asks for is not what is sent";
 }
 
 TEST_F(MicronPlayback, TheJobSaysHowItDiffersFromWhatIsAskedFor) {
@@ -157,7 +157,7 @@ TEST_F(MicronPlayback, ALineIsMadeWhenItIsDueAndLeavesWhenItsEchoesAreIn) {
   EXPECT_EQ(lines[0].first, due + 1920us);
 }
 
-TEST_F(MicronPlayback, LinesComeAsCloseAsTheHostAsksForThem) {
+TEST_F(MicronPlayback, LinesComeAsCloseAsTheClientAsksForThem) {
   std::uint64_t record = 0;
   bench.step(PingFed{recorded(record)});
   bench.command(SendData{});

@@ -253,10 +253,10 @@ TEST(Alives, ParametersWhileItCentresShowAtOnce) {
   EXPECT_EQ(bench.head_infos(), (Infos{0x5D, 0x9D, 0x9D, 0x8A}));
 }
 
-TEST(Clock, FollowsTheHostUnlessToldNotTo) {
+TEST(Clock, FollowsTheClientUnlessToldNotTo) {
   for (const bool follows : {true, false}) {
     DeviceConfig config;
-    config.clock_follows_host = follows;
+    config.clock_follows_client = follows;
     Bench bench(config);
     bench.run_until(1500ms);
     bench.raw(fixture("send_data_with_time"));

@@ -14,7 +14,7 @@ Bytes begin_of(const std::string& name, std::size_t size) {
   return bytes;
 }
 
-TEST(Robustness, HostThatVanishesInTheMiddleOfALineLeavesARunningHead) {
+TEST(Robustness, ClientThatVanishesInTheMiddleOfALineLeavesARunningHead) {
   Bench bench;
   bench.make_ready(all_round());
   bench.scan(5);
@@ -25,7 +25,7 @@ TEST(Robustness, HostThatVanishesInTheMiddleOfALineLeavesARunningHead) {
 
   bench.sent.clear();
   bench.raw(fixture("send_version"));
-  ASSERT_EQ(bench.sent.size(), 1U) << "the next host is understood from its first byte on";
+  ASSERT_EQ(bench.sent.size(), 1U) << "the next client is understood from its first byte on";
   EXPECT_EQ(bench.sent[0].bytes, fixture("version_data"));
   EXPECT_EQ(bench.scan(3).size(), 3U) << "with the parameters of the last one";
 }

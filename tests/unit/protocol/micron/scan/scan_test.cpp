@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Micron in the tank (docs/worlds.md), from the host's command to the bins that it reads, in virtual time:
-// head, mapping of pings and renderer, without sockets. The expected values come from the four planes of the
-// walls.
+// A Micron in the tank (docs/worlds.md), from the client's command to the bins that it reads, in virtual
+// time: head, mapping of pings and renderer, without sockets. The expected values come from the four planes
+// of the walls.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,8 +16,8 @@
 #include <gtest/gtest.h>
 #include <glm/gtc/quaternion.hpp>
 
+#include "protocol/micron/client.hpp"
 #include "protocol/micron/device.hpp"
-#include "protocol/micron/host.hpp"
 #include "protocol/micron/units.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
@@ -72,13 +72,13 @@ struct Line {
   PingJob job;
 };
 
-/// Head, renderer and host on one clock, which runs as fast as they do.
+/// Head, renderer and client on one clock, which runs as fast as they do.
 class Scan {
  public:
   explicit Scan(HeadConfig config)
       : config_(std::move(config)),
         device_(micron_config(config_).device, 0ns),
-        host_({}, 0ns),
+        client_({}, 0ns),
         renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                   {render::EngineKind::cpu, 0}) {}
 
@@ -86,11 +86,11 @@ class Scan {
   std::function<double(TimePoint)> yaw_rad = [](TimePoint) { return 0.0; };
 
   std::vector<Line> run(const micron::HeadCommand& command, std::uint64_t lines) {
-    host_.start(now_, command, lines);
+    client_.start(now_, command, lines);
     std::vector<Line> scan;
-    while (!host_.finished() && now_ < 120s) {
+    while (!client_.finished() && now_ < 120s) {
       step();
-      for (micron::ReceivedLine& line : host_.take_lines()) {
+      for (micron::ReceivedLine& line : client_.take_lines()) {
         const auto job = std::find_if(jobs_.begin(), jobs_.end(), [&](const PingJob& one) {
           return one.bearing_rad == micron::bearing_rad(line.head.bearing) && one.number >= next_job_;
         });
@@ -109,14 +109,14 @@ class Scan {
 
  private:
   void step() {
-    host_.advance(now_);
-    for (const auto& frame : host_.take_outgoing()) {
+    client_.advance(now_);
+    for (const auto& frame : client_.take_outgoing()) {
       happen(BytesReceived{{}, SharedBytes(frame)});
     }
     happen(TimePassed{});
-    host_.advance(now_);
+    client_.advance(now_);
     std::optional<TimePoint> next = wake_at_;
-    if (const auto other = host_.next_deadline(); other && (!next || *other < *next)) {
+    if (const auto other = client_.next_deadline(); other && (!next || *other < *next)) {
       next = other;
     }
     now_ = std::max(now_ + 1us, next.value_or(now_ + 1ms));
@@ -126,7 +126,7 @@ class Scan {
     const Actions actions = device_.step(now_, event);
     wake_at_ = actions.wake_at;
     for (const Outgoing& frame : actions.send) {
-      host_.on_bytes(now_, {frame.bytes.data(), frame.bytes.size()});
+      client_.on_bytes(now_, {frame.bytes.data(), frame.bytes.size()});
     }
     if (actions.render) {
       happen(PingRendered{answer(*actions.render)});
@@ -146,7 +146,7 @@ class Scan {
   HeadConfig config_;
   TimePoint now_{};
   micron::Device device_;
-  micron::Host host_;
+  micron::Client client_;
   render::SonarRenderer renderer_;
   std::optional<TimePoint> wake_at_;
   std::vector<PingJob> jobs_;

@@ -13,9 +13,9 @@
 #include <tuple>
 #include <vector>
 
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
-#include "protocol/oculus/host.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 #include "tests/support/hex_fixture.hpp"
 
@@ -45,11 +45,11 @@ class Line {
       if (message.to == Outgoing::To::everybody) {
         statuses.emplace_back(message.bytes.begin(), message.bytes.end());
       } else {
-        host.receive(now_, message.bytes);
+        client.receive(now_, message.bytes);
         sent.emplace_back(message.bytes.begin(), message.bytes.end());
       }
     }
-    for (ReceivedPing& ping : host.take_pings()) {
+    for (ReceivedPing& ping : client.take_pings()) {
       pings.push_back(std::move(ping));
     }
     if (actions.record) {
@@ -70,7 +70,7 @@ class Line {
     now_ = end;
   }
 
-  Host host;
+  Client client;
   std::vector<ReceivedPing> pings;
   std::vector<Bytes> sent;
   std::vector<Bytes> statuses;
@@ -157,7 +157,7 @@ TEST_P(OculusForms, EchoAndSizesAreWhatClientsCheck) {
   line.receive(encode(fire));
   line.run_for(milliseconds{300});
   ASSERT_GE(line.pings.size(), 3U);
-  EXPECT_EQ(line.host.statistics().bad_messages, 0U);
+  EXPECT_EQ(line.client.statistics().bad_messages, 0U);
   const PingResult& ping = line.pings[1].result;
   EXPECT_EQ(ping.fire.extension, fire.extension);
   EXPECT_EQ(ping.fire.version, second ? 2 : 1);
@@ -264,22 +264,22 @@ TEST(OculusAcceptance, AStatusOf142BytesComesEachSecondWhateverElseHappens) {
 // 7, each section of the diagram.
 TEST(OculusAcceptance, IdleAndStandbyAreToldEachSecondAndStandbyEndsWithinAPeriod) {
   Line line;
-  EXPECT_EQ(line.host.take_logs().size(), 1U);
+  EXPECT_EQ(line.client.take_logs().size(), 1U);
   line.run_for(milliseconds{3'100});
-  EXPECT_EQ(line.host.statistics().dummies, 3U);
+  EXPECT_EQ(line.client.statistics().dummies, 3U);
   line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
   line.run_for(milliseconds{950});
   EXPECT_EQ(line.pings.size(), 10U);
   line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta_standby"));
-  EXPECT_EQ(line.host.statistics().dummies, 4U) << "at once: a client waits for it";
+  EXPECT_EQ(line.client.statistics().dummies, 4U) << "at once: a client waits for it";
   line.run_for(seconds{4});
   EXPECT_LE(line.pings.size(), 11U);
-  EXPECT_EQ(line.host.statistics().dummies, 8U);
+  EXPECT_EQ(line.client.statistics().dummies, 8U);
   const std::size_t in_standby = line.pings.size();
   line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
   line.run_for(milliseconds{950});
   EXPECT_GE(line.pings.size(), in_standby + 9);
-  EXPECT_EQ(line.host.statistics().pings_missed, 0U) << "numbers count on";
+  EXPECT_EQ(line.client.statistics().pings_missed, 0U) << "numbers count on";
 }
 
 // 3.3, and 7: the viewer fires after every ping and every status.
@@ -479,7 +479,7 @@ TEST(OculusPlayback, WhatNoHeadCouldSendHasNoRecordedForm) {
 
 // ---- The client's side
 
-TEST(OculusHost, ReadsMessagesInPiecesOfAnySizeAndCountsWhatIsMissing) {
+TEST(OculusClient, ReadsMessagesInPiecesOfAnySizeAndCountsWhatIsMissing) {
   Line line;
   line.receive(encode(fire_with(true, 8, true, 256, 1)));
   line.run_for(milliseconds{450});
@@ -490,37 +490,37 @@ TEST(OculusHost, ReadsMessagesInPiecesOfAnySizeAndCountsWhatIsMissing) {
     }
   }
   for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, std::size_t{4096}, stream.size()}) {
-    Host host;
+    Client client;
     for (std::size_t at = 0; at < stream.size(); at += piece) {
-      host.receive({}, std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
+      client.receive({}, std::span(stream).subspan(at, std::min(piece, stream.size() - at)));
       if (piece == 1 && at > 5000) {
         break;  // single bytes are slow
       }
     }
-    EXPECT_EQ(host.statistics().dropped_bytes, 3U);
-    EXPECT_EQ(host.take_logs().size(), 1U);
+    EXPECT_EQ(client.statistics().dropped_bytes, 3U);
+    EXPECT_EQ(client.take_logs().size(), 1U);
     if (piece > 1) {
-      EXPECT_EQ(host.statistics().pings, line.pings.size() - 1);
-      EXPECT_EQ(host.statistics().pings_missed, 1U);
-      EXPECT_EQ(host.statistics().bad_messages, 0U);
+      EXPECT_EQ(client.statistics().pings, line.pings.size() - 1);
+      EXPECT_EQ(client.statistics().pings_missed, 1U);
+      EXPECT_EQ(client.statistics().bad_messages, 0U);
     }
   }
 }
 
-TEST(OculusHost, ALengthThatNoMessageHasIsSkipped) {
-  Host host;
+TEST(OculusClient, ALengthThatNoMessageHasIsSkipped) {
+  Client client;
   Bytes bytes = encode_dummy({7892, 1032});
   bytes[13] = 0x7F;  // about two billion bytes
   const Bytes good = encode_dummy({7892, 1032});
   bytes.insert(bytes.end(), good.begin(), good.end());
-  host.receive({}, bytes);
-  EXPECT_EQ(host.statistics().dummies, 1U);
-  EXPECT_EQ(host.statistics().dropped_bytes, 16U);
+  client.receive({}, bytes);
+  EXPECT_EQ(client.statistics().dummies, 1U);
+  EXPECT_EQ(client.statistics().dropped_bytes, 16U);
   Bytes bad = sonard::testing::load_hex_fixture("oculus", "ping_result_v1");
   bad[106] = 9;
-  host.receive({}, bad);
-  EXPECT_EQ(host.statistics().bad_messages, 1U);
-  EXPECT_TRUE(host.take_pings().empty());
+  client.receive({}, bad);
+  EXPECT_EQ(client.statistics().bad_messages, 1U);
+  EXPECT_TRUE(client.take_pings().empty());
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST_P(CommandExampleTest, BytesMeanTheValue) {
 }
 
 TEST_P(CommandExampleTest, ValueBecomesTheBytes) {
-  EXPECT_EQ(encode(GetParam().value, host_id, GetParam().destination), load_fixture(GetParam().fixture));
+  EXPECT_EQ(encode(GetParam().value, client_id, GetParam().destination), load_fixture(GetParam().fixture));
 }
 
 TEST_P(ReportExampleTest, BytesMeanTheValue) {

@@ -445,7 +445,7 @@ TEST(Ping360Clients, BlueosAsksTenTimesAtEachSpeedAndHearsNothingAtWrongOnes) {
 
 // ---- A head that is locked to its first client (docs/security.md)
 
-const Peer other_host{0, {0x7F000003, 4000}, 0};
+const Peer other_client{0, {0x7F000003, 4000}, 0};
 
 DeviceConfig locked_config() {
   DeviceConfig config = with_serial_line();
@@ -457,7 +457,7 @@ DeviceConfig locked_config() {
 TEST(Ping360Lock, DropsWhatOthersSendUntilTheFirstIsSilentForItsTimeout) {
   Bench bench(locked_config());
   bench.command(scan_of(0, 399));
-  for (const Peer& other : {other_host, serial_client}) {
+  for (const Peer& other : {other_client, serial_client}) {
     EXPECT_TRUE(bench.ask(GeneralRequest{5}, other).empty());
     EXPECT_TRUE(bench.ask(MotorOff{}, other).empty());
     bench.raw({}, other);  // a break
@@ -467,21 +467,21 @@ TEST(Ping360Lock, DropsWhatOthersSendUntilTheFirstIsSilentForItsTimeout) {
   bench.run_until(29s);
   EXPECT_GT(bench.all<AutoDeviceData>(before).size(), 100U) << "the scan goes on";
   bench.raw(fixture("request_protocol_version"),
-            {0, {client_a.remote.address, 4999}, 0});  // its host sends again
+            {0, {client_a.remote.address, 4999}, 0});  // its client sends again
   bench.run_until(58s);
-  EXPECT_TRUE(bench.ask(GeneralRequest{5}, other_host).empty());
+  EXPECT_TRUE(bench.ask(GeneralRequest{5}, other_client).empty());
   bench.run_until(59s);
-  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_host).size(), 1U);
+  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_client).size(), 1U);
   EXPECT_TRUE(bench.ask(GeneralRequest{5}).empty()) << "now the other has it";
 }
 
 TEST(Ping360Lock, IsNotTakenByNoiseAndEndsWithAReset) {
   Bench bench(locked_config());
-  bench.raw({'B', 'R', 0, 1, 2, 3}, other_host);
+  bench.raw({'B', 'R', 0, 1, 2, 3}, other_client);
   EXPECT_EQ(bench.ask(GeneralRequest{5}).size(), 1U);
   bench.command(Reset{});
   bench.run_for(2s);
-  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_host).size(), 1U);
+  EXPECT_EQ(bench.ask(GeneralRequest{5}, other_client).size(), 1U);
 }
 
 }  // namespace

@@ -52,10 +52,10 @@ Bytes externally_triggered(Bytes config) {
   return config;
 }
 
-// One head and a topside on one io_context that the test runs.
+// One head and a client on one io_context that the test runs.
 struct GeminiHeadTest : testing::Test {
   const Ipv4 head_address = test::own_loopback_address(2);
-  const Ipv4 topside_address = test::own_loopback_address(1);
+  const Ipv4 client_address = test::own_loopback_address(1);
   const Ipv4 unauthorised_address = test::own_loopback_address(99);
 
   asio::io_context io;
@@ -71,7 +71,7 @@ struct GeminiHeadTest : testing::Test {
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
   std::unique_ptr<Head> head;
-  UdpEndpoint topside{io, {topside_address, 52900}};
+  UdpEndpoint client{io, {client_address, 52900}};
   std::vector<Datagram> received;
 
   GeminiHeadTest() {
@@ -81,9 +81,9 @@ struct GeminiHeadTest : testing::Test {
     gemini_config.device.alternate_address = head_address;
     gemini_config.device.netmask = 0xFF000000;
     gemini_config.bind_address = head_address;
-    gemini_config.status = {StatusDestination::Mode::unicast, {topside_address}};
-    gemini_config.allow = {{topside_address, 32}};
-    topside.start([this](const Datagram& datagram) { received.push_back(datagram); });
+    gemini_config.status = {StatusDestination::Mode::unicast, {client_address}};
+    gemini_config.allow = {{client_address, 32}};
+    client.start([this](const Datagram& datagram) { received.push_back(datagram); });
   }
 
   ~GeminiHeadTest() override {
@@ -109,7 +109,7 @@ struct GeminiHeadTest : testing::Test {
     head->start();
   }
 
-  void command(const Bytes& bytes) { topside.send({{{head_address, 52901}, 0, SharedBytes(bytes)}}); }
+  void command(const Bytes& bytes) { client.send({{{head_address, 52901}, 0, SharedBytes(bytes)}}); }
 
   std::vector<Bytes> of_type(std::uint8_t type) const {
     std::vector<Bytes> found;
@@ -164,7 +164,7 @@ TEST_F(GeminiHeadTest, SendsStatusFromItsCommandPort) {
 
 TEST_F(GeminiHeadTest, AnswersToPort52900WhateverTheSourcePort) {
   start();
-  UdpEndpoint elsewhere(io, {topside_address, 0});
+  UdpEndpoint elsewhere(io, {client_address, 0});
   elsewhere.send({{{head_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
 }
@@ -175,7 +175,7 @@ TEST_F(GeminiHeadTest, BoundToAllAddressesItAnswersFromTheOneAddressed) {
       static_cast<std::uint16_t>(20000 + getpid() % 20000);  // on all addresses, because 52901 may be in use
   start();
   const Ipv4 other = test::own_loopback_address(77);
-  topside.send({{{other, gemini_config.command_port}, 0, SharedBytes(status_request)}});
+  client.send({{{other, gemini_config.command_port}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
   for (const Datagram& datagram : received) {
     EXPECT_EQ(datagram.remote.address, datagram.bytes[0] == 0x49 ? other : head_address);
@@ -415,7 +415,7 @@ TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
   command(status_request);
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(renderer->pings, 0);
-  topside.send({{*gemini_config.trigger, 0, SharedBytes(Bytes{1})}});
+  client.send({{*gemini_config.trigger, 0, SharedBytes(Bytes{1})}});
   ASSERT_TRUE(run_until_received(0x43, 1));
   EXPECT_EQ(renderer->pings, 1);
 }
@@ -440,7 +440,7 @@ TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
            received.back().remote.address == new_address;
   };
   ASSERT_TRUE(run_until(is_from_new_address));
-  topside.send({{{new_address, 52901}, 0, SharedBytes(status_request)}});
+  client.send({{{new_address, 52901}, 0, SharedBytes(status_request)}});
   ASSERT_TRUE(run_until_received(0x49, 1));
   EXPECT_EQ(received.back().remote.address, new_address);
 }

@@ -15,7 +15,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/kind.hpp"
 #include "server/net/serial_transport.hpp"
@@ -40,7 +40,7 @@ micron::HeadCommand quick_scan() {
   return command;
 }
 
-// One head and its host on one io_context that the test runs. The host has a socket or a tty of its own.
+// One head and its client on one io_context that the test runs. The client has a socket or a tty of its own.
 struct MicronHeadTest : testing::Test {
   asio::io_context io;
   SteadyClock clock;
@@ -52,8 +52,8 @@ struct MicronHeadTest : testing::Test {
   std::unique_ptr<PoseHistory> poses;
   std::unique_ptr<RenderService> service;
   std::unique_ptr<Head> head;
-  std::optional<test::Client> client;
-  std::optional<micron::Host> host;
+  std::optional<test::Client> connection;
+  std::optional<micron::Client> client;
   std::vector<micron::ReceivedLine> lines;
 
   MicronHeadTest() {
@@ -93,9 +93,9 @@ struct MicronHeadTest : testing::Test {
   }
 
   void connect() {
-    client.emplace(test::Client::tcp(addresses().tcp.at(0)));
+    connection.emplace(test::Client::tcp(addresses().tcp.at(0)));
     consumed_ = 0;
-    host.emplace(micron::HostConfig{}, clock.now());
+    client.emplace(micron::ClientConfig{}, clock.now());
   }
 
   bool run_until(const std::function<bool()>& done, std::chrono::milliseconds limit = 20s) {
@@ -113,19 +113,19 @@ struct MicronHeadTest : testing::Test {
   }
 
  private:
-  /// Exchanges bytes between host and head, and collects lines.
+  /// Exchanges bytes between client and head, and collects lines.
   void talk() {
-    if (!client || !host) {
+    if (!connection || !client) {
       return;
     }
-    const test::Bytes& heard = client->heard();
-    host->on_bytes(clock.now(), std::span(heard).subspan(consumed_));
+    const test::Bytes& heard = connection->heard();
+    client->on_bytes(clock.now(), std::span(heard).subspan(consumed_));
     consumed_ = heard.size();
-    host->advance(clock.now());
-    for (const auto& frame : host->take_outgoing()) {
-      client->write(frame);
+    client->advance(clock.now());
+    for (const auto& frame : client->take_outgoing()) {
+      connection->write(frame);
     }
-    for (micron::ReceivedLine& line : host->take_lines()) {
+    for (micron::ReceivedLine& line : client->take_lines()) {
       lines.push_back(std::move(line));
     }
   }
@@ -136,7 +136,7 @@ struct MicronHeadTest : testing::Test {
 TEST_F(MicronHeadTest, SendsWhatTheRendererHandedOver) {
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 12);
+  client->start(clock.now(), quick_scan(), 12);
   ASSERT_TRUE(run_until_lines(12));
   for (std::size_t i = 0; i < 12; ++i) {
     ASSERT_EQ(lines[i].bins.size(), 20u);
@@ -155,7 +155,7 @@ TEST_F(MicronHeadTest, RendersOneBeamWhereTheVehicleTheMountAndTheHeadPoint) {
   config.seed = 77;
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 6);
+  client->start(clock.now(), quick_scan(), 6);
   ASSERT_TRUE(run_until_lines(6));
   const std::vector<render::PingRequest> requests = renderer->recorded();
   for (std::size_t i = 0; i < 6; ++i) {
@@ -183,7 +183,7 @@ TEST_F(MicronHeadTest, SaysWhereTheTransducerIsWhenTheLastEchoIsHeard) {
   sample.twist = pose::Velocity{{0, 0, 0}, {0, 0, 1.5}};
   poses->insert(sample, clock.now());
   connect();
-  host->start(clock.now(), quick_scan(), 3);
+  client->start(clock.now(), quick_scan(), 3);
   ASSERT_TRUE(run_until_lines(3));
   const render::PingRequest request = renderer->recorded().at(2);
   ASSERT_TRUE(request.T_world_sonar_at_end);
@@ -197,7 +197,7 @@ TEST_F(MicronHeadTest, TheClientsGainMovesTheLevel) {
   connect();
   micron::HeadCommand loud = quick_scan();
   loud.gain = {210, 210};  // 80 dB
-  host->start(clock.now(), loud, 2);
+  client->start(clock.now(), loud, 2);
   ASSERT_TRUE(run_until_lines(2));
   EXPECT_NEAR(renderer->recorded().at(0).settings.physical.gain_db,
               config.acoustics.physical.gain_db + 80 - micron_config.nominal_gain_db, 1e-9);
@@ -206,17 +206,17 @@ TEST_F(MicronHeadTest, TheClientsGainMovesTheLevel) {
 TEST_F(MicronHeadTest, AClientThatVanishesInTheMiddleOfALineLeavesTheNextOneAClearLine) {
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 0);
+  client->start(clock.now(), quick_scan(), 0);
   ASSERT_TRUE(run_until_lines(3));
   const test::Bytes half_a_command{'@', '0', '0', '3', 'C', 0x3C, 0x00, 0xFF, 0x02, 0x37, 0x13};
-  client->write(half_a_command);
-  client->reset();
-  host.reset();
+  connection->write(half_a_command);
+  connection->reset();
+  client.reset();
   ASSERT_TRUE(run_until([&] { return test::transport_count(*head, "connections") == 1 && service; }, 200ms));
   lines.clear();
   connect();
   // The head has kept its parameters and has turned further. It scans again at once, without a new power-up.
-  host->start(clock.now(), quick_scan(), 5);
+  client->start(clock.now(), quick_scan(), 5);
   ASSERT_TRUE(run_until_lines(5));
   EXPECT_EQ(test::device_count(*head, "bad_frames"), 0u);
   EXPECT_EQ(test::device_count(*head, "boots"), 0u);
@@ -227,9 +227,9 @@ TEST_F(MicronHeadTest, IsASerialDeviceTooAndAllClientsHearIt) {
   start();
   test::Client listener = test::Client::tty(addresses().pty.at(0));
   connect();
-  host->start(clock.now(), quick_scan(), 4);
+  client->start(clock.now(), quick_scan(), 4);
   ASSERT_TRUE(run_until_lines(4));
-  micron::Host second({}, clock.now());
+  micron::Client second({}, clock.now());
   std::size_t consumed = 0;
   ASSERT_TRUE(run_until([&] {
     const test::Bytes& heard = listener.heard();
@@ -244,7 +244,7 @@ TEST_F(MicronHeadTest, WithoutAPoseItTurnsOnAndSendsNoLine) {
   pose_config.T_world_vehicle_initial.reset();
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 2);
+  client->start(clock.now(), quick_scan(), 2);
   ASSERT_TRUE(run_until([&] { return head->render_counters().pings_without_pose >= 2; }));
   EXPECT_TRUE(lines.empty());
   EXPECT_EQ(head->render_counters().pings_rendered, 0u);
@@ -258,7 +258,7 @@ TEST_F(MicronHeadTest, APingThatCannotBeRenderedFailsAlone) {
   };
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 4);
+  client->start(clock.now(), quick_scan(), 4);
   ASSERT_TRUE(run_until_lines(4));
   EXPECT_EQ(test::device_count(*head, "pings_failed"), 1u);
 }
@@ -266,7 +266,7 @@ TEST_F(MicronHeadTest, APingThatCannotBeRenderedFailsAlone) {
 TEST_F(MicronHeadTest, StopsInTheMiddleOfAPing) {
   start();
   connect();
-  host->start(clock.now(), quick_scan(), 0);
+  client->start(clock.now(), quick_scan(), 0);
   ASSERT_TRUE(run_until([&] { return renderer->attempts > 0; }));
   head->stop();
   head.reset();

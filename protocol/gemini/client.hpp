@@ -23,13 +23,13 @@
 
 namespace sonard::gemini {
 
-struct TopsideConfig {
+struct ClientConfig {
   std::uint16_t sonar_id = 0;  ///< ID of the head; 0: the head whose status arrives first
   Ipv4 head_address = 0;       ///< destination of commands; 0: the alternate address in the status
 };
 
 /// A datagram to send now, to port 52901 of `to`.
-struct TopsideDatagram {
+struct ClientDatagram {
   Ipv4 to = 0;
   std::vector<std::uint8_t> bytes;
 };
@@ -77,7 +77,7 @@ struct LinkStatistics {
   std::uint64_t pings_complete = 0;
   std::uint64_t pings_incomplete = 0;   ///< delivered with missing lines
   std::uint64_t pings_missed = 0;       ///< skipped ping IDs, and continuous pings that ended without a head
-  std::uint64_t pings_unrequested = 0;  ///< answered no configuration of this topside; not delivered
+  std::uint64_t pings_unrequested = 0;  ///< answered no configuration of this client; not delivered
   std::uint64_t pings_abandoned = 0;    ///< broken off and not delivered: no head came, the head rebooted, or
                                         ///< another ping answered the same configuration
   std::uint64_t configs_sent = 0;
@@ -86,9 +86,9 @@ struct LinkStatistics {
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
-class Topside {
+class Client {
  public:
-  explicit Topside(const TopsideConfig& config);
+  explicit Client(const ClientConfig& config);
 
   /// Handles a datagram that arrived on port 52900. Counts and drops bad ones.
   void on_datagram(TimePoint now, std::span<const std::uint8_t> bytes);
@@ -106,7 +106,7 @@ class Topside {
   std::optional<TimePoint> next_deadline() const;
 
   /// Datagrams due, in order. Each call empties the list.
-  std::vector<TopsideDatagram> take_outgoing();
+  std::vector<ClientDatagram> take_outgoing();
   /// Pings that ended, in order. Each call empties the list.
   std::vector<ReceivedPing> take_pings();
 
@@ -179,7 +179,7 @@ class Topside {
   void on_report(TimePoint now, const PingLine& line);
   void on_report(TimePoint now, const PingTail& tail);
   template <class Other>
-  void on_report(TimePoint, const Other&) {}  // a topside does not need these
+  void on_report(TimePoint, const Other&) {}  // a client does not need these
 
   void meet_head(TimePoint now);
   void on_reboot();
@@ -218,7 +218,7 @@ class Topside {
   template <class Message>
   void send(Message message);
 
-  TopsideConfig config_;
+  ClientConfig config_;
   std::optional<HeadInfo> head_;
   HeadClock head_clock_;
   bool diagnostic_known_ = false;
@@ -242,7 +242,7 @@ class Topside {
   ResponseTime request_to_answer_;
 
   std::uint64_t next_number_ = 0;
-  std::vector<TopsideDatagram> outgoing_;
+  std::vector<ClientDatagram> outgoing_;
   std::vector<ReceivedPing> pings_;
   LinkStatistics statistics_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/gemini/topside.hpp"
+#include "protocol/gemini/client.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -26,7 +26,7 @@ constexpr nanoseconds config_patience_most = seconds{2};
 /// Time from a retry request to the first resent datagram. In continuous mode a head delays its next ping
 /// only while requests arrived within the last 10 ms (7.3). Two datagrams every 2 ms fail to keep this up
 /// once in 1e13 times on a link that loses 5 %. On a slow link the answer takes longer than the 10 ms, so the
-/// topside sends several requests.
+/// client sends several requests.
 constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
 constexpr nanoseconds answer_patience_continuous = milliseconds{2};
 constexpr nanoseconds answer_patience_most = milliseconds{100};
@@ -96,10 +96,10 @@ nanoseconds doubled(nanoseconds patience, int times, nanoseconds most) {
 
 }  // namespace
 
-Topside::Topside(const TopsideConfig& config)
+Client::Client(const ClientConfig& config)
     : config_(config), config_to_ping_(config_limits), request_to_answer_(answer_limits) {}
 
-void Topside::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Client::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
   ++statistics_.datagrams;
   const auto report = decode_report(bytes);
   if (!report) {
@@ -114,7 +114,7 @@ void Topside::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
   std::visit([&](const auto& message) { on_report(now, message); }, *report);
 }
 
-void Topside::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
+void Client::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
   programme_ = Programme{.config = config, .wanted = pings};
   stopped_ = false;
   request_.reset();
@@ -132,7 +132,7 @@ void Topside::start(TimePoint now, const PingConfig& config, std::uint64_t pings
   request_ping(now);
 }
 
-void Topside::stop() {
+void Client::stop() {
   if (stopped_) {
     return;
   }
@@ -149,7 +149,7 @@ void Topside::stop() {
   lingering_.reset();
 }
 
-void Topside::advance(TimePoint now) {
+void Client::advance(TimePoint now) {
   if (due_by(stay_alive_due_, now)) {
     send(StatusRequest{});
     stay_alive_due_ = now + stay_alive_period;
@@ -174,7 +174,7 @@ void Topside::advance(TimePoint now) {
   stop_when_finished();
 }
 
-std::optional<TimePoint> Topside::next_deadline() const {
+std::optional<TimePoint> Client::next_deadline() const {
   std::optional<TimePoint> earliest = stay_alive_due_;
   if (lingering_) {
     take_earlier(earliest, lingering_due_);
@@ -191,11 +191,11 @@ std::optional<TimePoint> Topside::next_deadline() const {
   return earliest;
 }
 
-std::vector<TopsideDatagram> Topside::take_outgoing() {
+std::vector<ClientDatagram> Client::take_outgoing() {
   return std::exchange(outgoing_, {});
 }
 
-std::vector<ReceivedPing> Topside::take_pings() {
+std::vector<ReceivedPing> Client::take_pings() {
   return std::exchange(pings_, {});
 }
 
@@ -203,7 +203,7 @@ std::vector<ReceivedPing> Topside::take_pings() {
 // The head
 // ---------------------------------------------------------------------------------------------------------------
 
-void Topside::on_report(TimePoint now, const Status& status) {
+void Client::on_report(TimePoint now, const Status& status) {
   const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
   if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
     ++statistics_.bad_datagrams;  // no client could reach such a head (1.2, 1.4)
@@ -228,7 +228,7 @@ void Topside::on_report(TimePoint now, const Status& status) {
   }
 }
 
-void Topside::meet_head(TimePoint now) {
+void Client::meet_head(TimePoint now) {
   NetworkConfig network;  // as later clients send it at first contact
   network.serial_routing = 0x0100;
   network.extension = 10'000;
@@ -239,7 +239,7 @@ void Topside::meet_head(TimePoint now) {
   }
 }
 
-void Topside::on_reboot() {
+void Client::on_reboot() {
   ++statistics_.reboots;
   for (auto* ping : {&incoming_, &lingering_}) {
     statistics_.pings_abandoned += *ping && (*ping)->requested ? 1 : 0;
@@ -253,12 +253,12 @@ void Topside::on_reboot() {
   silence_due_.reset();
 }
 
-void Topside::on_report(TimePoint now, const Acknowledge& acknowledge) {
+void Client::on_report(TimePoint now, const Acknowledge& acknowledge) {
   ++statistics_.acknowledges;
   head_clock_.observe(now, acknowledge.reply_us);
 }
 
-void Topside::on_report(TimePoint, const Diagnostic&) {
+void Client::on_report(TimePoint, const Diagnostic&) {
   diagnostic_known_ = true;
 }
 
@@ -266,14 +266,14 @@ void Topside::on_report(TimePoint, const Diagnostic&) {
 // Configurations
 // ---------------------------------------------------------------------------------------------------------------
 
-void Topside::request_ping(TimePoint now) {
+void Client::request_ping(TimePoint now) {
   request_.emplace(Request{});
   if (head_) {
     send_config(now);
   }
 }
 
-void Topside::send_config(TimePoint now) {
+void Client::send_config(TimePoint now) {
   if (++request_->sends == 1) {
     programme_->least_head_us = head_clock_.at_least_us(now);
   } else {
@@ -289,7 +289,7 @@ void Topside::send_config(TimePoint now) {
 /// No ping came: either the configuration or the whole ping was lost. A second configuration is harmless only
 /// in the first case, so request the head of the last ping first. A new ping can be repaired. If the ping is
 /// old or there is no answer, send the configuration again.
-void Topside::on_request_due(TimePoint now) {
+void Client::on_request_due(TimePoint now) {
   if (request_->probes == probes_before_config) {
     send_config(now);
     return;
@@ -299,7 +299,7 @@ void Topside::on_request_due(TimePoint now) {
   request_->due = now + request_to_answer_.patience();
 }
 
-void Topside::watch_for_silence(TimePoint now) {
+void Client::watch_for_silence(TimePoint now) {
   if (request_ || incoming_) {
     return;
   }
@@ -308,7 +308,7 @@ void Topside::watch_for_silence(TimePoint now) {
   request_->due = now;
 }
 
-void Topside::await_next(TimePoint now) {
+void Client::await_next(TimePoint now) {
   const bool repeated = request_ && request_->sends > 1;
   request_.reset();
   if (programme_->finished()) {
@@ -332,7 +332,7 @@ void Topside::await_next(TimePoint now) {
 // The ping that is coming in
 // ---------------------------------------------------------------------------------------------------------------
 
-void Topside::on_report(TimePoint now, const PingHead& head) {
+void Client::on_report(TimePoint now, const PingHead& head) {
   if (!takes_pings()) {
     return;
   }
@@ -362,7 +362,7 @@ void Topside::on_report(TimePoint now, const PingHead& head) {
   settle(now);
 }
 
-void Topside::on_report(TimePoint now, const PingLine& line) {
+void Client::on_report(TimePoint now, const PingLine& line) {
   if (!takes_pings()) {
     return;
   }
@@ -393,7 +393,7 @@ void Topside::on_report(TimePoint now, const PingLine& line) {
   settle(now);
 }
 
-void Topside::on_report(TimePoint now, const PingTail& tail) {
+void Client::on_report(TimePoint now, const PingTail& tail) {
   if (!takes_pings()) {
     return;
   }
@@ -414,7 +414,7 @@ void Topside::on_report(TimePoint now, const PingTail& tail) {
   settle(now);
 }
 
-Topside::Incoming* Topside::find_incoming(std::uint8_t id) {
+Client::Incoming* Client::find_incoming(std::uint8_t id) {
   for (auto* ping : {&incoming_, &lingering_}) {
     if (*ping && (*ping)->assembly.id() == id) {
       return &**ping;
@@ -423,7 +423,7 @@ Topside::Incoming* Topside::find_incoming(std::uint8_t id) {
   return nullptr;
 }
 
-Topside::Incoming* Topside::incoming_for(TimePoint now, std::uint8_t id) {
+Client::Incoming* Client::incoming_for(TimePoint now, std::uint8_t id) {
   Incoming* ping = find_incoming(id);
   if (ping != nullptr) {
     return ping;
@@ -431,13 +431,13 @@ Topside::Incoming* Topside::incoming_for(TimePoint now, std::uint8_t id) {
   return find_ended(id) != nullptr ? nullptr : &begin(now, id);
 }
 
-const Topside::Ended* Topside::find_ended(std::uint8_t id) const {
+const Client::Ended* Client::find_ended(std::uint8_t id) const {
   const auto found =
       std::find_if(ended_.rbegin(), ended_.rend(), [id](const Ended& ping) { return ping.id == id; });
   return found == ended_.rend() ? nullptr : &*found;
 }
 
-Topside::Incoming& Topside::begin(TimePoint now, std::uint8_t id) {
+Client::Incoming& Client::begin(TimePoint now, std::uint8_t id) {
   if (incoming_) {
     supersede(now);
   }
@@ -454,7 +454,7 @@ Topside::Incoming& Topside::begin(TimePoint now, std::uint8_t id) {
   return *incoming_;
 }
 
-void Topside::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
+void Client::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
   ping.assembly.set_head(head);
   ping.progress = now;
   if (head.transmit_time_us < programme_->least_head_us) {
@@ -471,7 +471,7 @@ void Topside::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
 }
 
 /// A head serves requests only after the tail, so any resent datagram ends the first pass.
-void Topside::on_answer(TimePoint now, Incoming& ping) {
+void Client::on_answer(TimePoint now, Incoming& ping) {
   if (ping.asked) {
     request_to_answer_.sample(now - *ping.asked);
     ping.asked.reset();
@@ -480,7 +480,7 @@ void Topside::on_answer(TimePoint now, Incoming& ping) {
   end_pass(ping);
 }
 
-void Topside::end_pass(Incoming& ping) {
+void Client::end_pass(Incoming& ping) {
   if (ping.pass_over) {
     return;
   }
@@ -496,7 +496,7 @@ void Topside::end_pass(Incoming& ping) {
 }
 
 /// Handles line `number` of the first pass.
-void Topside::follow_first_pass(TimePoint now, Incoming& ping, int number) {
+void Client::follow_first_pass(TimePoint now, Incoming& ping, int number) {
   ping.highest = std::max(ping.highest, number);
   if (!ping.requested) {
     return;
@@ -515,7 +515,7 @@ void Topside::follow_first_pass(TimePoint now, Incoming& ping, int number) {
 }
 
 /// Requests the lines below `end` that are missing and have not been requested.
-void Topside::ask_unasked(Incoming& ping, int end) {
+void Client::ask_unasked(Incoming& ping, int end) {
   for (const LineRange& range : ping.assembly.missing(ping.asked_to, end)) {
     ask(&ping, RetryKind::lines, range, 1);
   }
@@ -523,7 +523,7 @@ void Topside::ask_unasked(Incoming& ping, int end) {
 }
 
 /// One round: requests everything that is missing, the head first.
-void Topside::ask_again(TimePoint now, Incoming& ping) {
+void Client::ask_again(TimePoint now, Incoming& ping) {
   ++ping.fruitless;
   ping.last_arrival = now;
   if (!ping.assembly.head()) {
@@ -545,7 +545,7 @@ void Topside::ask_again(TimePoint now, Incoming& ping) {
   }
 }
 
-TimePoint Topside::due(const Incoming& ping) const {
+TimePoint Client::due(const Incoming& ping) const {
   if (!ping.requested) {
     return ping.last_arrival + unrequested_patience;
   }
@@ -566,7 +566,7 @@ TimePoint Topside::due(const Incoming& ping) const {
   return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
 }
 
-void Topside::on_incoming_due(TimePoint now) {
+void Client::on_incoming_due(TimePoint now) {
   Incoming& ping = *incoming_;
   const bool only_tail_lacks = ping.assembly.is_complete() && ping.fruitless >= rounds_for_the_tail_alone;
   if (!ping.requested || only_tail_lacks || now - ping.progress >= give_up_after) {
@@ -578,7 +578,7 @@ void Topside::on_incoming_due(TimePoint now) {
   }
 }
 
-void Topside::settle(TimePoint now) {
+void Client::settle(TimePoint now) {
   if (lingering_ && lingering_->assembly.is_complete()) {
     close_lingering(now);
   }
@@ -590,14 +590,14 @@ void Topside::settle(TimePoint now) {
 }
 
 /// Stops a finished continuous programme; in single mode the head stops by itself.
-void Topside::stop_when_finished() {
+void Client::stop_when_finished() {
   if (!stopped_ && programme_ && programme_->continuous() && programme_->finished()) {
     stop();
   }
 }
 
 /// Handles a new ping that begins before the end of the old one, which the head has dropped (7.3).
-void Topside::supersede(TimePoint now) {
+void Client::supersede(TimePoint now) {
   Incoming& ping = *incoming_;
   if (ping.requested && ping.assembly.is_complete()) {
     finish(now);  // only the tail was missing
@@ -621,7 +621,7 @@ void Topside::supersede(TimePoint now) {
   incoming_.reset();
 }
 
-void Topside::finish(TimePoint now) {
+void Client::finish(TimePoint now) {
   close_lingering(now);
   Incoming ping = std::move(*incoming_);
   incoming_.reset();
@@ -650,7 +650,7 @@ void Topside::finish(TimePoint now) {
   await_next(now);
 }
 
-void Topside::close_lingering(TimePoint now) {
+void Client::close_lingering(TimePoint now) {
   if (!lingering_) {
     return;
   }
@@ -660,7 +660,7 @@ void Topside::close_lingering(TimePoint now) {
   deliver(now, std::move(ping));
 }
 
-void Topside::deliver(TimePoint now, Incoming ping) {
+void Client::deliver(TimePoint now, Incoming ping) {
   if (programme_->finished()) {
     ++statistics_.pings_unrequested;
     return;
@@ -681,7 +681,7 @@ void Topside::deliver(TimePoint now, Incoming ping) {
   pings_.push_back(std::move(received));
 }
 
-void Topside::note_end(const Incoming& ping) {
+void Client::note_end(const Incoming& ping) {
   const auto& head = ping.assembly.head();
   ended_.push_back({ping.assembly.id(), head ? std::optional{head->transmit_time_us} : std::nullopt});
   if (ended_.size() > ended_kept) {
@@ -693,7 +693,7 @@ void Topside::note_end(const Incoming& ping) {
 // Sending
 // ---------------------------------------------------------------------------------------------------------------
 
-void Topside::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
+void Client::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
   RetryRequest request;
   request.kind = kind;
   request.first_line = static_cast<std::uint16_t>(range.first);
@@ -715,7 +715,7 @@ void Topside::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
 }
 
 template <class Message>
-void Topside::send(Message message) {
+void Client::send(Message message) {
   message.header.sonar_id = head_->status.sonar_id;
   message.header.version = head_->status.header.version;
   outgoing_.push_back({head_->address, encode(Command{std::move(message)})});

@@ -20,7 +20,7 @@
 
 namespace sonard::micron {
 
-struct HostConfig {
+struct ClientConfig {
   std::uint8_t node = default_head_node;  ///< of the head
   NibbleOrder nibble_order = NibbleOrder::high_first;
   bool reboot_first = false;  ///< reboot the head first, so that it has no parameters
@@ -42,14 +42,14 @@ struct ReceivedLine {
 };
 
 /// Counters since construction. They only grow.
-struct HostStatistics {
-  std::uint64_t frames = 0;         ///< whole, and for this host
+struct ClientStatistics {
+  std::uint64_t frames = 0;         ///< whole, and for this client
   std::uint64_t dropped_bytes = 0;  ///< not part of a frame
   std::uint64_t bad_frames = 0;     ///< undecodable
-  std::uint64_t other_nodes = 0;    ///< not from the head, or not for this host
+  std::uint64_t other_nodes = 0;    ///< not from the head, or not for this client
   std::uint64_t alives = 0;
   std::uint64_t lines = 0;              ///< delivered
-  std::uint64_t lines_unmatched = 0;    ///< made with other parameters than this host's
+  std::uint64_t lines_unmatched = 0;    ///< made with other parameters than this client's
   std::uint64_t lines_unrequested = 0;  ///< arrived while no line was requested
   std::uint64_t requests = 0;
   std::uint64_t timeouts = 0;       ///< requests without a line in answer
@@ -59,9 +59,9 @@ struct HostStatistics {
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
-class Host {
+class Client {
  public:
-  Host(const HostConfig& config, TimePoint now);
+  Client(const ClientConfig& config, TimePoint now);
 
   /// Handles bytes from the head, in parts of any size. Counts and drops bad ones.
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
@@ -87,11 +87,11 @@ class Host {
   std::vector<ReceivedLine> take_lines();
 
   const HeadIdentity& head() const { return head_; }
-  /// Nodes other than the head that sent frames to this host.
+  /// Nodes other than the head that sent frames to this client.
   const std::set<std::uint8_t>& other_heads() const { return other_heads_; }
   /// True if all lines of start() are delivered, or stop() was called.
   bool finished() const { return stopped_ || (programme_ && programme_->finished()); }
-  const HostStatistics& statistics() const { return statistics_; }
+  const ClientStatistics& statistics() const { return statistics_; }
 
  private:
   enum class Phase : std::uint8_t { meeting, idle, configuring, scanning };
@@ -111,7 +111,7 @@ class Host {
   void on_report(TimePoint now, const BBUserData& blocks);
   void on_report(TimePoint now, const HeadData& line);
   template <class Other>
-  void on_report(TimePoint, const Other&) {}  // a host does not need these
+  void on_report(TimePoint, const Other&) {}  // a client does not need these
 
   void ask_identity(TimePoint now);
   void met(TimePoint now);
@@ -124,7 +124,7 @@ class Host {
   template <class Message>
   void send(const Message& message);
 
-  HostConfig config_;
+  ClientConfig config_;
   FrameBuffer input_;
   HeadIdentity head_;
   std::set<std::uint8_t> other_heads_;
@@ -138,7 +138,7 @@ class Host {
   int expected_ = 0;  ///< requested lines that have not arrived
   std::vector<std::vector<std::uint8_t>> outgoing_;
   std::vector<ReceivedLine> lines_;
-  HostStatistics statistics_;
+  ClientStatistics statistics_;
 };
 
 }  // namespace sonard::micron

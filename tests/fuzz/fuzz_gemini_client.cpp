@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of datagrams and pauses against the topside's side of the protocol.
+// Any sequence of datagrams and pauses against the client's side of the protocol.
 // Promises: every datagram sent is a command; a delivered image has the size that its head announced; time
 // goes on with any input.
 #include "protocol/common/ping_job.hpp"
+#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/codec.hpp"
-#include "protocol/gemini/topside.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -28,18 +28,18 @@ class Bench {
     PingConfig config;
     switch (event.kind) {
       case start_single:
-        topside_.start(now_, config, 0);
+        client_.start(now_, config, 0);
         break;
       case start_continuous:
         config.run_mode = 1;
-        topside_.start(now_, config, 3);
+        client_.start(now_, config, 3);
         break;
       case stop:
-        topside_.stop();
+        client_.stop();
         break;
       default:
         if (event.kind < start_single) {
-          topside_.on_datagram(now_, event.datagram);
+          client_.on_datagram(now_, event.datagram);
         }
     }
     advance();
@@ -49,7 +49,7 @@ class Bench {
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
     for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = topside_.next_deadline();
+      const auto deadline = client_.next_deadline();
       if (!deadline || *deadline > target) {
         break;
       }
@@ -61,14 +61,14 @@ class Bench {
   }
 
   void advance() {
-    topside_.advance(now_);
-    for (const TopsideDatagram& datagram : topside_.take_outgoing()) {
+    client_.advance(now_);
+    for (const ClientDatagram& datagram : client_.take_outgoing()) {
       const auto command = decode_command(datagram.bytes);
       require(command.has_value() && !std::holds_alternative<Unknown>(*command),
-              "a topside speaks its protocol");
+              "a client speaks its protocol");
       require(datagram.bytes.size() <= max_datagram_size, "no datagram fragments");
     }
-    for (const ReceivedPing& ping : topside_.take_pings()) {
+    for (const ReceivedPing& ping : client_.take_pings()) {
       const auto lines = static_cast<std::size_t>(ping.head.line_count());
       require(ping.samples.u8.size() + ping.samples.u16.size() == lines * ping.head.beams,
               "an image has the size that its head announced");
@@ -77,7 +77,7 @@ class Bench {
   }
 
   TimePoint now_{};
-  Topside topside_{TopsideConfig{}};
+  Client client_{ClientConfig{}};
 };
 
 }  // namespace

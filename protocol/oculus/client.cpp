@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/oculus/host.hpp"
+#include "protocol/oculus/client.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,12 +15,12 @@ constexpr std::array<std::uint8_t, 2> start{oculus_id & 0xFF, oculus_id >> 8};
 
 }  // namespace
 
-void Host::connected() {
+void Client::connected() {
   bytes_.clear();
   last_ping_id_.reset();
 }
 
-std::optional<std::size_t> Host::front_size() {
+std::optional<std::size_t> Client::front_size() {
   while (true) {
     auto begin = std::search(bytes_.begin(), bytes_.end(), start.begin(), start.end());
     if (begin == bytes_.end() && !bytes_.empty() && bytes_.back() == start[0]) {
@@ -40,7 +40,7 @@ std::optional<std::size_t> Host::front_size() {
   }
 }
 
-void Host::receive(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Client::receive(TimePoint now, std::span<const std::uint8_t> bytes) {
   bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   while (const std::optional<std::size_t> size = front_size()) {
     const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(*size);
@@ -49,7 +49,7 @@ void Host::receive(TimePoint now, std::span<const std::uint8_t> bytes) {
   }
 }
 
-void Host::take(TimePoint now, std::vector<std::uint8_t> message) {
+void Client::take(TimePoint now, std::vector<std::uint8_t> message) {
   ++statistics_.messages;
   const Header header = read_header(message);
   if (header.id == MessageId::dummy) {
@@ -72,11 +72,11 @@ void Host::take(TimePoint now, std::vector<std::uint8_t> message) {
   }
 }
 
-std::vector<ReceivedPing> Host::take_pings() {
+std::vector<ReceivedPing> Client::take_pings() {
   return std::exchange(pings_, {});
 }
 
-std::vector<std::string> Host::take_logs() {
+std::vector<std::string> Client::take_logs() {
   return std::exchange(logs_, {});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/ping360/host.hpp"
+#include "protocol/ping360/client.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -22,11 +22,11 @@ constexpr int stop_tries = 10;
 
 }  // namespace
 
-Host::Host(TimePoint now) : due_(now) {}
+Client::Client(TimePoint now) : due_(now) {}
 
 // ---- Frames
 
-void Host::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Client::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
   input_.append(now, bytes);
   while (const auto frame = input_.front()) {
     take_frame(now, *frame);
@@ -35,7 +35,7 @@ void Host::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
   statistics_.dropped_bytes = input_.dropped();
 }
 
-void Host::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
+void Client::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
   const auto report = decode_report(frame);
   if (!report) {
     ++statistics_.bad_frames;
@@ -45,13 +45,13 @@ void Host::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
   std::visit([&](const auto& message) { on_report(now, message); }, *report);
 }
 
-void Host::send(const Command& command) {
+void Client::send(const Command& command) {
   outgoing_.push_back(encode(command));
 }
 
 // ---- Meeting the head
 
-void Host::ask_identity(TimePoint now) {
+void Client::ask_identity(TimePoint now) {
   const MessageId missing = !head_.protocol      ? MessageId::protocol_version
                             : !head_.information ? MessageId::device_information
                                                  : MessageId::device_data;
@@ -67,14 +67,14 @@ void Host::ask_identity(TimePoint now) {
   due_ = now + answer_timeout;
 }
 
-void Host::on_report(TimePoint now, const ProtocolVersion& version) {
+void Client::on_report(TimePoint now, const ProtocolVersion& version) {
   head_.protocol = version;
   if (phase_ == Phase::meeting) {
     ask_identity(now);
   }
 }
 
-void Host::on_report(TimePoint now, const DeviceInformation& information) {
+void Client::on_report(TimePoint now, const DeviceInformation& information) {
   head_.information = information;
   if (phase_ == Phase::meeting) {
     ask_identity(now);
@@ -83,15 +83,15 @@ void Host::on_report(TimePoint now, const DeviceInformation& information) {
 
 // ---- Pings
 
-void Host::start(TimePoint now, const Transducer& first, int step, std::uint64_t pings) {
+void Client::start(TimePoint now, const Transducer& first, int step, std::uint64_t pings) {
   begin(now, {first, step, pings});
 }
 
-void Host::start(TimePoint now, const AutoTransmit& scan, std::uint64_t pings) {
+void Client::start(TimePoint now, const AutoTransmit& scan, std::uint64_t pings) {
   begin(now, {scan, 0, pings});
 }
 
-void Host::begin(TimePoint now, const Programme& programme) {
+void Client::begin(TimePoint now, const Programme& programme) {
   programme_ = programme;
   sign_of_life_due_.reset();
   refusal_.reset();
@@ -102,7 +102,7 @@ void Host::begin(TimePoint now, const Programme& programme) {
 }
 
 /// Ends a scan of an earlier client before starting a new scan.
-void Host::ask_for_pings(TimePoint now) {
+void Client::ask_for_pings(TimePoint now) {
   if (std::holds_alternative<AutoTransmit>(programme_->command)) {
     outgoing_.emplace_back();
     phase_ = Phase::quieting;
@@ -112,7 +112,7 @@ void Host::ask_for_pings(TimePoint now) {
   }
 }
 
-void Host::order(TimePoint now) {
+void Client::order(TimePoint now) {
   phase_ = Phase::pinging;
   std::visit([&](const auto& command) { send(command); }, programme_->command);
   ++statistics_.commands;
@@ -124,7 +124,7 @@ void Host::order(TimePoint now) {
 
 /// A link may deliver an answer twice. Each ping triggers the next command, so a copy must not count. Other
 /// settings are not compared, because a head that plays a recording reports the recorded settings.
-void Host::on_report(TimePoint now, const DeviceData& data) {
+void Client::on_report(TimePoint now, const DeviceData& data) {
   const std::vector<std::uint8_t> before = std::exchange(last_data_, encode(data));
   if (phase_ == Phase::meeting) {
     head_.state = form_of(Report{data});
@@ -148,7 +148,7 @@ void Host::on_report(TimePoint now, const DeviceData& data) {
 }
 
 /// Compares only the settings of the scan, because a head that plays a recording reports recorded settings.
-void Host::on_report(TimePoint now, const AutoDeviceData& data) {
+void Client::on_report(TimePoint now, const AutoDeviceData& data) {
   if (phase_ == Phase::stopping) {
     return;
   }
@@ -165,7 +165,7 @@ void Host::on_report(TimePoint now, const AutoDeviceData& data) {
 }
 
 /// Delivers a ping. After the last one it stops a scan, which never ends by itself.
-void Host::deliver(TimePoint now, const Report& report, std::span<const std::uint8_t> data) {
+void Client::deliver(TimePoint now, const Report& report, std::span<const std::uint8_t> data) {
   pings_.push_back({programme_->delivered++, now, *form_of(report), {data.begin(), data.end()}});
   ++statistics_.pings;
   if (programme_->wanted == 0 || programme_->delivered < programme_->wanted) {
@@ -179,14 +179,14 @@ void Host::deliver(TimePoint now, const Report& report, std::span<const std::uin
   finished_ = true;
 }
 
-void Host::become_idle() {
+void Client::become_idle() {
   phase_ = Phase::idle;
   programme_.reset();
   due_.reset();
   sign_of_life_due_.reset();
 }
 
-void Host::on_report(TimePoint, const Nack& nack) {
+void Client::on_report(TimePoint, const Nack& nack) {
   if (phase_ == Phase::pinging &&
       nack.nacked_id ==
           std::visit([](const auto& command) { return id_of(Command{command}); }, programme_->command)) {
@@ -198,7 +198,7 @@ void Host::on_report(TimePoint, const Nack& nack) {
 
 // ---- The end
 
-void Host::stop(TimePoint now) {
+void Client::stop(TimePoint now) {
   if (phase_ == Phase::meeting) {
     programme_.reset();
     finished_ = true;
@@ -214,7 +214,7 @@ void Host::stop(TimePoint now) {
   on_timeout(now);
 }
 
-void Host::on_report(TimePoint, const Ack& ack) {
+void Client::on_report(TimePoint, const Ack& ack) {
   if (phase_ == Phase::stopping && ack.acked_id == static_cast<std::uint16_t>(MotorOff::id)) {
     become_idle();
     finished_ = true;
@@ -223,7 +223,7 @@ void Host::on_report(TimePoint, const Ack& ack) {
 
 // ---- Time
 
-void Host::on_timeout(TimePoint now) {
+void Client::on_timeout(TimePoint now) {
   switch (phase_) {
     case Phase::meeting:
       ask_identity(now);
@@ -250,7 +250,7 @@ void Host::on_timeout(TimePoint now) {
   }
 }
 
-void Host::advance(TimePoint now) {
+void Client::advance(TimePoint now) {
   if (due_ && now >= *due_) {
     on_timeout(now);
   }
@@ -260,15 +260,15 @@ void Host::advance(TimePoint now) {
   }
 }
 
-std::optional<TimePoint> Host::next_deadline() const {
+std::optional<TimePoint> Client::next_deadline() const {
   return due_ && sign_of_life_due_ ? std::min(due_, sign_of_life_due_) : due_;
 }
 
-std::vector<std::vector<std::uint8_t>> Host::take_outgoing() {
+std::vector<std::vector<std::uint8_t>> Client::take_outgoing() {
   return std::exchange(outgoing_, {});
 }
 
-std::vector<ReceivedPing> Host::take_pings() {
+std::vector<ReceivedPing> Client::take_pings() {
   return std::exchange(pings_, {});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A host and a head on a line that splits frames, adds noise and loses frames.
+// A client and a head on a line that splits frames, adds noise and loses frames.
 #include <random>
 
 #include "session.hpp"
@@ -30,15 +30,15 @@ TEST(PoorLink, SplitAndNoisyLineLosesNothing) {
   std::mt19937 random(3);
   Session session;
   session.to_head = poor_carrier(random, 0);
-  session.to_host = poor_carrier(random, 0);
-  session.host.start(0ns, all_round(), 200);
+  session.to_client = poor_carrier(random, 0);
+  session.client.start(0ns, all_round(), 200);
   session.run_to_end();
   ASSERT_EQ(session.lines.size(), 200U);
   for (std::size_t i = 0; i < 200; ++i) {
     EXPECT_EQ(session.lines[i].head.bearing, (3200 + 32 * static_cast<int>(i)) % 6400);
   }
-  EXPECT_EQ(session.host.statistics().timeouts, 0U);
-  EXPECT_GT(session.host.statistics().dropped_bytes, 0U);
+  EXPECT_EQ(session.client.statistics().timeouts, 0U);
+  EXPECT_GT(session.client.statistics().dropped_bytes, 0U);
 }
 
 TEST(PoorLink, LostFramesCostTimeOnly) {
@@ -48,8 +48,8 @@ TEST(PoorLink, LostFramesCostTimeOnly) {
     config.half_duplex = seed % 2 == 0;
     Session session(config);
     session.to_head = poor_carrier(random, 10);
-    session.to_host = poor_carrier(random, 10);
-    session.host.start(0ns, all_round(), 100);
+    session.to_client = poor_carrier(random, 10);
+    session.client.start(0ns, all_round(), 100);
     session.run_to_end(300s);
     EXPECT_EQ(session.lines.size(), 100U) << "seed " << seed;
     for (const ReceivedLine& line : session.lines) {
@@ -63,27 +63,27 @@ TEST(PoorLink, RandomBytesNeverEndAHost) {
                          "version_data", "bb_user_data", "head_data", "head_data_4_bit"};
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
-    Host host(HostConfig{}, 0ns);
+    Client client(ClientConfig{}, 0ns);
     HeadCommand command;
     command.bins = 8;
     TimePoint now{};
     for (int i = 0; i < 3000; ++i) {
       now += std::chrono::milliseconds(random() % 400);
       if (random() % 50 == 0) {
-        host.start(now, command, random() % 3);
+        client.start(now, command, random() % 3);
       }
       Bytes bytes = fixture(names[random() % 8]);
       for (unsigned flips = random() % 3; flips > 0; --flips) {
         bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
       }
-      host.on_bytes(now, bytes);
-      host.advance(now);
-      for (const Bytes& frame : host.take_outgoing()) {
+      client.on_bytes(now, bytes);
+      client.advance(now);
+      for (const Bytes& frame : client.take_outgoing()) {
         ASSERT_TRUE(decode_command(frame));
       }
-      ASSERT_TRUE(!host.next_deadline() || *host.next_deadline() > now);
+      ASSERT_TRUE(!client.next_deadline() || *client.next_deadline() > now);
     }
-    EXPECT_GT(host.statistics().lines, 0U);
+    EXPECT_GT(client.statistics().lines, 0U);
   }
 }
 

@@ -3,7 +3,7 @@
 // Promises: messages and pings do not depend on the pieces; every ping has all its samples.
 #include <span>
 
-#include "protocol/oculus/host.hpp"
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/image_form.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 #include "tests/fuzz/require.hpp"
@@ -13,9 +13,9 @@ using namespace sonard::oculus;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::uint8_t> stream{data, size};
-  Host whole;
+  Client whole;
   whole.receive({}, stream);
-  Host pieces;
+  Client pieces;
   for (std::size_t at = 0; at < size; ++at) {
     pieces.receive({}, stream.subspan(at, 1));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The topside against a scripted head, in virtual time.
-#include "protocol/gemini/topside.hpp"
+// The client against a scripted head, in virtual time.
+#include "protocol/gemini/client.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ std::vector<std::uint8_t> image(int id) {
   return samples;
 }
 
-class TopsideTest : public testing::Test {
+class ClientTest : public testing::Test {
  protected:
   PingConfig config(RunMode mode = RunMode::single) const {
     PingConfig made;
@@ -69,8 +69,8 @@ class TopsideTest : public testing::Test {
 
   template <class Message>
   void receive(const Message& message) {
-    topside_.on_datagram(now_, encode(Report{message}));
-    topside_.advance(now_);
+    client_.on_datagram(now_, encode(Report{message}));
+    client_.advance(now_);
   }
 
   void hear_head(int id, bool resent = false) { hear_head(id, now_, resent); }
@@ -112,21 +112,21 @@ class TopsideTest : public testing::Test {
   void pass(std::chrono::nanoseconds span) {
     const TimePoint end = now_ + span;
     while (true) {
-      const auto due = topside_.next_deadline();
+      const auto due = client_.next_deadline();
       if (!due || *due > end) {
         break;
       }
       now_ = std::max(now_, *due);
-      topside_.advance(now_);
+      client_.advance(now_);
     }
     now_ = end;
   }
 
-  /// The messages of one type that the topside has sent since the last call.
+  /// The messages of one type that the client has sent since the last call.
   template <class Message>
   std::vector<Message> said() {
     std::vector<Message> messages;
-    for (const auto& datagram : topside_.take_outgoing()) {
+    for (const auto& datagram : client_.take_outgoing()) {
       EXPECT_EQ(datagram.to, alternate);
       const auto command = decode_command(datagram.bytes);
       EXPECT_TRUE(command.has_value());
@@ -154,46 +154,46 @@ class TopsideTest : public testing::Test {
     return requests;
   }
 
-  /// Receives a status, drops the first messages of the topside, and starts `pings` pings (0: without end).
+  /// Receives a status, drops the first messages of the client, and starts `pings` pings (0: without end).
   void meet_and_start(const PingConfig& wanted, std::uint64_t pings = 0) {
     receive(status());
     receive(from_head(Diagnostic{}));
-    topside_.start(now_, wanted, pings);
-    topside_.advance(now_);
+    client_.start(now_, wanted, pings);
+    client_.advance(now_);
     ASSERT_THAT(said<PingConfig>(), SizeIs(1));
     now_ += 1ms;
   }
 
-  Topside topside_{TopsideConfig{}};
+  Client client_{ClientConfig{}};
   TimePoint now_ = 0s;
 };
 
 // ---- Meeting a head ----
 
-TEST_F(TopsideTest, IsSilentUntilAStatusComes) {
-  topside_.start(now_, config(), 1);
+TEST_F(ClientTest, IsSilentUntilAStatusComes) {
+  client_.start(now_, config(), 1);
   pass(10s);
-  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
-  EXPECT_FALSE(topside_.head());
+  EXPECT_THAT(client_.take_outgoing(), IsEmpty());
+  EXPECT_FALSE(client_.head());
 }
 
-TEST_F(TopsideTest, PingsOfAnUnknownHeadAreIgnored) {
+TEST_F(ClientTest, PingsOfAnUnknownHeadAreIgnored) {
   // An earlier client has ended, and its head still pings.
-  topside_.start(now_, config(RunMode::continuous), 1);
+  client_.start(now_, config(RunMode::continuous), 1);
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 20, 10);
   hear_tail(5);
   pass(1s);
-  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
+  EXPECT_THAT(client_.take_outgoing(), IsEmpty());
   now_ += 1s;
   receive(status());
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
+TEST_F(ClientTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   receive(status());
-  const auto sent = topside_.take_outgoing();
+  const auto sent = client_.take_outgoing();
   ASSERT_GE(sent.size(), 2U);
   // gemini.md 10, with bytes 6 and 7 as in the early library.
   EXPECT_EQ(sent[0].bytes,
@@ -203,7 +203,7 @@ TEST_F(TopsideTest, FirstContactIsNetworkConfigurationAndDiagnosticRequest) {
   EXPECT_EQ(sent[0].to, alternate);
 }
 
-TEST_F(TopsideTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
+TEST_F(ClientTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
   receive(status());
   EXPECT_THAT(said<DiagnosticRequest>(), SizeIs(1));
   pass(1s);
@@ -215,13 +215,13 @@ TEST_F(TopsideTest, AsksForTheDiagnosticAfterEachStatusUntilItComes) {
   EXPECT_THAT(said<DiagnosticRequest>(), IsEmpty());
 }
 
-TEST_F(TopsideTest, KeepsTheHeadAwakeEverySecond) {
+TEST_F(ClientTest, KeepsTheHeadAwakeEverySecond) {
   receive(status());
   pass(10s);
   EXPECT_THAT(said<StatusRequest>(), SizeIs(11));
 }
 
-TEST_F(TopsideTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
+TEST_F(ClientTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
   Status nowhere = status();
   nowhere.alternate_ip = 0;
   receive(nowhere);
@@ -231,56 +231,56 @@ TEST_F(TopsideTest, HeadsThatCannotBeTalkedToAreLeftAlone) {
   Status contradictory = status();
   contradictory.header.sonar_id = 77;
   receive(contradictory);
-  EXPECT_FALSE(topside_.head());
-  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
+  EXPECT_FALSE(client_.head());
+  EXPECT_THAT(client_.take_outgoing(), IsEmpty());
 }
 
-TEST_F(TopsideTest, TalksToOneHeadOnly) {
+TEST_F(ClientTest, TalksToOneHeadOnly) {
   receive(status());
   Status other = status();
   other.sonar_id = other.header.sonar_id = 777;
   other.alternate_ip = 0x0A0A0A0A;
   receive(other);
-  EXPECT_EQ(topside_.head()->status.sonar_id, sonar_id);
-  EXPECT_EQ(topside_.statistics().other_heads, 1U);
+  EXPECT_EQ(client_.head()->status.sonar_id, sonar_id);
+  EXPECT_EQ(client_.statistics().other_heads, 1U);
 }
 
-TEST_F(TopsideTest, WaitsForTheHeadItWasToldToTalkTo) {
-  topside_ = Topside(TopsideConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
+TEST_F(ClientTest, WaitsForTheHeadItWasToldToTalkTo) {
+  client_ = Client(ClientConfig{.sonar_id = 777, .head_address = 0x0A0A0A0A});
   receive(status());
-  EXPECT_FALSE(topside_.head());
+  EXPECT_FALSE(client_.head());
   Status wanted = status();
   wanted.sonar_id = wanted.header.sonar_id = 777;
   receive(wanted);
-  ASSERT_TRUE(topside_.head());
-  EXPECT_EQ(topside_.take_outgoing().at(0).to, 0x0A0A0A0AU);
+  ASSERT_TRUE(client_.head());
+  EXPECT_EQ(client_.take_outgoing().at(0).to, 0x0A0A0A0AU);
 }
 
-TEST_F(TopsideTest, BadDatagramsAreCounted) {
-  topside_.on_datagram(now_, std::vector<std::uint8_t>{0x41, 0x01, 0x59});
-  topside_.on_datagram(now_, {});
-  EXPECT_EQ(topside_.statistics().bad_datagrams, 2U);
+TEST_F(ClientTest, BadDatagramsAreCounted) {
+  client_.on_datagram(now_, std::vector<std::uint8_t>{0x41, 0x01, 0x59});
+  client_.on_datagram(now_, {});
+  EXPECT_EQ(client_.statistics().bad_datagrams, 2U);
 }
 
 // ---- Single pings ----
 
-TEST_F(TopsideTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
+TEST_F(ClientTest, ACompletePingIsDeliveredAndTheNextConfigurationLeavesAtOnce) {
   meet_and_start(config(), 2);
   hear_ping(5);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   EXPECT_TRUE(pings[0].complete());
   EXPECT_EQ(pings[0].retries.total(), 0U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
-  EXPECT_FALSE(topside_.finished());
+  EXPECT_FALSE(client_.finished());
   hear_ping(6);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
-  EXPECT_TRUE(topside_.finished());
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
+  EXPECT_TRUE(client_.finished());
   EXPECT_THAT(said<PingConfig>(), IsEmpty());
 }
 
-TEST_F(TopsideTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
+TEST_F(ClientTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -295,26 +295,26 @@ TEST_F(TopsideTest, AGapIsAskedForAsOneWhenItsLinesCannotBeLateAnyMore) {
   hear_tail(5);
   EXPECT_THAT(asked(), IsEmpty());
   hear_lines(5, 10, 3, true);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   EXPECT_EQ(pings[0].lines_repaired, 3);
   EXPECT_EQ(pings[0].lines_lost, 0);
 }
 
-TEST_F(TopsideTest, TheRequestForALineIsTheWorkedExample) {
+TEST_F(ClientTest, TheRequestForALineIsTheWorkedExample) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 11, lines - 11);
   hear_tail(5);
-  const auto sent = topside_.take_outgoing();
+  const auto sent = client_.take_outgoing();
   ASSERT_THAT(sent, SizeIs(1));
   EXPECT_EQ(sent[0].bytes,
             (std::vector<std::uint8_t>{0x30, 0x01, 0x59, 0x02, 0, 0, 0, 0, 1, 0, 0x0a, 0, 1, 0, 0, 0}));
 }
 
-TEST_F(TopsideTest, LastLinesAreAskedForWhenTheTailComes) {
+TEST_F(ClientTest, LastLinesAreAskedForWhenTheTailComes) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 2);
@@ -322,7 +322,7 @@ TEST_F(TopsideTest, LastLinesAreAskedForWhenTheTailComes) {
   EXPECT_THAT(asked(), ElementsAre("38+2"));
 }
 
-TEST_F(TopsideTest, LinesAreAskedForUntilTheyCome) {
+TEST_F(ClientTest, LinesAreAskedForUntilTheyCome) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -334,10 +334,10 @@ TEST_F(TopsideTest, LinesAreAskedForUntilTheyCome) {
     EXPECT_THAT(asked(), ElementsAre("10")) << "round " << round;
   }
   hear_line(5, 10, true);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
+TEST_F(ClientTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, 10);
@@ -350,28 +350,28 @@ TEST_F(TopsideTest, RequestsFollowQuicklyWhileAHeadMayHoldItsNextPing) {
   }
 }
 
-TEST_F(TopsideTest, ALostTailIsAskedFor) {
+TEST_F(ClientTest, ALostTailIsAskedFor) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
-  EXPECT_THAT(topside_.take_pings(), IsEmpty());
+  EXPECT_THAT(client_.take_pings(), IsEmpty());
   pass(5ms);
   EXPECT_THAT(asked(), ElementsAre("tail"));
   hear_tail(5, true);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, ATailThatNeverComesDoesNotSpoilTheImage) {
+TEST_F(ClientTest, ATailThatNeverComesDoesNotSpoilTheImage) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
   pass(1s);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_TRUE(pings[0].complete());
 }
 
-TEST_F(TopsideTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
+TEST_F(ClientTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 3);
@@ -380,11 +380,11 @@ TEST_F(TopsideTest, LastLinesAndTailLostTogetherAreFoundByTheTimer) {
   hear_tail(5, true);
   EXPECT_THAT(asked(), ElementsAre("37+3"));
   hear_lines(5, lines - 3, 3, true);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-// Otherwise the topside would send a request in every ping of a head whose images are late (7.2).
-TEST_F(TopsideTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
+// Otherwise the client would send a request in every ping of a head whose images are late (7.2).
+TEST_F(ClientTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines - 36);
@@ -394,7 +394,7 @@ TEST_F(TopsideTest, APingThatStopsLongBeforeItsEndIsGivenAsLongAsByOtherClients)
   EXPECT_THAT(asked(), ElementsAre("tail"));
 }
 
-TEST_F(TopsideTest, ALostHeadIsAskedForAndTheLinesAreKept) {
+TEST_F(ClientTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   meet_and_start(config());
   hear_lines(5, 0, 10);
   pass(3ms);
@@ -404,32 +404,32 @@ TEST_F(TopsideTest, ALostHeadIsAskedForAndTheLinesAreKept) {
   hear_head(5, 0s + 1ms, true);
   EXPECT_THAT(asked(), ElementsAre("39"));  // the count of lines is unknown until now
   hear_line(5, lines - 1, true);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U + 1U);  // plus the configuration of the next ping
+  EXPECT_EQ(client_.statistics().configs_sent, 1U + 1U);  // plus the configuration of the next ping
 }
 
-TEST_F(TopsideTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
+TEST_F(ClientTest, AHeadRightAfterItsFirstLineIsNotAskedFor) {
   meet_and_start(config());
   hear_line(5, 0);
   hear_head(5);
   hear_lines(5, 1, lines - 1);
   hear_tail(5);
   EXPECT_THAT(asked(), IsEmpty());
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, ALostConfigurationIsSentAgain) {
+TEST_F(ClientTest, ALostConfigurationIsSentAgain) {
   meet_and_start(config());
   pass(5s);
   EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(2U)));
-  EXPECT_GE(topside_.statistics().configs_repeated, 2U);
+  EXPECT_GE(client_.statistics().configs_repeated, 2U);
   hear_ping(5);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
+TEST_F(ClientTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
   meet_and_start(config());
   const TimePoint transmitted = now_;
   hear_ping(5);
@@ -442,10 +442,10 @@ TEST_F(TopsideTest, AnOldHeadInAnswerMeansThatTheConfigurationWasLost) {
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
   hear_head(5, transmitted, true);  // the answer to the second copy of the request
   EXPECT_THAT(said<PingConfig>(), IsEmpty());
-  EXPECT_EQ(topside_.statistics().pings_complete, 1U);
+  EXPECT_EQ(client_.statistics().pings_complete, 1U);
 }
 
-TEST_F(TopsideTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
+TEST_F(ClientTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
   meet_and_start(config(), 1);
   const TimePoint transmitted = now_;
   while (said<RetryRequest>().empty()) {
@@ -455,16 +455,16 @@ TEST_F(TopsideTest, APingOfWhichNothingArrivedIsRepairedAndNotPingedAgain) {
   hear_head(5, transmitted, true);
   hear_lines(5, 0, lines, true);
   hear_tail(5, true);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
+  EXPECT_EQ(client_.statistics().configs_sent, 1U);
 }
 
-TEST_F(TopsideTest, AHeadThatComesVeryLateStillSavesThePing) {
+TEST_F(ClientTest, AHeadThatComesVeryLateStillSavesThePing) {
   meet_and_start(config(), 1);
   const TimePoint transmitted = now_;
   hear_lines(5, 0, lines);
   hear_tail(5);
-  while (topside_.statistics().pings_abandoned == 0) {
+  while (client_.statistics().pings_abandoned == 0) {
     pass(1ms);
     ASSERT_LT(now_, 5s);
   }
@@ -472,61 +472,61 @@ TEST_F(TopsideTest, AHeadThatComesVeryLateStillSavesThePing) {
   hear_head(5, transmitted, true);
   hear_tail(5, true);
   hear_lines(5, 0, lines, true);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
+  EXPECT_EQ(client_.statistics().configs_sent, 1U);
 }
 
-TEST_F(TopsideTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
+TEST_F(ClientTest, APingThatLacksOnlyItsTailIsDeliveredWhenTheNextBegins) {
   meet_and_start(config());
   hear_head(5);
   hear_lines(5, 0, lines);
   hear_line(6, 0);  // the head received the configuration twice
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].head.ping_id, 5);
-  EXPECT_EQ(topside_.statistics().pings_abandoned, 0U);
+  EXPECT_EQ(client_.statistics().pings_abandoned, 0U);
 }
 
-TEST_F(TopsideTest, CanStartAgainAfterAStop) {
+TEST_F(ClientTest, CanStartAgainAfterAStop) {
   meet_and_start(config(RunMode::continuous), 1);
   hear_ping(5);
-  ASSERT_TRUE(topside_.finished());
-  static_cast<void>(topside_.take_outgoing());
-  topside_.start(now_, config(), 1);
-  topside_.advance(now_);
+  ASSERT_TRUE(client_.finished());
+  static_cast<void>(client_.take_outgoing());
+  client_.start(now_, config(), 1);
+  client_.advance(now_);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
-  EXPECT_FALSE(topside_.finished());
+  EXPECT_FALSE(client_.finished());
   pass(1500ms);
   EXPECT_THAT(said<StatusRequest>(), SizeIs(testing::Ge(1U)));
 }
 
-TEST_F(TopsideTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
+TEST_F(ClientTest, AHeadThatTakesItsTimeIsNotTakenForSilent) {
   meet_and_start(config(RunMode::continuous));  // requests 10 pings per second
   for (int id = 0; id < 5; ++id) {
     hear_ping(id);
     pass(1500ms);
     receive(status());
   }
-  EXPECT_LE(topside_.statistics().configs_sent, 2U);
+  EXPECT_LE(client_.statistics().configs_sent, 2U);
 }
 
-TEST_F(TopsideTest, ASecondPingToARepeatedConfigurationIsLetPass) {
+TEST_F(ClientTest, ASecondPingToARepeatedConfigurationIsLetPass) {
   meet_and_start(config());
   pass(1100ms);
-  ASSERT_EQ(topside_.statistics().configs_sent, 2U);
+  ASSERT_EQ(client_.statistics().configs_sent, 2U);
   hear_ping(5);
-  static_cast<void>(topside_.take_outgoing());
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  static_cast<void>(client_.take_outgoing());
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
   pass(5ms);
   hear_ping(6);  // the head received the first configuration too
-  EXPECT_THAT(topside_.take_pings(), IsEmpty());
-  EXPECT_EQ(topside_.statistics().pings_unrequested, 1U);
+  EXPECT_THAT(client_.take_pings(), IsEmpty());
+  EXPECT_EQ(client_.statistics().pings_unrequested, 1U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));  // the next one waited for the end of ping 6
   hear_ping(7);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
+TEST_F(ClientTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
   now_ = 2s;
   meet_and_start(config(), 1);
   // An earlier client requested this ping and ended. The head is still sending it.
@@ -535,15 +535,15 @@ TEST_F(TopsideTest, WhatWasPingedBeforeTheConfigurationLeftIsNoAnswer) {
   hear_lines(9, 25, 15);
   EXPECT_THAT(asked(), IsEmpty());
   hear_tail(9);
-  EXPECT_THAT(topside_.take_pings(), IsEmpty());
+  EXPECT_THAT(client_.take_pings(), IsEmpty());
   hear_ping(10);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].head.ping_id, 10);
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
+  EXPECT_EQ(client_.statistics().configs_sent, 1U);
 }
 
-TEST_F(TopsideTest, DuplicatesAndDisorderDoNoHarm) {
+TEST_F(ClientTest, DuplicatesAndDisorderDoNoHarm) {
   meet_and_start(config());
   hear_line(5, 1);
   hear_head(5);
@@ -559,58 +559,58 @@ TEST_F(TopsideTest, DuplicatesAndDisorderDoNoHarm) {
   hear_tail(5, true);
   hear_head(5, 1ms, true);
   hear_line(5, 3, true);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].samples.u8, image(5));
   hear_ping(6);
-  EXPECT_THAT(topside_.take_pings(), SizeIs(1));
+  EXPECT_THAT(client_.take_pings(), SizeIs(1));
 }
 
-TEST_F(TopsideTest, ALineThatNeverComesEndsThePingIncomplete) {
+TEST_F(ClientTest, ALineThatNeverComesEndsThePingIncomplete) {
   meet_and_start(config(), 1);
   hear_head(5);
   hear_lines(5, 0, 10);
   hear_lines(5, 11, lines - 11);
   hear_tail(5);
   pass(2s);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].lines_lost, 1);
-  EXPECT_EQ(topside_.statistics().pings_incomplete, 1U);
-  EXPECT_EQ(topside_.statistics().lines_missing, 1U);
-  EXPECT_TRUE(topside_.finished());
+  EXPECT_EQ(client_.statistics().pings_incomplete, 1U);
+  EXPECT_EQ(client_.statistics().lines_missing, 1U);
+  EXPECT_TRUE(client_.finished());
 }
 
-TEST_F(TopsideTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
+TEST_F(ClientTest, AHeadThatWasStartedAgainIsConfiguredAgain) {
   meet_and_start(config());
   now_ = 10s;
   receive(status());
-  static_cast<void>(topside_.take_outgoing());
+  static_cast<void>(client_.take_outgoing());
   Status fresh = status();
   fresh.clock_us = 1'000;
   now_ += 6s;
   receive(fresh);
-  EXPECT_EQ(topside_.statistics().reboots, 1U);
+  EXPECT_EQ(client_.statistics().reboots, 1U);
   EXPECT_THAT(said<PingConfig>(), SizeIs(1));
 }
 
 // ---- Continuous ----
 
-TEST_F(TopsideTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
+TEST_F(ClientTest, ContinuousPingsNeedOneConfigurationAndAreStoppedAtTheEnd) {
   meet_and_start(config(RunMode::continuous), 3);
   for (int id = 254; id < 257; ++id) {
     hear_ping(id & 0xFF);
     pass(100ms);
   }
-  EXPECT_THAT(topside_.take_pings(), SizeIs(3));
-  EXPECT_EQ(topside_.statistics().configs_sent, 1U);
-  EXPECT_TRUE(topside_.finished());
+  EXPECT_THAT(client_.take_pings(), SizeIs(3));
+  EXPECT_EQ(client_.statistics().configs_sent, 1U);
+  EXPECT_TRUE(client_.finished());
   EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
   pass(10s);
-  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
+  EXPECT_THAT(client_.take_outgoing(), IsEmpty());
 }
 
-TEST_F(TopsideTest, LinesOfAnUnknownPingAskForItsHead) {
+TEST_F(ClientTest, LinesOfAnUnknownPingAskForItsHead) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(5);
   pass(95ms);
@@ -621,12 +621,12 @@ TEST_F(TopsideTest, LinesOfAnUnknownPingAskForItsHead) {
   hear_lines(6, 20, 20);
   hear_tail(6);
   hear_head(6, transmitted, true);
-  const auto pings = topside_.take_pings();
+  const auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(2));
   EXPECT_EQ(pings[1].samples.u8, image(6));
 }
 
-TEST_F(TopsideTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
+TEST_F(ClientTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 1, lines - 10);
@@ -635,7 +635,7 @@ TEST_F(TopsideTest, APingThatHasLostLinesAsksAheadSoThatTheHeadHoldsItsNext) {
   EXPECT_THAT(asked(), ElementsAre("tail"));
 }
 
-TEST_F(TopsideTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
+TEST_F(ClientTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 0, lines - 2);
@@ -643,43 +643,43 @@ TEST_F(TopsideTest, ANextPingEndsAnIncompleteOneButLetsItsStragglersIn) {
   hear_line(5, lines - 1);
   hear_line(6, 0);
   hear_line(5, lines - 2, true);
-  auto pings = topside_.take_pings();
+  auto pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_TRUE(pings[0].complete());
   hear_lines(6, 1, 5);
   hear_head(7);
   pass(20ms);
-  pings = topside_.take_pings();
+  pings = client_.take_pings();
   ASSERT_THAT(pings, SizeIs(1));
   EXPECT_EQ(pings[0].lines_lost, lines - 6);
 }
 
-TEST_F(TopsideTest, SkippedIdsAreMissedPings) {
+TEST_F(ClientTest, SkippedIdsAreMissedPings) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(255);
   hear_ping(2);
-  EXPECT_EQ(topside_.statistics().pings_missed, 2U);  // pings 0 and 1
+  EXPECT_EQ(client_.statistics().pings_missed, 2U);  // pings 0 and 1
 }
 
-TEST_F(TopsideTest, AProgrammeThatFallsSilentIsSentAgain) {
+TEST_F(ClientTest, AProgrammeThatFallsSilentIsSentAgain) {
   meet_and_start(config(RunMode::continuous));
   hear_ping(5);
   pass(3s);
   EXPECT_THAT(said<PingConfig>(), SizeIs(testing::Ge(1U)));
 }
 
-TEST_F(TopsideTest, StopSilencesTheTopside) {
+TEST_F(ClientTest, StopSilencesTheClient) {
   meet_and_start(config(RunMode::continuous));
   hear_head(5);
   hear_lines(5, 0, 3);
-  topside_.stop();
-  topside_.advance(now_);
+  client_.stop();
+  client_.advance(now_);
   EXPECT_THAT(said<GoingOffline>(), SizeIs(2));
   hear_lines(5, 10, 3);
   receive(status());
   pass(10s);
-  EXPECT_THAT(topside_.take_outgoing(), IsEmpty());
-  EXPECT_TRUE(topside_.finished());
+  EXPECT_THAT(client_.take_outgoing(), IsEmpty());
+  EXPECT_TRUE(client_.finished());
 }
 
 }  // namespace

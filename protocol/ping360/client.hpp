@@ -35,7 +35,7 @@ struct ReceivedPing {
 };
 
 /// Counters since construction. They only grow.
-struct HostStatistics {
+struct ClientStatistics {
   std::uint64_t frames = 0;         ///< decoded
   std::uint64_t dropped_bytes = 0;  ///< not part of a frame
   std::uint64_t bad_frames = 0;     ///< undecodable
@@ -47,9 +47,9 @@ struct HostStatistics {
 };
 
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
-class Host {
+class Client {
  public:
-  explicit Host(TimePoint now);
+  explicit Client(TimePoint now);
 
   /// Handles bytes from the head, in parts of any size. Counts and drops bad ones.
   void on_bytes(TimePoint now, std::span<const std::uint8_t> bytes);
@@ -79,7 +79,7 @@ class Host {
   /// True if all pings of start() are delivered or refused. After stop(): true if the head has stopped or
   /// does not answer.
   bool finished() const { return finished_; }
-  const HostStatistics& statistics() const { return statistics_; }
+  const ClientStatistics& statistics() const { return statistics_; }
 
  private:
   enum class Phase : std::uint8_t {
@@ -128,7 +128,7 @@ class Host {
   bool finished_ = false;
   std::vector<std::vector<std::uint8_t>> outgoing_;
   std::vector<ReceivedPing> pings_;
-  HostStatistics statistics_;
+  ClientStatistics statistics_;
 };
 
 }  // namespace sonard::ping360

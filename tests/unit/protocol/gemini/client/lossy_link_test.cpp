@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Topside and head at the two ends of a link that loses, doubles, delays and reorders datagrams, in virtual
+// Client and head at the two ends of a link that loses, doubles, delays and reorders datagrams, in virtual
 // time. Every requested image must arrive complete and unchanged.
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/device.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "protocol/gemini/topside.hpp"
 
 namespace sonard::gemini {
 namespace {
@@ -25,7 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Ipv4 head_address = 0x7F000002;
-constexpr Ipv4 topside_address = 0x7F000001;
+constexpr Ipv4 client_address = 0x7F000001;
 
 struct LinkFaults {
   double loss = 0.0;
@@ -55,7 +55,7 @@ void PrintTo(const Case& value, std::ostream* out) {
 class Bench {
  public:
   Bench(const Case& settings, std::uint64_t seed)
-      : settings_(settings), random_(seed), device_(device_config(settings), 0s), topside_(TopsideConfig{}) {
+      : settings_(settings), random_(seed), device_(device_config(settings), 0s), client_(ClientConfig{}) {
     PingSettings wanted;
     wanted.sixteen_bit = settings.sixteen_bit;
     wanted.rle_threshold = settings.rle_threshold;
@@ -63,21 +63,21 @@ class Bench {
     wanted.interval = settings.interval;
     PingConfig config = make_ping_config(wanted);
     config.end_range = static_cast<std::uint16_t>(settings.lines << settings.compression_log2);
-    topside_.start(0s, config, static_cast<std::uint64_t>(settings.pings));
+    client_.start(0s, config, static_cast<std::uint64_t>(settings.pings));
   }
 
-  /// Runs until the topside has finished. Returns false if that takes longer than `limit`.
+  /// Runs until the client has finished. Returns false if that takes longer than `limit`.
   bool run(std::chrono::nanoseconds limit) {
     tell_head(TimePassed{});
-    topside_.advance(now_);
+    client_.advance(now_);
     carry();
-    while (!topside_.finished() && now_ < limit) {
+    while (!client_.finished() && now_ < limit) {
       step();
     }
-    return topside_.finished();
+    return client_.finished();
   }
 
-  const Topside& topside() const { return topside_; }
+  const Client& client() const { return client_; }
   const Device& device() const { return device_; }
   const std::vector<ReceivedPing>& pings() const { return pings_; }
   TimePoint now() const { return now_; }
@@ -119,7 +119,7 @@ class Bench {
       }
     };
     consider(head_wake_at_);
-    consider(topside_.next_deadline());
+    consider(client_.next_deadline());
     if (!events_.empty()) {
       consider(events_.top().at);
     }
@@ -132,14 +132,14 @@ class Bench {
     if (head_wake_at_ && *head_wake_at_ <= now_) {
       tell_head(TimePassed{});
     }
-    topside_.advance(now_);
+    client_.advance(now_);
     carry();
   }
 
   void tell_head(const sonard::Event& event) {
     const Actions actions = device_.step(now_, event);
     for (const Outgoing& datagram : actions.send) {
-      transport([this, bytes = datagram.bytes] { topside_.on_datagram(now_, bytes); });
+      transport([this, bytes = datagram.bytes] { client_.on_datagram(now_, bytes); });
     }
     if (actions.render) {
       render(*actions.render);
@@ -148,12 +148,12 @@ class Bench {
   }
 
   void carry() {
-    for (auto& datagram : topside_.take_outgoing()) {
+    for (auto& datagram : client_.take_outgoing()) {
       transport([this, bytes = SharedBytes(std::move(datagram.bytes))] {
-        tell_head(BytesReceived{{0, {topside_address, 52900}, head_address}, bytes});
+        tell_head(BytesReceived{{0, {client_address, 52900}, head_address}, bytes});
       });
     }
-    for (auto& ping : topside_.take_pings()) {
+    for (auto& ping : client_.take_pings()) {
       pings_.push_back(std::move(ping));
     }
   }
@@ -197,7 +197,7 @@ class Bench {
   Case settings_;
   std::mt19937_64 random_;
   Device device_;
-  Topside topside_;
+  Client client_;
   std::optional<TimePoint> head_wake_at_;
   TimePoint now_ = 0s;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -230,7 +230,7 @@ TEST_P(LossyLink, EveryImageArrivesWholeAndUnchanged) {
     ASSERT_TRUE(ping.samples.u8 == expected_u8(*sent, settings.rle_threshold)) << "ping " << ping.number;
     ASSERT_TRUE(ping.samples.u16 == sent->u16) << "ping " << ping.number;
   }
-  const auto& statistics = bench.topside().statistics();
+  const auto& statistics = bench.client().statistics();
   EXPECT_EQ(statistics.pings_complete, static_cast<std::uint64_t>(settings.pings));
   EXPECT_EQ(statistics.pings_incomplete, 0U);
   EXPECT_EQ(statistics.pings_missed, 0U);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any sequence of bytes and pauses against the host's side of a Micron.
+// Any sequence of bytes and pauses against the client's side of a Micron.
 // Promises: every frame sent is a command; a delivered line has the requested bins; the next deadline lies in
 // the future.
+#include "protocol/micron/client.hpp"
 #include "protocol/micron/codec.hpp"
-#include "protocol/micron/host.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -28,20 +28,20 @@ class Bench {
     command.bins = bins;
     switch (event.kind) {
       case start_8_bit:
-        host_.start(now_, command, 0);
+        client_.start(now_, command, 0);
         break;
       case start_4_bit:
         command.control &= static_cast<std::uint16_t>(~control_bits::eight_bit);
-        host_.start(now_, command, 3);
+        client_.start(now_, command, 3);
         break;
       case stop:
-        host_.stop();
+        client_.stop();
         break;
       case gain:
-        host_.set_gain({});
+        client_.set_gain({});
         break;
       case reverse:
-        host_.reverse();
+        client_.reverse();
         break;
       default:
         if (event.kind < byte_kinds) {
@@ -54,9 +54,9 @@ class Bench {
  private:
   void hear(const Event& event) {
     if (event.as_is || event.datagram.empty()) {
-      host_.on_bytes(now_, event.datagram);
+      client_.on_bytes(now_, event.datagram);
     } else {
-      host_.on_bytes(
+      client_.on_bytes(
           now_, frame_from_head(default_head_node, event.datagram[0], std::span{event.datagram}.subspan(1)));
     }
   }
@@ -64,7 +64,7 @@ class Bench {
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
     for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = host_.next_deadline();
+      const auto deadline = client_.next_deadline();
       if (!deadline || *deadline > target) {
         break;
       }
@@ -76,21 +76,21 @@ class Bench {
   }
 
   void advance() {
-    host_.advance(now_);
-    for (const auto& frame : host_.take_outgoing()) {
+    client_.advance(now_);
+    for (const auto& frame : client_.take_outgoing()) {
       const auto command = decode_command(frame);
       require(command.has_value() && !std::holds_alternative<Unknown>(*command),
-              "a host speaks its protocol");
+              "a client speaks its protocol");
     }
-    for (const ReceivedLine& line : host_.take_lines()) {
+    for (const ReceivedLine& line : client_.take_lines()) {
       require(line.bins.size() == bins, "a line has the bins that were asked for");
     }
-    const auto deadline = host_.next_deadline();
+    const auto deadline = client_.next_deadline();
     require(!deadline || *deadline > now_, "the next deadline is later than now");
   }
 
   TimePoint now_{};
-  Host host_{HostConfig{}, now_};
+  Client client_{ClientConfig{}, now_};
 };
 
 }  // namespace

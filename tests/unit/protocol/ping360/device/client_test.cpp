@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // The client's side against the head itself, and against a link that loses and cuts frames (6).
-#include "protocol/ping360/host.hpp"
+#include "protocol/ping360/client.hpp"
 
 #include "bench.hpp"
 
 namespace sonard::ping360 {
 namespace {
 
-/// A host and a head on one line, in virtual time.
+/// A client and a head on one line, in virtual time.
 class Session {
  public:
   using Carrier = std::function<std::vector<Bytes>(const Bytes&)>;
 
-  explicit Session(const DeviceConfig& config = {}) : head(config), host(0ns) {}
+  explicit Session(const DeviceConfig& config = {}) : head(config), client(0ns) {}
 
   // Set by tests: the pieces in which a frame arrives; an empty list loses the frame.
   Carrier to_head = [](const Bytes& frame) { return std::vector<Bytes>{frame}; };
-  Carrier to_host = to_head;
+  Carrier to_client = to_head;
 
   Bench head;
-  Host host;
+  Client client;
   std::vector<ReceivedPing> pings;
 
   void run_for(std::chrono::nanoseconds span) {
     const TimePoint end = head.now + span;
     exchange();
     for (;;) {
-      const TimePoint own = host.next_deadline().value_or(TimePoint::max());
+      const TimePoint own = client.next_deadline().value_or(TimePoint::max());
       const TimePoint next = std::min(head.next_event(), own);
       if (next > end) {
         break;
@@ -41,29 +41,29 @@ class Session {
     head.run_until(end);
   }
   void run_to_end(std::chrono::nanoseconds limit = 200s) {
-    for (const TimePoint end = head.now + limit; !host.finished() && head.now < end;) {
+    for (const TimePoint end = head.now + limit; !client.finished() && head.now < end;) {
       run_for(10ms);
     }
-    EXPECT_TRUE(host.finished());
+    EXPECT_TRUE(client.finished());
   }
 
  private:
   void exchange() {
     for (bool talks = true; talks;) {
       for (talks = false; read_ < head.heard.size(); ++read_) {
-        for (const Bytes& piece : to_host(head.heard[read_].frame)) {
-          host.on_bytes(head.now, piece);
+        for (const Bytes& piece : to_client(head.heard[read_].frame)) {
+          client.on_bytes(head.now, piece);
         }
       }
-      host.advance(head.now);
-      EXPECT_TRUE(!host.next_deadline() || *host.next_deadline() > head.now);
-      for (const Bytes& frame : host.take_outgoing()) {
+      client.advance(head.now);
+      EXPECT_TRUE(!client.next_deadline() || *client.next_deadline() > head.now);
+      for (const Bytes& frame : client.take_outgoing()) {
         talks = true;
         for (const Bytes& piece : to_head(frame)) {
           head.raw(piece);
         }
       }
-      for (ReceivedPing& ping : host.take_pings()) {
+      for (ReceivedPing& ping : client.take_pings()) {
         pings.push_back(std::move(ping));
       }
     }
@@ -72,19 +72,19 @@ class Session {
   std::size_t read_ = 0;
 };
 
-TEST(Ping360Host, MeetsTheHead) {
+TEST(Ping360Client, MeetsTheHead) {
   Session session;
   session.run_for(100ms);
-  EXPECT_EQ(session.host.head().protocol, ProtocolVersion{});
-  EXPECT_EQ(session.host.head().information, DeviceInformation{});
-  EXPECT_EQ(session.host.head().state, PingForm{});
+  EXPECT_EQ(session.client.head().protocol, ProtocolVersion{});
+  EXPECT_EQ(session.client.head().information, DeviceInformation{});
+  EXPECT_EQ(session.client.head().state, PingForm{});
   session.run_for(10s);
-  EXPECT_EQ(session.host.statistics().frames, 3U) << "then it is quiet";
+  EXPECT_EQ(session.client.statistics().frames, 3U) << "then it is quiet";
 }
 
-TEST(Ping360Host, PingsOneAfterAnother) {
+TEST(Ping360Client, PingsOneAfterAnother) {
   Session session;
-  session.host.start(0ns, ping_at(380), 15, 5);
+  session.client.start(0ns, ping_at(380), 15, 5);
   session.run_to_end();
   ASSERT_EQ(session.pings.size(), 5U);
   std::vector<int> angles;
@@ -94,12 +94,12 @@ TEST(Ping360Host, PingsOneAfterAnother) {
     EXPECT_FALSE(ping.form.scan);
   }
   EXPECT_EQ(angles, (std::vector{380, 395, 10, 25, 40}));
-  EXPECT_EQ(session.host.statistics().commands, 5U);
+  EXPECT_EQ(session.client.statistics().commands, 5U);
 }
 
-TEST(Ping360Host, ScansAndStopsTheScanBehindIt) {
+TEST(Ping360Client, ScansAndStopsTheScanBehindIt) {
   Session session;
-  session.host.start(0ns, scan_of(390, 10, 5), 7);
+  session.client.start(0ns, scan_of(390, 10, 5), 7);
   session.run_to_end();
   ASSERT_EQ(session.pings.size(), 7U);
   EXPECT_EQ(session.pings[1].form.settings.angle, 395);
@@ -112,7 +112,7 @@ TEST(Ping360Host, ScansAndStopsTheScanBehindIt) {
   EXPECT_EQ(session.head.heard.size(), heard);
 }
 
-TEST(Ping360Host, PingsThatComeBeforeAStopIsReadAreNotUnwanted) {
+TEST(Ping360Client, PingsThatComeBeforeAStopIsReadAreNotUnwanted) {
   Session session;
   int stops = 0;
   session.to_head = [&](const Bytes& frame) {
@@ -120,70 +120,70 @@ TEST(Ping360Host, PingsThatComeBeforeAStopIsReadAreNotUnwanted) {
     const bool stop = command && std::holds_alternative<MotorOff>(*command);
     return stop && ++stops <= 3 ? std::vector<Bytes>{} : std::vector<Bytes>{frame};
   };
-  session.host.start(0ns, scan_of(390, 10, 5), 7);
+  session.client.start(0ns, scan_of(390, 10, 5), 7);
   session.run_to_end();
   session.run_for(1s);
   EXPECT_GT(session.head.all<AutoDeviceData>().size(), 7U);
   EXPECT_EQ(session.pings.size(), 7U);
-  EXPECT_EQ(session.host.statistics().pings_unwanted, 0U);
+  EXPECT_EQ(session.client.statistics().pings_unwanted, 0U);
 }
 
-TEST(Ping360Host, GivesSignsOfLifeSoThatAScanGoesOn) {
+TEST(Ping360Client, GivesSignsOfLifeSoThatAScanGoesOn) {
   Session session;
-  session.host.start(0ns, scan_of(0, 399, 10), 0);
+  session.client.start(0ns, scan_of(0, 399, 10), 0);
   session.run_for(120s);
   const std::size_t before = session.pings.size();
   session.run_for(1s);
   EXPECT_GT(session.pings.size(), before);
-  EXPECT_EQ(session.host.statistics().timeouts, 0U);
-  session.host.stop(session.head.now);
+  EXPECT_EQ(session.client.statistics().timeouts, 0U);
+  session.client.stop(session.head.now);
   session.run_to_end(5s);
 }
 
-TEST(Ping360Host, ChangesWhatIsGoingOn) {
+TEST(Ping360Client, ChangesWhatIsGoingOn) {
   Session session;
-  session.host.start(0ns, scan_of(0, 399), 0);
+  session.client.start(0ns, scan_of(0, 399), 0);
   session.run_for(1s);
-  session.host.start(session.head.now, ping_at(50), 1, 3);
+  session.client.start(session.head.now, ping_at(50), 1, 3);
   session.run_to_end();
   EXPECT_EQ(session.pings.back().form.settings.angle, 52);
-  session.host.start(session.head.now, scan_of(100, 150), 2);
+  session.client.start(session.head.now, scan_of(100, 150), 2);
   session.run_to_end();
   EXPECT_EQ(session.pings.back().form.settings.angle, 101);
 }
 
-TEST(Ping360Host, ARefusalIsToldAndNotRepeated) {
+TEST(Ping360Client, ARefusalIsToldAndNotRepeated) {
   Session session;
-  session.host.start(0ns, Transducer{.number_of_samples = 1250}, 1, 0);
+  session.client.start(0ns, Transducer{.number_of_samples = 1250}, 1, 0);
   session.run_to_end(5s);
-  ASSERT_TRUE(session.host.refusal());
-  EXPECT_EQ(session.host.refusal()->text, "number_of_samples out of range");
+  ASSERT_TRUE(session.client.refusal());
+  EXPECT_EQ(session.client.refusal()->text, "number_of_samples out of range");
   session.run_for(10s);
-  EXPECT_EQ(session.host.statistics().commands, 1U);
+  EXPECT_EQ(session.client.statistics().commands, 1U);
 }
 
-TEST(Ping360Host, AsksAgainForWhatIsLost) {
+TEST(Ping360Client, AsksAgainForWhatIsLost) {
   Session session;
   int sent = 0;
   const auto loses_every_third = [&](const Bytes& frame) {
     return ++sent % 3 == 0 ? std::vector<Bytes>{} : std::vector<Bytes>{frame};
   };
   session.to_head = loses_every_third;
-  session.to_host = loses_every_third;
-  session.host.start(0ns, ping_at(0), 1, 20);
+  session.to_client = loses_every_third;
+  session.client.start(0ns, ping_at(0), 1, 20);
   session.run_to_end(1000s);
   EXPECT_EQ(session.pings.size(), 20U);
-  EXPECT_GT(session.host.statistics().timeouts, 0U);
-  session.host.start(session.head.now, scan_of(0, 399), 20);
+  EXPECT_GT(session.client.statistics().timeouts, 0U);
+  session.client.start(session.head.now, scan_of(0, 399), 20);
   session.run_to_end(1000s);
   EXPECT_EQ(session.pings.size(), 40U);
 }
 
 // The second copy of an answer must cause no command; otherwise two commands would stay under way for ever.
-TEST(Ping360Host, ALinkThatDoublesWhatItCarriesMakesNoCommandMore) {
+TEST(Ping360Client, ALinkThatDoublesWhatItCarriesMakesNoCommandMore) {
   Session session;
-  session.to_host = [](const Bytes& frame) { return std::vector<Bytes>{frame, frame}; };
-  session.host.start(0ns, ping_at(380), 15, 5);
+  session.to_client = [](const Bytes& frame) { return std::vector<Bytes>{frame, frame}; };
+  session.client.start(0ns, ping_at(380), 15, 5);
   session.run_to_end();
   std::vector<int> angles;
   for (const ReceivedPing& ping : session.pings) {
@@ -191,12 +191,12 @@ TEST(Ping360Host, ALinkThatDoublesWhatItCarriesMakesNoCommandMore) {
     EXPECT_EQ(ping.samples, test_samples(ping.number, 200));
   }
   EXPECT_EQ(angles, (std::vector{380, 395, 10, 25, 40}));
-  EXPECT_EQ(session.host.statistics().commands, 5U);
+  EXPECT_EQ(session.client.statistics().commands, 5U);
 }
 
-TEST(Ping360Host, ReadsAStreamCutAnywhereAmongNoise) {
+TEST(Ping360Client, ReadsAStreamCutAnywhereAmongNoise) {
   Session session;
-  session.to_host = [](const Bytes& frame) {
+  session.to_client = [](const Bytes& frame) {
     std::vector<Bytes> pieces{{0x00, 0xFF, 'U', 'B'}};
     for (std::size_t begin = 0; begin < frame.size(); begin += 100) {
       const auto end = std::min(begin + 100, frame.size());
@@ -205,20 +205,20 @@ TEST(Ping360Host, ReadsAStreamCutAnywhereAmongNoise) {
     }
     return pieces;
   };
-  session.host.start(0ns, ping_at(0), 1, 10);
+  session.client.start(0ns, ping_at(0), 1, 10);
   session.run_to_end();
-  EXPECT_EQ(session.host.statistics().timeouts, 0U);
-  EXPECT_GT(session.host.statistics().dropped_bytes, 0U);
+  EXPECT_EQ(session.client.statistics().timeouts, 0U);
+  EXPECT_GT(session.client.statistics().dropped_bytes, 0U);
 }
 
-TEST(Ping360Host, GivesUpStoppingAHeadThatDoesNotAnswer) {
+TEST(Ping360Client, GivesUpStoppingAHeadThatDoesNotAnswer) {
   Session session;
   session.run_for(1s);
   session.to_head = [](const Bytes&) { return std::vector<Bytes>{}; };
-  session.host.stop(session.head.now);
+  session.client.stop(session.head.now);
   session.run_for(2s);
-  EXPECT_TRUE(session.host.finished());
-  EXPECT_EQ(session.host.next_deadline(), std::nullopt);
+  EXPECT_TRUE(session.client.finished());
+  EXPECT_EQ(session.client.next_deadline(), std::nullopt);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/micron/host.hpp"
+#include "protocol/micron/client.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -22,7 +22,7 @@ constexpr int request_tries = 5;
 
 }  // namespace
 
-Host::Host(const HostConfig& config, TimePoint now)
+Client::Client(const ClientConfig& config, TimePoint now)
     : config_(config), input_(max_report_frame_size), due_(now + silence_before_asking) {
   if (config_.reboot_first) {
     send(Reboot{});
@@ -31,7 +31,7 @@ Host::Host(const HostConfig& config, TimePoint now)
 
 // ---- Frames
 
-void Host::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
+void Client::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
   input_.append(now, bytes);
   while (const auto frame = input_.front(now)) {
     take_frame(now, frame->bytes);
@@ -40,11 +40,11 @@ void Host::on_bytes(TimePoint now, std::span<const std::uint8_t> bytes) {
   statistics_.dropped_bytes = input_.dropped();
 }
 
-void Host::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
+void Client::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
   const FrameHeader header = frame_header(frame);
-  if (header.tx_node != config_.node || header.rx_node != host_node) {
+  if (header.tx_node != config_.node || header.rx_node != client_node) {
     ++statistics_.other_nodes;
-    if (header.rx_node == host_node) {
+    if (header.rx_node == client_node) {
       other_heads_.insert(header.tx_node);
     }
     return;
@@ -59,13 +59,13 @@ void Host::take_frame(TimePoint now, std::span<const std::uint8_t> frame) {
 }
 
 template <class Message>
-void Host::send(const Message& message) {
+void Client::send(const Message& message) {
   outgoing_.push_back(encode(message, config_.node));
 }
 
 // ---- Meeting the head
 
-void Host::ask_identity(TimePoint now) {
+void Client::ask_identity(TimePoint now) {
   asked_ = true;
   due_ = now + answer_timeout;
   if (!head_.version) {
@@ -74,25 +74,25 @@ void Host::ask_identity(TimePoint now) {
     ++tries_;
     send(SendBBUser{});
   } else {
-    met(now);  // without user blocks this host requests single lines
+    met(now);  // without user blocks this client requests single lines
   }
 }
 
-void Host::on_report(TimePoint now, const VersionData& version) {
+void Client::on_report(TimePoint now, const VersionData& version) {
   head_.version = version;
   if (phase_ == Phase::meeting) {
     ask_identity(now);
   }
 }
 
-void Host::on_report(TimePoint now, const BBUserData& blocks) {
+void Client::on_report(TimePoint now, const BBUserData& blocks) {
   head_.user_blocks = blocks;
   if (phase_ == Phase::meeting && head_.version) {
     met(now);
   }
 }
 
-void Host::met(TimePoint now) {
+void Client::met(TimePoint now) {
   phase_ = Phase::idle;
   due_.reset();
   if (programme_ && !finished()) {
@@ -102,7 +102,7 @@ void Host::met(TimePoint now) {
 
 // ---- Parameters
 
-void Host::start(TimePoint now, const HeadCommand& parameters, std::uint64_t lines) {
+void Client::start(TimePoint now, const HeadCommand& parameters, std::uint64_t lines) {
   programme_ = Programme{parameters, lines, 0};
   stopped_ = false;
   if (phase_ != Phase::meeting) {
@@ -110,7 +110,7 @@ void Host::start(TimePoint now, const HeadCommand& parameters, std::uint64_t lin
   }
 }
 
-void Host::stop() {
+void Client::stop() {
   stopped_ = true;
   if (phase_ != Phase::meeting) {
     phase_ = Phase::idle;
@@ -118,7 +118,7 @@ void Host::stop() {
   }
 }
 
-void Host::set_gain(const GainBlock& values) {
+void Client::set_gain(const GainBlock& values) {
   if (!programme_) {
     return;
   }
@@ -132,7 +132,7 @@ void Host::set_gain(const GainBlock& values) {
   }
 }
 
-void Host::reverse() {
+void Client::reverse() {
   if (!programme_) {
     return;
   }
@@ -142,7 +142,7 @@ void Host::reverse() {
   }
 }
 
-void Host::configure(TimePoint now) {
+void Client::configure(TimePoint now) {
   phase_ = Phase::configuring;
   tries_ = 0;
   expected_ = 0;
@@ -151,7 +151,7 @@ void Host::configure(TimePoint now) {
   ++statistics_.head_commands;
 }
 
-void Host::on_report(TimePoint now, const Alive& alive) {
+void Client::on_report(TimePoint now, const Alive& alive) {
   ++statistics_.alives;
   head_.alive = alive;
   const bool told = alive.has(head_info_bits::sent_config) || !alive.has(head_info_bits::no_parameters);
@@ -174,17 +174,17 @@ void Host::on_report(TimePoint now, const Alive& alive) {
 
 // ---- Lines
 
-int Host::lines_per_request() const {
+int Client::lines_per_request() const {
   return head_.user_blocks && !head_.user_blocks->half_duplex() ? 2 : 1;
 }
 
-std::chrono::nanoseconds Host::line_timeout() const {
+std::chrono::nanoseconds Client::line_timeout() const {
   const HeadCommand& parameters = programme_->parameters;
   return answer_timeout + 2 * parameters.bins * parameters.ad_interval * ad_interval_unit;
 }
 
 /// In full duplex this is called while one requested line is still to come.
-void Host::request(TimePoint now) {
+void Client::request(TimePoint now) {
   send(SendData{});
   ++statistics_.requests;
   expected_ += lines_per_request();
@@ -192,7 +192,7 @@ void Host::request(TimePoint now) {
 }
 
 /// Compares the parameters as drivers do, except gain and window, which may change during a scan.
-bool Host::matches(const HeadData& line) const {
+bool Client::matches(const HeadData& line) const {
   const HeadCommand& asked = programme_->parameters;
   constexpr unsigned compared = control_bits::eight_bit | control_bits::continuous | control_bits::invert;
   const std::size_t bytes = line.eight_bit() ? asked.bins : (asked.bins + 1U) / 2U;
@@ -201,7 +201,7 @@ bool Host::matches(const HeadData& line) const {
          line.ad_interval == asked.ad_interval && line.data.size() == bytes;
 }
 
-void Host::on_report(TimePoint now, const HeadData& line) {
+void Client::on_report(TimePoint now, const HeadData& line) {
   if (phase_ != Phase::scanning) {
     ++statistics_.lines_unrequested;
     return;
@@ -236,7 +236,7 @@ void Host::on_report(TimePoint now, const HeadData& line) {
 
 // ---- Time
 
-void Host::on_timeout(TimePoint now) {
+void Client::on_timeout(TimePoint now) {
   switch (phase_) {
     case Phase::meeting:
       ask_identity(now);
@@ -260,21 +260,21 @@ void Host::on_timeout(TimePoint now) {
   }
 }
 
-void Host::advance(TimePoint now) {
+void Client::advance(TimePoint now) {
   if (due_ && now >= *due_) {
     on_timeout(now);
   }
 }
 
-std::optional<TimePoint> Host::next_deadline() const {
+std::optional<TimePoint> Client::next_deadline() const {
   return due_;
 }
 
-std::vector<std::vector<std::uint8_t>> Host::take_outgoing() {
+std::vector<std::vector<std::uint8_t>> Client::take_outgoing() {
   return std::exchange(outgoing_, {});
 }
 
-std::vector<ReceivedLine> Host::take_lines() {
+std::vector<ReceivedLine> Client::take_lines() {
   return std::exchange(lines_, {});
 }
 

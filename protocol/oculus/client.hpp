@@ -26,7 +26,7 @@ struct ReceivedPing {
 };
 
 /// Counters since construction. They only grow.
-struct HostStatistics {
+struct ClientStatistics {
   std::uint64_t messages = 0;
   std::uint64_t pings = 0;
   std::uint64_t pings_missed = 0;  ///< gaps in the numbers of received pings
@@ -36,7 +36,7 @@ struct HostStatistics {
 };
 
 /// Not thread-safe. For one head, over any number of connections.
-class Host {
+class Client {
  public:
   /// Begins a new stream and drops unfinished messages of the last one.
   void connected();
@@ -47,7 +47,7 @@ class Host {
   std::vector<ReceivedPing> take_pings();
   /// Texts of the log messages received since the last call.
   std::vector<std::string> take_logs();
-  const HostStatistics& statistics() const { return statistics_; }
+  const ClientStatistics& statistics() const { return statistics_; }
 
  private:
   /// Size of the message in front, after dropping bytes before it; nullopt if it is incomplete.
@@ -58,7 +58,7 @@ class Host {
   std::vector<ReceivedPing> pings_;
   std::vector<std::string> logs_;
   std::optional<std::uint32_t> last_ping_id_;  ///< in this connection
-  HostStatistics statistics_;
+  ClientStatistics statistics_;
 };
 
 }  // namespace sonard::oculus

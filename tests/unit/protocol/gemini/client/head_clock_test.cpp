@@ -15,7 +15,7 @@ TEST(HeadClock, KnowsNothingWithoutAStamp) {
 }
 
 TEST(HeadClock, NeverClaimsMoreThanTheHeadShows) {
-  // The head was started when the topside's clock showed 100 s; stamps arrive up to 30 ms late.
+  // The head was started when the client's clock showed 100 s; stamps arrive up to 30 ms late.
   constexpr std::chrono::nanoseconds start = 100s;
   HeadClock clock;
   for (int i = 0; i < 20; ++i) {

@@ -2,8 +2,8 @@
 // Any sequence of bytes and pauses against the client's side of a Ping360.
 // Promises: every frame sent is a command, or empty; a delivered ping views no buffer that is gone; the next
 // deadline lies in the future.
+#include "protocol/ping360/client.hpp"
 #include "protocol/ping360/codec.hpp"
-#include "protocol/ping360/host.hpp"
 #include "tests/fuzz/require.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -24,13 +24,13 @@ class Bench {
     run_until(now_ + event.delay);
     switch (event.kind) {
       case start_turning:
-        host_.start(now_, Transducer{}, 7, 3);
+        client_.start(now_, Transducer{}, 7, 3);
         break;
       case start_scan:
-        host_.start(now_, AutoTransmit{}, 0);
+        client_.start(now_, AutoTransmit{}, 0);
         break;
       case stop:
-        host_.stop(now_);
+        client_.stop(now_);
         break;
       default:
         if (event.kind < byte_kinds) {
@@ -44,17 +44,17 @@ class Bench {
   void hear(const Event& event) {
     const std::span<const std::uint8_t> bytes = event.datagram;
     if (event.as_is || bytes.size() < 2) {
-      host_.on_bytes(now_, bytes);
+      client_.on_bytes(now_, bytes);
     } else {
-      host_.on_bytes(now_, make_frame(static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8), default_device_id,
-                                      host_id, bytes.subspan(2)));
+      client_.on_bytes(now_, make_frame(static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8),
+                                        default_device_id, client_id, bytes.subspan(2)));
     }
   }
 
   void run_until(TimePoint target) {
     constexpr int most_wake_ups = 1000;
     for (int i = 0; i < most_wake_ups; ++i) {
-      const auto deadline = host_.next_deadline();
+      const auto deadline = client_.next_deadline();
       if (!deadline || *deadline > target) {
         break;
       }
@@ -66,21 +66,21 @@ class Bench {
   }
 
   void advance() {
-    host_.advance(now_);
-    for (const auto& frame : host_.take_outgoing()) {
+    client_.advance(now_);
+    for (const auto& frame : client_.take_outgoing()) {
       const auto command = decode_command(frame);
       require(frame.empty() || (command.has_value() && !std::holds_alternative<Unknown>(*command)),
-              "a host speaks its protocol");
+              "a client speaks its protocol");
     }
-    for (const ReceivedPing& ping : host_.take_pings()) {
+    for (const ReceivedPing& ping : client_.take_pings()) {
       require(ping.form.settings.data.empty(), "a ping views no buffer that is gone");
     }
-    const auto deadline = host_.next_deadline();
+    const auto deadline = client_.next_deadline();
     require(!deadline || *deadline > now_, "the next deadline is later than now");
   }
 
   TimePoint now_{};
-  Host host_{now_};
+  Client client_{now_};
 };
 
 }  // namespace
