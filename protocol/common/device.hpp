@@ -63,13 +63,14 @@ struct SensorsRead {
 struct PingFed {
   std::optional<RecordedPing> ping;
 };
-/// Grants Actions::next_ping to a device that waits for grants. It is never sent before NextPing::from.
-struct PingGranted {};
+/// In simulated time: the poses of Actions::next_ping have arrived, so it begins with this step. It is never
+/// sent before NextPing::from.
+struct NextPingDue {};
 /// The time Actions::wake_at has been reached without another event.
 struct TimePassed {};
 
 using Event = std::variant<TimePassed, BytesReceived, ClientCame, ClientGone, PingRendered, PingNotRendered,
-                           TriggerEdge, WaterChanged, SensorsRead, PingFed, PingGranted>;
+                           TriggerEdge, WaterChanged, SensorsRead, PingFed, NextPingDue>;
 
 // ---- What a device requests
 
@@ -107,7 +108,7 @@ struct Actions {
   /// Number of the outstanding job, if its image is no longer needed. The job must still be answered, by
   /// PingNotRendered without rendering if possible.
   std::optional<std::uint64_t> cancelled;
-  std::optional<NextPing> next_ping;  ///< only from a device that waits for grants
+  std::optional<NextPing> next_ping;  ///< only in simulated time
   bool nobody_there = false;          ///< no client requests pings: it has just gone, or there is no client
   /// When to step next if no other event comes; later than this step. nullopt: only after an event.
   std::optional<TimePoint> wake_at;

@@ -90,7 +90,7 @@ struct PingImage {
   std::optional<SensorReadings> readings = {};  ///< at the transmit time; nullopt: not known
 };
 
-/// The ping that a head begins next if it is granted.
+/// The ping that a head begins at the next NextPingDue.
 struct NextPing {
   std::chrono::nanoseconds from{};       ///< earliest start, on the clock of Device::step()
   std::chrono::nanoseconds period{};     ///< from the last ping to this one, in real or simulated time

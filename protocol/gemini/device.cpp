@@ -131,7 +131,7 @@ class Device::Impl {
   void take(TimePoint, const WaterChanged& water);
   void take(TimePoint, const SensorsRead&) {}  // the head has no such sensors
   void take(TimePoint, const PingFed& feed) { pinger_.feed(feed.ping); }
-  void take(TimePoint, const PingGranted&) { pinger_.grant(); }
+  void take(TimePoint, const NextPingDue&) { pinger_.next_ping_due(); }
 
   void advance(TimePoint now);
   Actions actions();

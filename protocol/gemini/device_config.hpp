@@ -47,9 +47,8 @@ struct DeviceConfig {
 
   /// The head sends only the pings that it is fed (PingFed).
   bool plays_back = false;
-  /// A ping begins only when it is granted (PingGranted), not at the head's own time. The granter observes
-  /// NextPing. For pings that follow a simulated time.
-  bool waits_for_permission = false;
+  /// A ping begins at NextPingDue, not at the head's own time. The server observes NextPing.
+  bool simulated_time = false;
 };
 
 }  // namespace sonard::gemini

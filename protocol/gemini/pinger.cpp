@@ -62,7 +62,7 @@ void Pinger::on_trigger(TimePoint now) {
     return;
   }
   // A busy head drops the edge and does not ping for it later.
-  const bool too_early = now < earliest_start_ && !config_.waits_for_permission;
+  const bool too_early = now < earliest_start_ && !config_.simulated_time;
   if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || too_early) {
     ++counters_.pings_suppressed;
     return;
@@ -126,9 +126,9 @@ std::chrono::nanoseconds Pinger::wanted_period(const PingPlan& plan) const {
   return single_ ? period_of(plan) : std::max(plan.interval, period_of(plan));
 }
 
-// In the head's time. With simulated time the granter observes these rules in simulated time.
+// In the head's time. In simulated time the server observes these rules in simulated time.
 TimePoint Pinger::earliest_by_rate() const {
-  if (config_.waits_for_permission) {
+  if (config_.simulated_time) {
     return single_ ? single_->asked_at : boot_time_;
   }
   TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
@@ -163,7 +163,7 @@ std::optional<NextPing> Pinger::next_ping() const {
 }
 
 std::optional<TimePoint> Pinger::acquisition_due() const {
-  if (config_.waits_for_permission && !granted_) {
+  if (config_.simulated_time && !due_) {
     return std::nullopt;
   }
   const auto transmit_time = next_transmit_time();
@@ -171,7 +171,7 @@ std::optional<TimePoint> Pinger::acquisition_due() const {
 }
 
 void Pinger::acquire(TimePoint now) {
-  granted_ = false;
+  due_ = false;
   const PingPlan asked = *wanted_plan();
   const PingPlan plan = fed_ ? held_to(*fed_, asked, config_) : asked;
   TimePoint transmit_time = *next_transmit_time();

@@ -41,7 +41,7 @@ class Pinger {
   void feed(const std::optional<RecordedPing>& ping) { fed_ = ping; }
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
-  void grant() { granted_ = true; }
+  void next_ping_due() { due_ = true; }
 
   /// Stops pinging because the client goes offline. Finishes the ping on the wire.
   void stop();
@@ -114,7 +114,7 @@ class Pinger {
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< from the newest configuration
   std::optional<RecordedPing> fed_;
-  bool granted_ = false;
+  bool due_ = false;
 
   // Acquired.
   std::uint64_t next_ping_number_ = 0;

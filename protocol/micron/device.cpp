@@ -80,7 +80,7 @@ class Device::Impl {
   void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead&) {}   // the head has no such sensors
   void take(TimePoint, const PingFed& feed) { scanner_.feed(feed.ping); }
-  void take(TimePoint, const PingGranted&) { scanner_.grant(); }
+  void take(TimePoint, const NextPingDue&) { scanner_.next_ping_due(); }
 
   void power_cycle(TimePoint now);
   void advance(TimePoint now);

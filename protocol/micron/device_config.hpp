@@ -69,9 +69,9 @@ struct DeviceConfig {
 
   /// The head sends only the lines that it is fed (PingFed).
   bool plays_back = false;
-  /// A ping begins when it is owed and granted (PingGranted), and its line leaves when it is rendered. The
-  /// granter observes NextPing. For pings that follow a simulated time.
-  bool waits_for_permission = false;
+  /// A ping begins at NextPingDue if it is owed, and its line leaves when it is rendered. The server observes
+  /// NextPing.
+  bool simulated_time = false;
 };
 
 }  // namespace sonard::micron

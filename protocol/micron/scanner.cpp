@@ -111,8 +111,8 @@ std::optional<TimePoint> Scanner::ping_possible() const {
     return std::nullopt;
   }
   const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
-  if (config_.waits_for_permission) {
-    return possible;  // the granter observes the line rate in simulated time
+  if (config_.simulated_time) {
+    return possible;  // the server observes the line rate in simulated time
   }
   const TimePoint due = std::max(possible, next_ping_at_);
   return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
@@ -133,7 +133,7 @@ nanoseconds Scanner::wanted_period() const {
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return config_.waits_for_permission && !granted_ ? std::nullopt : ping_possible();
+  return config_.simulated_time && !due_ ? std::nullopt : ping_possible();
 }
 
 std::optional<TimePoint> Scanner::line_due() const {
@@ -142,7 +142,7 @@ std::optional<TimePoint> Scanner::line_due() const {
 
 /// When a rendered line may be sent.
 TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) const {
-  if (config_.waits_for_permission) {
+  if (config_.simulated_time) {
     return transmit_time;
   }
   return config_.line_period ? transmit_time + std::min(line_after, *config_.line_period)
@@ -150,7 +150,7 @@ TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) 
 }
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
-  granted_ = false;
+  due_ = false;
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
   if (const auto fed = std::exchange(fed_, std::nullopt)) {
     repeat(transmit_time, *fed);

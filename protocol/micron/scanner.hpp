@@ -40,7 +40,7 @@ class Scanner {
   void lose_step() { motor_error_ = true; }
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
-  void grant() { granted_ = true; }
+  void next_ping_due() { due_ = true; }
   /// Sets the next recorded ping; a ping without a line in its `wire` counts as nullopt.
   void feed(const std::optional<RecordedPing>& ping);
 
@@ -113,7 +113,7 @@ class Scanner {
   std::optional<FedPing> fed_;
 
   // Pings.
-  bool granted_ = false;
+  bool due_ = false;
   std::uint64_t next_ping_number_ = 0;
   std::optional<Ping> ping_;
   std::optional<PingRecord> record_;         ///< not yet taken

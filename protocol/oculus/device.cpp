@@ -58,7 +58,7 @@ class Device::Impl {
   void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead& sensors) { depth_m_ = sensors.readings.depth_m; }
   void take(TimePoint, const PingFed& feed) { fed_ = feed.ping; }
-  void take(TimePoint, const PingGranted&) { granted_ = true; }
+  void take(TimePoint, const NextPingDue&) { due_ = true; }
 
   void advance(TimePoint now);
   Actions actions();
@@ -111,7 +111,7 @@ class Device::Impl {
   CommandBuffer input_;
   std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: no fire, or standby
   std::optional<RecordedPing> fed_;
-  bool granted_ = false;
+  bool due_ = false;
   std::optional<Ping> ping_;                ///< in progress
   std::optional<std::uint64_t> cancelled_;  ///< number of a cancelled job that is not answered yet
   std::uint64_t next_number_ = 0;
@@ -274,7 +274,7 @@ std::optional<TimePoint> Device::Impl::next_start() const {
   if (!pinging() || ping_ || cancelled_ || (config_.plays_back && !fed_)) {
     return std::nullopt;
   }
-  if (config_.waits_for_permission) {  // the granter observes the period in simulated time
+  if (config_.simulated_time) {  // the server observes the period in simulated time
     return boot_time_;
   }
   return fed_ && fed_->due ? std::max(next_ping_, *fed_->due) : next_ping_;
@@ -287,10 +287,10 @@ std::optional<NextPing> Device::Impl::next_ping() const {
 
 void Device::Impl::begin_ping(TimePoint now) {
   const std::optional<TimePoint> start = next_start();
-  if (!start || now < *start || (config_.waits_for_permission && !granted_)) {
+  if (!start || now < *start || (config_.simulated_time && !due_)) {
     return;
   }
-  granted_ = false;
+  due_ = false;
   const std::optional<RecordedPing> fed = std::exchange(fed_, std::nullopt);
   ping_ = Ping{next_number_++,
                fed ? held_to(*fed, *plan_) : *plan_,
@@ -384,10 +384,10 @@ Actions Device::Impl::actions() {
     wake = std::min(wake, ping_->transmit_time + ping_->plan.listening);
   }
   const std::optional<TimePoint> start = next_start();
-  if (start && !config_.waits_for_permission) {
+  if (start && !config_.simulated_time) {
     wake = std::min(wake, *start);
   }
-  if (config_.waits_for_permission) {
+  if (config_.simulated_time) {
     actions.next_ping = next_ping();
   }
   actions.wake_at = wake;

@@ -22,7 +22,7 @@ struct DeviceConfig {
   std::string log_text = "sonard Oculus\nready\n";                  ///< sent to each new client (5)
   std::chrono::nanoseconds status_period{std::chrono::seconds{1}};  ///< > 0 (6)
   std::chrono::nanoseconds dummy_period{std::chrono::seconds{1}};   ///< > 0 (5)
-  bool waits_for_permission = false;                                ///< each ping needs PingGranted to begin
+  bool simulated_time = false;                                      ///< each ping needs NextPingDue to begin
   bool plays_back = false;                                          ///< sends only recorded pings
 };
 

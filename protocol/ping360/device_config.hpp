@@ -61,9 +61,9 @@ struct DeviceConfig {
 
   /// The head sends only the pings that it is fed (PingFed).
   bool plays_back = false;
-  /// A ping begins when it is wanted and granted (PingGranted), and is sent when it is rendered. The granter
-  /// observes NextPing. For pings that follow a simulated time.
-  bool waits_for_permission = false;
+  /// A ping begins at NextPingDue if it is wanted, and is sent when it is rendered. The server observes
+  /// NextPing.
+  bool simulated_time = false;
 };
 
 }  // namespace sonard::ping360

@@ -182,7 +182,7 @@ void Scanner::end_work(TimePoint end) {
   if (work_->form.scan && scan_) {
     scan_->sweep.advance();
     scan_->next_from = end;
-    if (!config_.waits_for_permission) {
+    if (!config_.simulated_time) {
       scan_->next_from += scaled(std::chrono::milliseconds{scan_->command.delay_ms});
     }
   }
@@ -211,8 +211,8 @@ std::optional<TimePoint> Scanner::ping_possible() const {
     return std::nullopt;
   }
   const TimePoint possible = std::max(work_->wanted, free_since_);
-  if (config_.waits_for_permission) {
-    return possible;  // the granter observes the ping rate in simulated time
+  if (config_.simulated_time) {
+    return possible;  // the server observes the ping rate in simulated time
   }
   const TimePoint due = std::max(possible, work_->there_at);
   return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
@@ -229,11 +229,11 @@ std::optional<NextPing> Scanner::next_ping() const {
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return config_.waits_for_permission && !granted_ ? std::nullopt : ping_possible();
+  return config_.simulated_time && !due_ ? std::nullopt : ping_possible();
 }
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
-  granted_ = false;
+  due_ = false;
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
   const auto fed = std::exchange(fed_, std::nullopt);
   PingJob job = fed ? repeat(*fed) : make_job(work_->form, config_);
@@ -241,7 +241,7 @@ void Scanner::start_ping(TimePoint now, TimePoint due) {
   Ping ping;
   ping.number = job.number = next_ping_number_++;
   ping.transmit_time = job.transmit_time = ping.send_due = transmit_time;
-  if (!config_.waits_for_permission) {
+  if (!config_.simulated_time) {
     // In playback a ping is sent when its echoes have arrived; its due time sets the rate.
     ping.send_due += scaled(job.listening_time + (fed ? nanoseconds{0} : config_.ping_overhead));
   }

@@ -50,7 +50,7 @@ class Scanner {
   void on_image_failed(TimePoint now, std::uint64_t number);
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
-  void grant() { granted_ = true; }
+  void next_ping_due() { due_ = true; }
   /// Sets the next recorded ping; a ping without a valid `wire` counts as nullopt.
   void feed(const std::optional<RecordedPing>& ping);
 
@@ -144,7 +144,7 @@ class Scanner {
   std::vector<std::uint8_t> last_samples_;
   std::optional<Work> work_;
   std::optional<Ping> ping_;
-  bool granted_ = false;
+  bool due_ = false;
   std::uint64_t next_ping_number_ = 0;
   std::optional<PingRecord> record_;         ///< not yet taken
   std::optional<PingJob> job_;               ///< not yet taken

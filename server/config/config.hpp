@@ -111,9 +111,9 @@ enum class StalePolicy {
 
 /// The clock that times the pings.
 enum class PingClock {
-  wall,       ///< the time of this machine
-  source,     ///< the stamps of the poses; late pings are skipped to keep up
-  lock_step,  ///< as `source`, but no ping is skipped: TCP publishers must wait
+  wall,                 ///< the time of this machine
+  simulated,            ///< simulated time, the stamps of the poses; late pings are skipped to keep up
+  simulated_lock_step,  ///< as `simulated`, but no ping is skipped: TCP publishers must wait
 };
 
 struct PoseConfig {

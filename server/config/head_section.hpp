@@ -22,7 +22,7 @@ struct HeadContext {
   double water_sound_speed_mps = 0.0;
   render::Sampling sampling;
   bool adaptive_quality = false;
-  bool pings_by_source = false;  ///< the clock of the pose source times the pings
+  bool simulated_time = false;  ///< the stamps of the poses time the pings
 };
 
 /// @param kinds the permitted kinds of heads

@@ -296,8 +296,9 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
       "set, only one may send poses of the vehicle at a time.");
   section.section(
       "initial",
-      "pose until the first pose arrives. Without it, and always with `clock: source` or `lock_step`, the "
-      "heads answer clients but do not ping before the first pose",
+      "pose until the first pose arrives. Without it, and always in simulated time (`clock`), the heads "
+      "answer "
+      "clients but do not ping before the first pose",
       [&](YamlSection& inner) {
         inner.require("position_m", "a list of three numbers");
         read_pose(
@@ -338,12 +339,17 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
                  {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
                  "behaviour after `extrapolation_limit_ms`: `hold`: pings continue from the last pose; "
                  "`silence`: pings stop until a pose arrives, and status packets continue");
+  section.renamed_value("clock", "source", "simulated");
+  section.renamed_value("clock", "lock_step", "simulated_lock_step");
   section.choice(
       "clock", poses.clock,
-      {{"wall", PingClock::wall}, {"source", PingClock::source}, {"lock_step", PingClock::lock_step}},
-      "clock for the pings: `wall` is the clock of this machine; `source` and `lock_step` follow the stamps "
-      "of the poses, for a simulation that is slow, fast or paused. `lock_step` skips no ping, however slow "
-      "the rendering ([poses.md](poses.md#time-of-the-simulation))");
+      {{"wall", PingClock::wall},
+       {"simulated", PingClock::simulated},
+       {"simulated_lock_step", PingClock::simulated_lock_step}},
+      "clock for the pings: `wall` is the clock of this machine; with `simulated` and "
+      "`simulated_lock_step`, pings follow simulated time, which is the stamps of the poses, for a "
+      "simulation that is slow, fast or paused. `simulated_lock_step` skips no ping, however slow "
+      "the rendering ([poses.md](poses.md#simulated-time))");
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
   if (live && poses.trajectory) {
@@ -547,10 +553,10 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
   root.require("poses", "a mapping with the sources of the vehicle's pose");
   root.section("poses", "sources of the vehicle's pose",
                [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
-  context.pings_by_source = config.poses.clock != PingClock::wall;
+  context.simulated_time = config.poses.clock != PingClock::wall;
   root.section("sampling", "target error of the images", [&](YamlSection& section) {
     read_sampling(section, context.sampling, context.adaptive_quality);
-    if (context.pings_by_source && context.adaptive_quality) {
+    if (context.simulated_time && context.adaptive_quality) {
       section.warn_if_given("adaptive_quality", "pings follow the stamps of the poses (`poses.clock`)");
     }
   });

@@ -340,6 +340,15 @@ void YamlSection::renamed(std::string_view former, std::string_view key) {
   entries_[entry].name = key;
 }
 
+void YamlSection::renamed_value(std::string_view key, std::string_view former, std::string_view value) {
+  const auto found = entry_of_.find(key);
+  if (found == entry_of_.end() || word(key) != former) {
+    return;
+  }
+  warn(key, fmt::format("is '{}', which is a former name; write '{}'", former, value));
+  entries_[found->second].value.reset(YAML::Node(std::string(value)));
+}
+
 std::string YamlSection::path_of(std::string_view key) const {
   return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }

@@ -96,6 +96,9 @@ class YamlSection {
   void foreign(std::string_view key, std::string_view what_to_do) { foreign_.emplace_back(key, what_to_do); }
   /// Reads the key `former`, if a file still has it, as `key`, and warns. Call it before `key` is read.
   void renamed(std::string_view former, std::string_view key);
+  /// Reads the value `former` of a key, if a file still has it, as `value`, and warns. Call it before `key`
+  /// is read.
+  void renamed_value(std::string_view key, std::string_view former, std::string_view value);
   std::string path_of(std::string_view key) const;
   /// If a key is not given, its place is the place of the key that gives its default.
   void place_default(std::string_view key, std::string_view source);

@@ -94,7 +94,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void note_water(TimePoint now);
   void read_sensors(TimePoint now);
   void feed(TimePoint now);
-  bool grant(TimePoint now);
+  bool next_ping_is_due(TimePoint now);
   bool render(const PingJob& job);
   void schedule(TimePoint now);
   void report_every_period();
@@ -336,8 +336,8 @@ void Head::Impl::take(TimePoint now, const Event& event) {
   feed(now);
   read_sensors(now);
   step(now, event);
-  while (grant(now)) {
-    step(now, PingGranted{});
+  while (next_ping_is_due(now)) {
+    step(now, NextPingDue{});
   }
 }
 
@@ -447,8 +447,8 @@ void Head::Impl::feed(TimePoint now) {
   }
 }
 
-// For pings by the clock of the pose source. True if a ping begins with the next step.
-bool Head::Impl::grant(TimePoint now) {
+// In simulated time. True if a ping begins with the next step.
+bool Head::Impl::next_ping_is_due(TimePoint now) {
   if (services.poses.ping_clock() == PingClock::wall) {
     return false;
   }

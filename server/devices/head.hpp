@@ -66,7 +66,7 @@ class Head {
   void start();
   void stop();
 
-  /// Called when PoseHistory has a new pose: a ping by the clock of the source may have waited for it.
+  /// Called when PoseHistory has a new pose: in simulated time a ping may have waited for it.
   void poses_changed();
   /// See PingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;

@@ -57,12 +57,12 @@ class HeadRendering {
   HeadRendering(const HeadConfig& config, int stream, const HeadServices& services);
 
   /// Time of the poses, on the clock of PoseHistory, of a ping transmitted at this time of the head: the time
-  /// that PingTimes granted, or else the same time.
+  /// that PingTimes returned, or else the same time.
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
-  /// For pings by the clock of the source: begins `next` if its poses have arrived. Returns true if it did.
+  /// In simulated time: begins `next` if its poses have arrived. Returns true if it did.
   bool begin_ping(TimePoint now, const std::optional<NextPing>& next);
-  /// For pings by the clock of the source: no client requests pings.
+  /// In simulated time: no client requests pings.
   void rest();
   /// Longest time between two requests of a client that requests single pings. After that, the head counts as
   /// idle.
@@ -97,7 +97,7 @@ class HeadRendering {
   const HeadConfig& config_;
   int stream_;
   HeadServices services_;
-  std::optional<PingTimes> ping_times_;  ///< pings by the clock of the source
+  std::optional<PingTimes> ping_times_;  ///< in simulated time
   std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last
   TimePoint last_wanted_{};              ///< on the clock of this process
   bool submitted_ = false;               ///< and not yet answered

@@ -63,7 +63,7 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
   if (const TimePoint oldest = *poses_.oldest(); *next_ < oldest) {
     note(counters_.lost, skip_to(oldest), "too many newer poses arrived before they were rendered");
   }
-  if (poses_.ping_clock() == PingClock::source && *next_ + listening + period <= newest) {
+  if (poses_.ping_clock() == PingClock::simulated && *next_ + listening + period <= newest) {
     // Skips to the last ping that can begin.
     counters_.left_out += skip_to(newest - listening - period + nanoseconds{1});
   }
@@ -86,7 +86,7 @@ void PingTimes::follow_restart() {
 std::optional<TimePoint> PingTimes::first_of_new_life() const {
   const auto oldest = poses_.oldest();
   const bool wanted = next_ || last_;
-  if (!wanted || !oldest || poses_.ping_clock() != PingClock::lock_step) {
+  if (!wanted || !oldest || poses_.ping_clock() != PingClock::simulated_lock_step) {
     return std::nullopt;
   }
   return whole_periods(*oldest, period_);

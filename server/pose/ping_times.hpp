@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ping times of a head by the clock of the pose source.
+// Ping times of a head in simulated time.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace sonard::server {
 
 /// Counters; they only grow.
 struct PingTimesCounters {
-  std::uint64_t left_out = 0;  ///< with PingClock::source: the head was too slow
+  std::uint64_t left_out = 0;  ///< with PingClock::simulated: the head was too slow
   std::uint64_t unknown = 0;   ///< the source was silent for too long, or set its clock
   std::uint64_t lost = 0;      ///< in lock-step: the poses of that time were dropped
 };

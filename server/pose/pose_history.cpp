@@ -21,9 +21,9 @@ std::size_t points_kept(PingClock clock, std::size_t by_wall_clock) {
   switch (clock) {
     case PingClock::wall:
       break;
-    case PingClock::source:
-      return PoseHistory::source_points;
-    case PingClock::lock_step:
+    case PingClock::simulated:
+      return PoseHistory::simulated_points;
+    case PingClock::simulated_lock_step:
       return PoseHistory::lock_step_points;
   }
   return by_wall_clock;

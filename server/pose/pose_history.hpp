@@ -62,8 +62,8 @@ struct PoseHistoryCounters {
 /// with different clocks cause this at every message. It is counted and logged (the 1st, 2nd, 4th, 8th ...
 /// time).
 ///
-/// With a PingClock of the source, time arguments are on the publisher's clock and PublisherClock is not
-/// used. Results then depend only on the stamps, not on arrival times.
+/// In simulated time, time arguments are on the publisher's clock and PublisherClock is not used. Results
+/// then depend only on the stamps, not on arrival times.
 ///
 /// Before the first pose, the configured initial pose holds and is never stale. Without it there is no pose.
 class PoseHistory {
@@ -86,14 +86,14 @@ class PoseHistory {
   /// The newest pose if at() refuses it because it is too old.
   std::optional<StalePose> stale_at(TimePoint time) const;
 
-  /// The argument of at() for the present: `now`, or, by the clock of the source, its newest stamp.
+  /// The argument of at() for the present: `now`; in simulated time the newest stamp.
   TimePoint present(TimePoint now) const;
   /// The publisher's time at a time of at(); 0 before the first pose.
   std::int64_t stamp_at(TimePoint time) const;
-  /// By the clock of the source: times of the kept poses of the vehicle; nullopt if there are no poses.
+  /// In simulated time: times of the kept poses of the vehicle; nullopt if there are no poses.
   std::optional<TimePoint> oldest() const;
   std::optional<TimePoint> newest() const;
-  /// By the clock of the source: the earliest time, from `time` on, at which the vehicle is known: not after
+  /// In simulated time: the earliest time, from `time` on, at which the vehicle is known: not after
   /// its newest pose, and not in a gap longer than the extrapolation limit. nullopt: not yet known.
   std::optional<TimePoint> known_from(TimePoint time) const;
 
@@ -108,9 +108,9 @@ class PoseHistory {
   /// newest ones.
   static constexpr std::size_t vehicle_points = 256;
   static constexpr std::size_t body_points = 64;
-  /// Kept points of the vehicle and of each body if pings use the clock of the source. Pings then come after
+  /// Kept points of the vehicle and of each body in simulated time. Pings then come after
   /// the poses, in lock-step possibly long after: 40 s at 100 Hz.
-  static constexpr std::size_t source_points = 512;
+  static constexpr std::size_t simulated_points = 512;
   static constexpr std::size_t lock_step_points = 4096;
   /// Enough for whole-world pose lists of a simulator.
   static constexpr std::size_t max_bodies = 1024;

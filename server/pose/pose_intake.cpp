@@ -32,7 +32,7 @@ void PoseIntake::take(const pose::PoseSample& sample, TimePoint arrival) {
 }
 
 bool PoseIntake::hold() const {
-  if (poses_.ping_clock() != PingClock::lock_step) {
+  if (poses_.ping_clock() != PingClock::simulated_lock_step) {
     return false;
   }
   const auto lead = hooks_.lead();
@@ -40,7 +40,7 @@ bool PoseIntake::hold() const {
 }
 
 bool PoseIntake::pings_to_come() const {
-  if (poses_.ping_clock() != PingClock::lock_step) {
+  if (poses_.ping_clock() != PingClock::simulated_lock_step) {
     return false;
   }
   const auto lead = hooks_.lead();

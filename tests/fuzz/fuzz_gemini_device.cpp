@@ -35,7 +35,15 @@ constexpr Ipv4 alternate_address = 0xC0A802C9;
 constexpr Ipv4 clients[] = {0xC0A80205, 0xC0A80206};
 
 /// Kinds of events. The first three carry bytes: a datagram for each client, and a recorded ping.
-enum Kind { byte_kinds = 3, feed = 2, trigger = 3, toggle_water = 4, image = 5, image_failed = 6, grant = 7 };
+enum Kind {
+  byte_kinds = 3,
+  feed = 2,
+  trigger = 3,
+  toggle_water = 4,
+  image = 5,
+  image_failed = 6,
+  next_due = 7
+};
 
 /// The configuration that the first byte of an input selects.
 DeviceConfig config_of(unsigned flags) {
@@ -43,7 +51,7 @@ DeviceConfig config_of(unsigned flags) {
   config.sonar_id = sonar_id;
   config.alternate_address = alternate_address;
   config.plays_back = (flags & 0x01U) != 0;
-  config.waits_for_permission = (flags & 0x02U) != 0;
+  config.simulated_time = (flags & 0x02U) != 0;
   config.lock_to_first = (flags & 0x04U) != 0;
   config.snap_sound_speed = (flags & 0x08U) != 0;
   return config;
@@ -86,9 +94,9 @@ class Bench {
           step(sonard::PingFed{std::move(*ping)});
         }
         break;
-      case grant:
+      case next_due:
         if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::PingGranted{});
+          step(sonard::NextPingDue{});
         }
         break;
       case trigger:

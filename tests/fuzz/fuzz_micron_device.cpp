@@ -39,14 +39,14 @@ enum Kind {
   lose_step = 4,
   line = 5,
   line_failed = 6,
-  grant = 7
+  next_due = 7
 };
 
 /// The configuration that the first byte of an input selects.
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.plays_back = (flags & 0x01U) != 0;
-  config.waits_for_permission = (flags & 0x02U) != 0;
+  config.simulated_time = (flags & 0x02U) != 0;
   config.always_reports_scan_right = (flags & 0x04U) != 0;
   config.requests_survive_head_command = (flags & 0x08U) == 0;
   return config;
@@ -62,9 +62,9 @@ class Bench {
       case feed:
         feed_line(event);
         break;
-      case grant:
+      case next_due:
         if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::PingGranted{});
+          step(sonard::NextPingDue{});
         }
         break;
       case client_gone:

@@ -39,7 +39,7 @@ enum Kind {
   image = 4,
   image_failed = 5,
   feed = 6,
-  grant = 7
+  next_due = 7
 };
 
 Peer peer_of(int kind) {
@@ -50,7 +50,7 @@ Peer peer_of(int kind) {
 DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.plays_back = (flags & 0x01U) != 0;
-  config.waits_for_permission = (flags & 0x02U) != 0;
+  config.simulated_time = (flags & 0x02U) != 0;
   config.plan.model = (flags & 0x04U) != 0 ? m1200d : m750d;
   config.plan.rescales_high_frequency_gain = (flags & 0x08U) != 0;
   config.plan.reports_sound_speed_used = (flags & 0x10U) != 0;
@@ -107,9 +107,9 @@ class Bench {
       case feed:
         step(sonard::PingFed{recorded()});
         break;
-      case grant:
+      case next_due:
         if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::PingGranted{});
+          step(sonard::NextPingDue{});
         }
         break;
       default:

@@ -32,7 +32,7 @@ using sonard::fuzz::Script;
 
 /// Kinds of events. The first three carry bytes, each from its own client: number and payload of a message,
 /// or a raw piece of stream.
-enum Kind { byte_kinds = 3, client_gone = 3, image = 4, image_failed = 5, feed = 6, grant = 7 };
+enum Kind { byte_kinds = 3, client_gone = 3, image = 4, image_failed = 5, feed = 6, next_due = 7 };
 
 constexpr int serial_channel = 2;
 
@@ -46,7 +46,7 @@ DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.serial_channel = serial_channel;
   config.plays_back = (flags & 0x01U) != 0;
-  config.waits_for_permission = (flags & 0x02U) != 0;
+  config.simulated_time = (flags & 0x02U) != 0;
   config.fan_out = (flags & 0x04U) != 0 ? FanOut::all : FanOut::requester;
   config.time_scale = (flags & 0x08U) != 0 ? 0.0 : 1.0;
   config.max_datagram = (flags & 0x10U) != 0 ? 100 : 0;
@@ -75,9 +75,9 @@ class Bench {
       case feed:
         step(sonard::PingFed{recorded()});
         break;
-      case grant:
+      case next_due:
         if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::PingGranted{});
+          step(sonard::NextPingDue{});
         }
         break;
       default:

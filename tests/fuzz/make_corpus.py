@@ -40,17 +40,17 @@ sys.path.append(str(HERE.parent / "system" / "gemini"))
 import wire
 
 # Kinds of events, as in the programs for the Gemini.
-FROM_A, FROM_B, FEED, TRIGGER, WATER, IMAGE, IMAGE_FAILED, GRANT = range(8)
+FROM_A, FROM_B, FEED, TRIGGER, WATER, IMAGE, IMAGE_FAILED, NEXT_DUE = range(8)
 FROM_HEAD, START_SINGLE, START_CONTINUOUS, STOP, PAUSE = 0, 4, 5, 6, 7
 # And for the Micron.
-BYTES, LINE_FED, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED, LINE_GRANT = range(8)
+BYTES, LINE_FED, HOST_GONE, POWER_CYCLE, LOSE_STEP, LINE, LINE_FAILED, LINE_NEXT_DUE = range(8)
 START_8_BIT, START_4_BIT, STOP_SCAN, GAIN, REVERSE = range(1, 6)
 # And for the Ping360: bytes of three clients, then these.
-P360_A, P360_B, P360_SERIAL, P360_GONE, P360_IMAGE, P360_FAILED, P360_FEED, P360_GRANT = range(8)
+P360_A, P360_B, P360_SERIAL, P360_GONE, P360_IMAGE, P360_FAILED, P360_FEED, P360_NEXT_DUE = range(8)
 P360_BYTES, P360_TURN, P360_SCAN, P360_STOP = range(4)
 PLAYS_BACK, WAITS, FAN_OUT, UNSCALED, SPLITS, SIGNED, CLAMPS, TWO_CLIENTS = (1 << bit for bit in range(8))
 # And for the Oculus: bytes of two clients, then these.
-OCULUS, OCULUS_OTHER, OCULUS_CLIENT, OCULUS_SECOND, OCULUS_IMAGE, OCULUS_FAILED, OCULUS_FEED, OCULUS_GRANT = range(8)
+OCULUS, OCULUS_OTHER, OCULUS_CLIENT, OCULUS_SECOND, OCULUS_IMAGE, OCULUS_FAILED, OCULUS_FEED, OCULUS_NEXT_DUE = range(8)
 AS_IS = 0x80
 
 
@@ -77,7 +77,7 @@ def pings_of_40_lines(continuous):
 
 
 def device_scripts():
-    """Of a head that renders, then of one that plays a recording back or waits for its pings to be granted."""
+    """Of a head that renders, then of one that plays a recording back or follows simulated time."""
     for name, script in rendering_device_scripts():
         yield name, b"\0" + script
     continuous = pings_of_40_lines(continuous=True)
@@ -90,7 +90,7 @@ def device_scripts():
     yield "played", bytes([PLAYS_BACK]) + start + fed() + fed(flags=2) + fed(lines=300, step_m=0.1, gain_percent=-1.0)
     yield "played_two_clients", bytes([PLAYS_BACK | 4]) + start + fed() + event(FROM_B, continuous) + fed()
     yield "not_played", bytes([PLAYS_BACK]) + start + fed(lines=0) + fed(flags=1) + fed(lines=65535) + fed(step_m=1e-300)
-    yield "granted", bytes([WAITS]) + start + 3 * (event(GRANT, delay=40) + event(IMAGE))
+    yield "next_ping_due", bytes([WAITS]) + start + 3 * (event(NEXT_DUE, delay=40) + event(IMAGE))
 
 
 def rendering_device_scripts():
@@ -166,7 +166,7 @@ def micron_frame(name, as_is=False, delay=2):
 
 
 def micron_device_scripts():
-    """Of a head that renders, then of one that plays a recording back or waits for its lines to be granted."""
+    """Of a head that renders, then of one that plays a recording back or follows simulated time."""
     for name, script in rendering_micron_device_scripts():
         yield name, b"\0" + script
     scan = event(PAUSE, delay=220) + micron_frame("head_command_ros", as_is=True) + micron_frame("send_data") + event(
@@ -176,7 +176,7 @@ def micron_device_scripts():
     line = event(LINE) + event(PAUSE, delay=30)
     yield "played", bytes([PLAYS_BACK]) + scan + 3 * (event(LINE_FED, outline) + line + micron_frame("send_data"))
     yield "not_played", bytes([PLAYS_BACK]) + scan + event(AS_IS | LINE_FED, whole) + line + event(LINE_FED, b"\xff") + line
-    yield "granted", bytes([WAITS]) + scan + 3 * (event(LINE_GRANT, delay=40) + line)
+    yield "next_ping_due", bytes([WAITS]) + scan + 3 * (event(LINE_NEXT_DUE, delay=40) + line)
 
 
 def rendering_micron_device_scripts():
@@ -231,7 +231,7 @@ def oculus_device_scripts():
     whole = example("fire_liboculus_8_bit", "oculus")
     yield "split", script(0, event(AS_IS | OCULUS, b"SxS" + whole[:30]), event(AS_IS | OCULUS, whole[30:]), image)
     yield "too_long", script(0, event(AS_IS | OCULUS, whole[:10] + b"\0\0\1\0" + whole[14:]), fire("fire_vendor"))
-    yield "granted", script(PLAYS_BACK << 1, fire("fire_ensta"), 3 * (event(OCULUS_GRANT) + image))
+    yield "next_ping_due", script(PLAYS_BACK << 1, fire("fire_ensta"), 3 * (event(OCULUS_NEXT_DUE) + image))
     yield "played", script(PLAYS_BACK, fire("fire_liboculus_32_bit"), 3 * (event(OCULUS_FEED) + image))
     body = example("fire_ensta", "oculus")[16:]
     yield "bodies", script(0x10, event(OCULUS, body), image, event(OCULUS, b"\1\2\1\0\xff" + body[5:]), image)
@@ -271,7 +271,7 @@ def ping360_device_scripts():
     yield "two_clients", script(FAN_OUT | TWO_CLIENTS, scan, ping360_message("request_device_information", P360_B), image,
                                 event(P360_GONE), ping360_message("motor_off", P360_SERIAL))
     yield "cancelled", script(UNSCALED, scan, ping360_message("motor_off"), event(P360_FAILED), scan, event(P360_FAILED))
-    yield "granted", script(WAITS, scan, 3 * (event(P360_GRANT) + image))
+    yield "next_ping_due", script(WAITS, scan, 3 * (event(P360_NEXT_DUE) + image))
     yield "played", script(PLAYS_BACK | SPLITS, scan, 3 * (event(P360_FEED) + image), ping360_message("transducer"),
                            event(P360_FEED), image)
     yield "ids", script(0, ping360_message("set_device_id"), ping360_message("set_common_device_id"),
@@ -279,8 +279,8 @@ def ping360_device_scripts():
     whole = example("transducer", "ping360")
     yield "split", script(0, event(AS_IS | P360_A, whole[:9]), event(AS_IS | P360_B, b"\0\xff"),
                           event(AS_IS | P360_A, whole[9:]), event(P360_IMAGE, delay=130))
-    yield "idle", script(0, scan, image, event(P360_GRANT, delay=255), event(P360_GRANT, delay=255), event(P360_GRANT, delay=255),
-                         event(P360_GRANT, delay=255), event(P360_GRANT, delay=255))
+    yield "idle", script(0, scan, image, event(P360_NEXT_DUE, delay=255), event(P360_NEXT_DUE, delay=255), event(P360_NEXT_DUE, delay=255),
+                         event(P360_NEXT_DUE, delay=255), event(P360_NEXT_DUE, delay=255))
 
 
 def ping360_client_scripts():

@@ -93,7 +93,7 @@ class PosePublisher:
     """Sends poses to sonard. Use it from one thread at a time.
 
     host, port  address of sonard: `poses.udp.bind` of its configuration, or `poses.tcp.bind`
-    tcp         connect by TCP. No pose is lost then, and in lock-step (`poses.clock: lock_step`) send() waits while
+    tcp         connect by TCP. No pose is lost then, and in lock-step (`poses.clock: simulated_lock_step`)
                 sonard still renders the pings of earlier poses
 
     Raises OSError if nothing listens (TCP).

@@ -196,7 +196,7 @@ class GeminiKind final : public DeviceKind {
   HeadConfig held_to_recording(HeadConfig head) const override {
     auto config = std::make_shared<GeminiConfig>(gemini_config(head));
     config->device.plays_back = true;
-    config->device.waits_for_permission = false;
+    config->device.simulated_time = false;
     config->device.min_ping_period = std::chrono::milliseconds{1};
     config->device.render_lead = {};
     head.device = std::move(config);

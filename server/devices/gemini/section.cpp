@@ -145,7 +145,7 @@ GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, 
   GeminiConfig config;
   apply_water(section, context, gemini::carrier_hz, head);
   config.device.water_sound_speed_mps = context.water_sound_speed_mps;
-  config.device.waits_for_permission = context.pings_by_source;
+  config.device.simulated_time = context.simulated_time;
   read_common(section, context, head);
   read_identity(section, config);
   section.require("network", "a mapping with alternate_address and netmask");

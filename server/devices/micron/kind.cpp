@@ -122,7 +122,7 @@ class MicronKind final : public DeviceKind {
   HeadConfig held_to_recording(HeadConfig head) const override {
     auto config = std::make_shared<MicronConfig>(micron_config(head));
     config->device.plays_back = true;
-    config->device.waits_for_permission = false;
+    config->device.simulated_time = false;
     head.device = std::move(config);
     return head;
   }

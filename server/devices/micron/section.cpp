@@ -114,7 +114,7 @@ MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, 
   MicronConfig config;
   apply_water(section, context, micron::carrier_hz, head);
   // This sound speed turns times into ranges; clients assume 1500 m/s (docs/protocols/micron.md 4).
-  config.device.waits_for_permission = context.pings_by_source;
+  config.device.simulated_time = context.simulated_time;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;
   }

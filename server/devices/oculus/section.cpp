@@ -180,7 +180,7 @@ OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, 
   apply_water_to_modes(context, head, config);
   config.device.plan.temperature_c = context.water.temperature_c;
   config.device.plan.water_sound_speed_mps = context.water_sound_speed_mps;
-  config.device.waits_for_permission = context.pings_by_source;
+  config.device.simulated_time = context.simulated_time;
   read_common(section, context, head);
   section.require("network", "a mapping with address and netmask");
   section.section("network", "addresses and ports", [&](YamlSection& inner) { read_network(inner, config); });

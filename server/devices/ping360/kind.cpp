@@ -114,7 +114,7 @@ class Ping360Kind final : public DeviceKind {
   HeadConfig held_to_recording(HeadConfig head) const override {
     auto config = std::make_shared<Ping360Config>(ping360_config(head));
     config->device.plays_back = true;
-    config->device.waits_for_permission = false;
+    config->device.simulated_time = false;
     head.device = std::move(config);
     return head;
   }

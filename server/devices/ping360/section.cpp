@@ -169,7 +169,7 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
                      ? std::optional(render::Water{context.water.temperature_c, context.water.salinity_ppt,
                                                    context.water.depth_m, context.water.ph})
                      : std::nullopt;
-  config.device.waits_for_permission = context.pings_by_source;
+  config.device.simulated_time = context.simulated_time;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;
   }

@@ -235,7 +235,7 @@ class Diagnosis(OwnMachine):
     def test_no_pose_is_said_if_pings_wait_for_stamps(self):
         says = "^No pose of the vehicle has arrived, so the head does not ping"
         for initial in ("", ", initial: {position_m: [30, 0, -5]}"):
-            for clock in ("source", "lock_step"):
+            for clock in ("simulated", "simulated_lock_step"):
                 daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}{initial}")
                 daemon.wait_for_line("warning head=bow: " + says[1:], PATIENCE_S)
                 self.wait_for_finding(self.heads_findings, says)
@@ -345,7 +345,7 @@ class Diagnosis(OwnMachine):
             with self.subTest(name):
                 publisher = self.publish(GOOD, speed_mps=0.5, stamp=stamp)
                 self.assertRegex(self.listen_without_stall(), "wrong\\?   " + says)
-                for clock in ("wall", "source"):
+                for clock in ("wall", "simulated"):
                     daemon = self.start(poses=f"udp: {{bind: 127.0.0.1:14600}}, clock: {clock}")
                     daemon.wait_for_line("warning pose stream udp .*" + says, PATIENCE_S)
                     self.wait_for_finding(self.inputs_findings, says)
@@ -355,7 +355,7 @@ class Diagnosis(OwnMachine):
 
     def test_an_initial_pose_makes_no_ping_that_waits_for_stamps(self):
         initial = "udp: {bind: 127.0.0.1:14600}, initial: {position_m: [30, 0, -5]}, clock: "
-        for clock, ready in (("wall", True), ("source", False), ("lock_step", False)):
+        for clock, ready in (("wall", True), ("simulated", False), ("simulated_lock_step", False)):
             daemon = self.start(poses=initial + clock)
             self.assertEqual(self.reasons() == [], ready, clock)
             daemon.kill()
@@ -363,7 +363,7 @@ class Diagnosis(OwnMachine):
     def test_a_paused_simulation_is_not_taken_for_stamps_that_are_left_out(self):
         publisher = self.publish(GOOD, speed_mps=0.5, stamp=lambda since_s: round(since_s * 1e9))
         check = Program([os.path.join(PROGRAMS, "sonard"), "check", "--no-network", "--listen", "5",
-                         self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: source")], "check")
+                         self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: simulated")], "check")
         self.addCleanup(check.kill)
         check.wait_for_line("listening for", PATIENCE_S)
         time.sleep(1)
@@ -376,7 +376,7 @@ class Diagnosis(OwnMachine):
         self.assertRegex(self.check("--listen", "3", self.config()),
                          "wrong\\?   The stamps have not changed since the first pose: is time_ns missing\\?")
         says = "The stamps have not changed since the first pose, so the heads do not ping \\(poses.clock\\)"
-        source = self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: source")
+        source = self.config(poses="udp: {bind: 127.0.0.1:14600}, clock: simulated")
         self.assertRegex(self.check("--listen", "3", source), "wrong\\?   " + says)
 
     BLACK = {  # start pose in bed_and_wall.sdf, acoustics of the head, what is said

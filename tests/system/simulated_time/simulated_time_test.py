@@ -66,7 +66,7 @@ def first_echo_m(path):
 class SimulatedTime(link_test.LinkTest):
     life = 0  # daemons started by this test
 
-    def run_daemon(self, steps, clock="lock_step", noisy=True, transport="tcp", posecast=(), last_ms=None):
+    def run_daemon(self, steps, clock="simulated_lock_step", noisy=True, transport="tcp", posecast=(), last_ms=None):
         """A daemon and a client that listens; then a simulator with these steps, after standing at time 0 while the client
         requests its pings, or posecast with these arguments. Returns [(time of the pose in ns, CRC-32)] of the pings.
         With `last_ms`, waits for the ping at this time."""
@@ -88,7 +88,7 @@ class SimulatedTime(link_test.LinkTest):
         return self.pings()
 
     def run_micron(self, steps):
-        lab = self.start(MICRON.format(dump=self.next_dump()), "lock_step", "tcp")
+        lab = self.start(MICRON.format(dump=self.next_dump()), "simulated_lock_step", "tcp")
         viewer = lab.start(lab.client, os.path.join(link_test.PROGRAMS, "sonarview"), "micron", "--tcp",
                            f"{link_test.HEAD_ADDRESS}:4001", "--range", "7", "--bins", "300", "--line-wait", "0", "--quiet")
         self.daemon.wait_for_line(r"head=bow: ready", PATIENCE_S)
@@ -200,7 +200,7 @@ class SimulatedTime(link_test.LinkTest):
 
     def test_without_lock_step_a_fast_simulator_is_kept_up_with(self):
         every = dict(self.run_daemon(["run:3@1"], noisy=False))
-        some = self.run_daemon(["run:3@20"], clock="source", noisy=False)
+        some = self.run_daemon(["run:3@20"], clock="simulated", noisy=False)
         self.assertLess(len(some), len(every))
         self.assertGreater(len(some), 1)
         for time_ns, crc in some:

@@ -763,14 +763,28 @@ TEST_F(Loader, TellsTheHeadsWhoseTimePingsKeep) {
     return load(world + "poses: {udp: {bind: 127.0.0.1:1}" + clock + "}\n" + heads).config;
   };
   EXPECT_EQ(loaded("").poses.clock, PingClock::wall);
-  EXPECT_FALSE(gemini_of(loaded("")).device.waits_for_permission);
-  EXPECT_EQ(loaded(", clock: source").poses.clock, PingClock::source);
-  EXPECT_EQ(loaded(", clock: lock_step").poses.clock, PingClock::lock_step);
-  EXPECT_TRUE(gemini_of(loaded(", clock: lock_step")).device.waits_for_permission);
+  EXPECT_FALSE(gemini_of(loaded("")).device.simulated_time);
+  EXPECT_EQ(loaded(", clock: simulated").poses.clock, PingClock::simulated);
+  EXPECT_EQ(loaded(", clock: simulated_lock_step").poses.clock, PingClock::simulated_lock_step);
+  EXPECT_TRUE(gemini_of(loaded(", clock: simulated_lock_step")).device.simulated_time);
   EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, clock: sim}\n" + heads),
               ElementsAre(HasSubstr("poses.clock: ")));
-  EXPECT_THAT(complaints(world + "poses: {initial: {position_m: [0, 0, 0]}, clock: source}\n" + heads),
+  EXPECT_THAT(complaints(world + "poses: {initial: {position_m: [0, 0, 0]}, clock: simulated}\n" + heads),
               ElementsAre(HasSubstr("poses.clock: requires poses with time stamps")));
+}
+
+TEST_F(Loader, ReadsAValueByItsFormerNameAndWarns) {
+  const std::string rest = minimal_config.substr(minimal_config.find("heads:"));
+  const auto loaded = [&](const std::string& clock) {
+    return load("world: {file: w.sdf}\nposes: {udp: {bind: 127.0.0.1:1}, clock: " + clock + "}\n" + rest);
+  };
+  const LoadedConfig lock_step = loaded("lock_step");
+  EXPECT_EQ(lock_step.config.poses.clock, PingClock::simulated_lock_step);
+  EXPECT_THAT(lock_step.warning_lines(),
+              testing::Contains(HasSubstr("config.yaml:2:42: poses.clock: is 'lock_step', which is a former "
+                                          "name; write 'simulated_lock_step'")));
+  EXPECT_EQ(loaded("source").config.poses.clock, PingClock::simulated);
+  EXPECT_THAT(loaded("simulated").warning_lines(), testing::Not(testing::Contains(HasSubstr("former name"))));
 }
 
 TEST_F(Loader, TakesOpenWaterForAWorld) {

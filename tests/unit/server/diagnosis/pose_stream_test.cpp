@@ -89,8 +89,9 @@ TEST(PoseStream, StampsThatAreLeftOutOrAlikeAreOneFinding) {
     for (const double speed_mps : {0.0, 0.5}) {
       expect_one({.stamp = stamp, .speed_mps = speed_mps}, "is time_ns missing?");
     }
-    expect_one({.stamp = stamp, .speed_mps = 0.0, .clock = PingClock::source}, "the heads do not ping");
-    expect_one({.stamp = stamp, .clock = PingClock::lock_step}, "so the heads do not ping (poses.clock)");
+    expect_one({.stamp = stamp, .speed_mps = 0.0, .clock = PingClock::simulated}, "the heads do not ping");
+    expect_one({.stamp = stamp, .clock = PingClock::simulated_lock_step},
+               "so the heads do not ping (poses.clock)");
   }
 }
 
@@ -139,7 +140,7 @@ TEST(PoseStream, StampsThatDoNotAdvanceStopThePingsThatWaitForThem) {
       {.stamp = [](std::int64_t since_ns) { return unix_s * 1'000'000 - since_ns; }},
   };
   for (Stream stream : stopped) {
-    for (const PingClock clock : {PingClock::wall, PingClock::source, PingClock::lock_step}) {
+    for (const PingClock clock : {PingClock::wall, PingClock::simulated, PingClock::simulated_lock_step}) {
       stream.clock = clock;
       const std::vector<Finding> findings = findings_of(stream);
       ASSERT_EQ(findings.size(), 1U);
@@ -148,7 +149,7 @@ TEST(PoseStream, StampsThatDoNotAdvanceStopThePingsThatWaitForThem) {
   }
   const std::vector<Finding> rounded = findings_of(
       {.stamp = [](std::int64_t since_ns) { return (unix_s + since_ns / 1'000'000'000) * 1'000'000'000; },
-       .clock = PingClock::source});
+       .clock = PingClock::simulated});
   ASSERT_EQ(rounded.size(), 1U);
   EXPECT_FALSE(rounded[0].stops_pings) << "a ping comes with each second";
 }
@@ -179,9 +180,9 @@ TEST(PoseStream, PosesAtOneHertzAreTooRare) {
 
 TEST(PoseStream, ASlowSimulationIsNoRarePublisher) {
   const milliseconds second{1000}, good{50};
-  EXPECT_FALSE(rate_finding(second, good, PingClock::source));
-  EXPECT_FALSE(rate_finding(second, good, PingClock::lock_step));
-  const auto rare = rate_finding(good, second, PingClock::lock_step);
+  EXPECT_FALSE(rate_finding(second, good, PingClock::simulated));
+  EXPECT_FALSE(rate_finding(second, good, PingClock::simulated_lock_step));
+  const auto rare = rate_finding(good, second, PingClock::simulated_lock_step);
   ASSERT_TRUE(rare);
   EXPECT_THAT(rare->text, HasSubstr("Poses arrive at only 1 Hz by their stamps"));
 }

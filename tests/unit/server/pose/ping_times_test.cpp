@@ -26,7 +26,7 @@ PoseConfig by(PingClock clock) {
 }
 
 struct PingTimesTest : testing::Test {
-  PoseHistory poses{by(PingClock::lock_step)};
+  PoseHistory poses{by(PingClock::simulated_lock_step)};
   PingTimes times{poses};
   TimePoint arrival{};
 
@@ -86,7 +86,7 @@ TEST_F(PingTimesTest, LockStepMakesUpForAll) {
 }
 
 TEST_F(PingTimesTest, WithoutLockStepWhatIsLateIsLeftOut) {
-  poses = PoseHistory{by(PingClock::source)};
+  poses = PoseHistory{by(PingClock::simulated)};
   pose(1000);
   EXPECT_THAT(begun(), IsEmpty());
   poses_every(10, 1010, 2029);

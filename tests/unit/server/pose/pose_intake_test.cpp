@@ -21,7 +21,7 @@ PoseConfig kept_by(PingClock clock) {
 
 struct PoseIntakeTest : testing::Test {
   boost::asio::io_context io;
-  PoseHistory poses{kept_by(PingClock::lock_step)};
+  PoseHistory poses{kept_by(PingClock::simulated_lock_step)};
   std::optional<nanoseconds> lead;
   int changes = 0;
   PoseIntake intake{io, poses, {[this] { ++changes; }, [this] { return lead; }}};
@@ -53,7 +53,7 @@ TEST_F(PoseIntakeTest, PublishersWaitWhenPosesAreFarAhead) {
   EXPECT_FALSE(intake.hold());
   lead = PoseIntake::most_ahead + nanoseconds{1};
   EXPECT_TRUE(intake.hold());
-  poses = PoseHistory{kept_by(PingClock::source)};
+  poses = PoseHistory{kept_by(PingClock::simulated)};
   EXPECT_FALSE(intake.hold()) << "only in lock-step";
 }
 
@@ -86,7 +86,7 @@ TEST_F(PoseIntakeTest, AndSoDoesTheOneAfterThat) {
 }
 
 TEST_F(PoseIntakeTest, OutsideLockStepNothingWaits) {
-  poses = PoseHistory{kept_by(PingClock::source)};
+  poses = PoseHistory{kept_by(PingClock::simulated)};
   lead = milliseconds{100};
   pose(2000);
   pose(0);

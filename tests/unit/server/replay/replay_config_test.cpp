@@ -53,7 +53,7 @@ HeadConfig gemini(const std::string& name, std::uint16_t id) {
   head.name = name;
   auto config = std::make_shared<GeminiConfig>(gemini_config(head));
   config->device.sonar_id = id;
-  config->device.waits_for_permission = true;
+  config->device.simulated_time = true;
   config->device.render_lead = std::chrono::milliseconds{5};
   head.device = config;
   return head;
@@ -130,7 +130,7 @@ TEST_F(ReplayConfigTest, HeadsAreHeldToTheirRecordingAndKeepTheRest) {
   for (const HeadConfig& head : replay.daemon.heads) {
     const gemini::DeviceConfig& device = gemini_config(head).device;
     EXPECT_TRUE(device.plays_back);
-    EXPECT_FALSE(device.waits_for_permission);
+    EXPECT_FALSE(device.simulated_time);
     EXPECT_EQ(device.min_ping_period, std::chrono::milliseconds{1});
     EXPECT_EQ(device.render_lead, std::chrono::nanoseconds{0});
   }
@@ -193,7 +193,7 @@ HeadConfig micron(const std::string& name, std::uint8_t node) {
   head.name = name;
   auto config = std::make_shared<MicronConfig>(micron_config(head));
   config->device.node = node;
-  config->device.waits_for_permission = true;
+  config->device.simulated_time = true;
   head.device = config;
   return head;
 }
@@ -207,7 +207,7 @@ TEST_F(ReplayConfigTest, MicronsFindTheirRecordingByNameAndElseByNode) {
   EXPECT_EQ(replay.played[1].logged, &logged[0]);
   EXPECT_EQ(replay.played[2].logged, &logged[2]);
   EXPECT_TRUE(micron_config(replay.daemon.heads[2]).device.plays_back);
-  EXPECT_FALSE(micron_config(replay.daemon.heads[2]).device.waits_for_permission);
+  EXPECT_FALSE(micron_config(replay.daemon.heads[2]).device.simulated_time);
 }
 
 TEST_F(ReplayConfigTest, OneOfEachKindPlayOneOfEachKind) {

@@ -77,7 +77,7 @@ TEST(Readiness, NeedsStampsThatMoveWherePingsWaitForThem) {
 }
 
 TEST(Readiness, NeedsAPoseOfAPublisherIfPingsWaitForStamps) {
-  for (const PingClock clock : {PingClock::source, PingClock::lock_step}) {
+  for (const PingClock clock : {PingClock::simulated, PingClock::simulated_lock_step}) {
     DaemonStatus status = ready_status();  // the pose is poses.initial
     status.ping_clock = clock;
     EXPECT_THAT(why_not_ready(status),

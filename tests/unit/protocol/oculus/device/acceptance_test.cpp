@@ -355,10 +355,10 @@ TEST(OculusAcceptance, AStatusSaysHowDeepTheHeadIsWhetherItPingsOrNot) {
   EXPECT_EQ(told_bar(), 1.7);
 }
 
-// With a simulator's clock the head pings only after a grant, and reports the period that it would use.
-TEST(OculusAcceptance, ByASimulatorsClockItWaitsForGrants) {
+// In simulated time the head pings only when NextPingDue comes, and reports the period that it would use.
+TEST(OculusAcceptance, InSimulatedTimeItWaitsForNextPingDue) {
   DeviceConfig config;
-  config.waits_for_permission = true;
+  config.simulated_time = true;
   Line line(config);
   EXPECT_FALSE(line.next_ping);
   line.receive(encode(fire_with(false, 8, false, 256, 2)));
@@ -367,7 +367,7 @@ TEST(OculusAcceptance, ByASimulatorsClockItWaitsForGrants) {
   ASSERT_TRUE(line.next_ping);
   EXPECT_EQ(line.next_ping->period, milliseconds{100});
   EXPECT_NEAR(static_cast<double>(line.next_ping->listening.count()), 2 * 4.321 / 1522 * 1e9, 1e5);
-  line.step(PingGranted{});
+  line.step(NextPingDue{});
   EXPECT_EQ(line.jobs.size(), 1U);
   line.run_for(seconds{1});
   EXPECT_EQ(line.pings.size(), 1U);

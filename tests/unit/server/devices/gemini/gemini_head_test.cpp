@@ -313,11 +313,11 @@ std::vector<std::string> codes_of(const std::vector<Finding>& findings) {
   return codes;
 }
 
-// By the clock of the source a pose of the configuration brings no stamp, so pings wait.
+// In simulated time a pose of the configuration brings no stamp, so pings wait.
 TEST_F(GeminiHeadTest, WithoutAStampItSaysThatItWaitsForAPose) {
-  for (const PingClock by : {PingClock::source, PingClock::lock_step}) {
+  for (const PingClock by : {PingClock::simulated, PingClock::simulated_lock_step}) {
     pose_config.clock = by;
-    gemini_config.device.waits_for_permission = true;
+    gemini_config.device.simulated_time = true;
     start();
     EXPECT_TRUE(head->status().findings.empty()) << "no client requests pings";
     command(ping_config);

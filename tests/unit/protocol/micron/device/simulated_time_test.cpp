@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings that wait for a permission, because a simulator's clock decides when they begin.
+// Pings in simulated time.
 #include "bench.hpp"
 #include "protocol/micron/line_timing.hpp"
 
@@ -8,25 +8,25 @@ namespace {
 
 DeviceConfig waiting() {
   DeviceConfig config;
-  config.waits_for_permission = true;
+  config.simulated_time = true;
   return config;
 }
 
-struct PingGrant : ::testing::Test {
+struct SimulatedTime : ::testing::Test {
   Bench bench{waiting()};
 
-  /// Grants the ping that the head would begin by now, as a server does. Returns false if there is none.
-  bool grant() {
+  /// Begins the ping that is due by now, as a server does. Returns false if there is none.
+  bool begin_next() {
     const auto next = bench.last.next_ping;
     if (!next || next->from > bench.now) {
       return false;
     }
-    bench.step(PingGranted{});
+    bench.step(NextPingDue{});
     return true;
   }
 };
 
-TEST_F(PingGrant, NoLineIsNextUntilLinesAreOwed) {
+TEST_F(SimulatedTime, NoLineIsNextUntilLinesAreOwed) {
   EXPECT_FALSE(bench.last.next_ping);
   bench.make_ready(all_round());
   EXPECT_FALSE(bench.last.next_ping);
@@ -34,7 +34,7 @@ TEST_F(PingGrant, NoLineIsNextUntilLinesAreOwed) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(PingGrant, NothingIsSentWithoutIt) {
+TEST_F(SimulatedTime, NothingIsSentWithoutIt) {
   bench.make_ready(all_round());
   bench.command(SendData{});
   bench.run_for(5s);
@@ -43,7 +43,7 @@ TEST_F(PingGrant, NothingIsSentWithoutIt) {
   EXPECT_GE(bench.all<Alive>().size(), 4U) << "the head lives on in its own time";
 }
 
-TEST_F(PingGrant, TheNextPingSaysHowLinesFollow) {
+TEST_F(SimulatedTime, TheNextPingSaysHowLinesFollow) {
   bench.make_ready(all_round());
   bench.command(SendData{});
   ASSERT_TRUE(bench.last.next_ping);
@@ -52,14 +52,14 @@ TEST_F(PingGrant, TheNextPingSaysHowLinesFollow) {
   EXPECT_EQ(bench.last.next_ping->listening, timing.listen);
 }
 
-TEST_F(PingGrant, LinesAreTheSameAndInOrderHoweverFast) {
+TEST_F(SimulatedTime, LinesAreTheSameAndInOrderHoweverFast) {
   bench.make_ready(all_round());
   std::vector<HeadData> lines;
   for (int line = 0; line < 20; ++line) {
     if (line % 2 == 0) {
       bench.command(SendData{});  // requests two lines
     }
-    ASSERT_TRUE(grant());
+    ASSERT_TRUE(begin_next());
     bench.run_for(1ms);  // a head that uses its own clock cannot turn as fast
   }
   ASSERT_EQ(bench.all<HeadData>().size(), 20U);
@@ -72,7 +72,7 @@ TEST_F(PingGrant, LinesAreTheSameAndInOrderHoweverFast) {
   }
 }
 
-TEST_F(PingGrant, ALinePeriodOfNothingStillListens) {
+TEST_F(SimulatedTime, ALinePeriodOfNothingStillListens) {
   DeviceConfig config = waiting();
   config.line_period = 0ns;
   Bench as_fast_as_rendered(config);

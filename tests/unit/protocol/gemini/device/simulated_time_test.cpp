@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pings that wait for a permission, because a simulator's clock decides when they begin.
+// Pings in simulated time.
 #include "bench.hpp"
 
 namespace sonard::gemini {
@@ -7,7 +7,7 @@ namespace {
 
 DeviceConfig waiting() {
   DeviceConfig config = example_config();
-  config.waits_for_permission = true;
+  config.simulated_time = true;
   return config;
 }
 
@@ -16,25 +16,25 @@ std::chrono::nanoseconds listening_of(int lines) {
   return std::chrono::nanoseconds{static_cast<std::int64_t>(lines / 90422.0 * 1e9)};
 }
 
-struct PingGrant : testing::Test {
+struct SimulatedTime : testing::Test {
   Bench bench{waiting()};
 
-  /// Grants the ping that the head would begin by now, as a server does. Returns false if there is none.
-  bool grant() {
+  /// Begins the ping that is due by now, as a server does. Returns false if there is none.
+  bool begin_next() {
     const auto next = bench.last.next_ping;
     if (!next || next->from > bench.now) {
       return false;
     }
-    bench.step(PingGranted{});
+    bench.step(NextPingDue{});
     return true;
   }
 };
 
-TEST_F(PingGrant, NoPingIsNextAtFirst) {
+TEST_F(SimulatedTime, NoPingIsNextAtFirst) {
   EXPECT_FALSE(bench.last.next_ping);
 }
 
-TEST_F(PingGrant, NothingIsSentWithoutIt) {
+TEST_F(SimulatedTime, NothingIsSentWithoutIt) {
   bench.command(ping_of(64, RunMode::continuous));
   bench.run_connected(5s);
   EXPECT_TRUE(bench.jobs.empty());
@@ -43,7 +43,7 @@ TEST_F(PingGrant, NothingIsSentWithoutIt) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(PingGrant, TheNextPingSaysHowPingsFollow) {
+TEST_F(SimulatedTime, TheNextPingSaysHowPingsFollow) {
   bench.command(ping_of(6028, RunMode::continuous, 200ms));  // 50 m
   ASSERT_TRUE(bench.last.next_ping);
   EXPECT_EQ(bench.last.next_ping->period, 200ms);
@@ -54,28 +54,28 @@ TEST_F(PingGrant, TheNextPingSaysHowPingsFollow) {
   EXPECT_EQ(bench.last.next_ping->period, waiting().min_ping_period);
 }
 
-TEST_F(PingGrant, APingForEach) {
+TEST_F(SimulatedTime, APingForEach) {
   bench.command(ping_of(64, RunMode::continuous));
   for (std::size_t pings = 1; pings <= 20; ++pings) {
-    ASSERT_TRUE(grant());
+    ASSERT_TRUE(begin_next());
     EXPECT_EQ(bench.jobs.size(), pings);
     bench.run_for(6ms);  // simulated time runs faster, so the head's own rate limits do not apply
   }
   EXPECT_EQ(bench.count(MessageType::ping_tail), 20U);
 }
 
-TEST_F(PingGrant, ASinglePingIsNextOnce) {
+TEST_F(SimulatedTime, ASinglePingIsNextOnce) {
   bench.command(ping_of(64));
-  ASSERT_TRUE(grant());
+  ASSERT_TRUE(begin_next());
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
   EXPECT_FALSE(bench.last.next_ping);
 }
 
-TEST_F(PingGrant, NoneIsNextWhileOneIsOnItsWay) {
+TEST_F(SimulatedTime, NoneIsNextWhileOneIsOnItsWay) {
   bench.render_time = 40ms;
   bench.command(ping_of(64, RunMode::continuous));
-  ASSERT_TRUE(grant());
+  ASSERT_TRUE(begin_next());
   EXPECT_FALSE(bench.last.next_ping);
   bench.run_for(39ms);
   EXPECT_FALSE(bench.last.next_ping);
@@ -83,15 +83,15 @@ TEST_F(PingGrant, NoneIsNextWhileOneIsOnItsWay) {
   EXPECT_TRUE(bench.last.next_ping);
 }
 
-TEST_F(PingGrant, AnEdgeOfTheTriggerMakesAPingNext) {
+TEST_F(SimulatedTime, AnEdgeOfTheTriggerMakesAPingNext) {
   bench.command(ping_of(64, RunMode::external_trigger));
   EXPECT_FALSE(bench.last.next_ping);
   bench.trigger();
-  ASSERT_TRUE(grant());
+  ASSERT_TRUE(begin_next());
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 
-TEST_F(PingGrant, ASilentClientHasNoNextPing) {
+TEST_F(SimulatedTime, ASilentClientHasNoNextPing) {
   bench.command(ping_of(64, RunMode::continuous));
   bench.run_for(4s);
   EXPECT_FALSE(bench.last.next_ping);
