@@ -28,7 +28,7 @@
 #include "server/config/overlaps.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/resolve_mounts.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/diagnosis/sight.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/to_render.hpp"
@@ -411,8 +411,8 @@ std::string rest_text(const HeadConfig& head) {
 
 void Check::check_head(std::size_t index) {
   const HeadConfig& head = config_.heads[index];
-  report_.summary.push_back(fmt::format("head     {}: {}, {}, {}", head.name, head.kind->title(),
-                                        head.kind->summary(head), rest_text(head)));
+  report_.summary.push_back(fmt::format("head     {}: {}, {}, {}", head.name, head.type->title(),
+                                        head.type->summary(head), rest_text(head)));
   try {
     check_sampling_of(head);
   } catch (const render::RequestError& error) {
@@ -428,9 +428,9 @@ void Check::try_connecting(std::size_t head) {
   try {
     asio::io_context io;
     const SteadyClock clock;
-    kind_of(config_.heads[head]).connect(config_.heads[head], io, clock);
+    type_of(config_.heads[head]).connect(config_.heads[head], io, clock);
   } catch (const SocketError& error) {
-    problem(fmt::format("heads[{}].{}", head, trouble_of(error, kind_of(config_.heads[head])).key),
+    problem(fmt::format("heads[{}].{}", head, trouble_of(error, type_of(config_.heads[head])).key),
             error.what());
   }
 }
@@ -446,7 +446,7 @@ void Check::check_addresses() {
     if (report_.problems.size() == problems_before) {
       try_connecting(i);
     }
-    for (const ConfigWarning& found : config_.heads[i].kind->network_warnings(config_.heads[i])) {
+    for (const ConfigWarning& found : config_.heads[i].type->network_warnings(config_.heads[i])) {
       warning(fmt::format("heads[{}].{}", i, found.key), found.message);
     }
   }

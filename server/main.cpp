@@ -28,7 +28,7 @@
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
 #include "server/demo.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
 #include "server/logs/log_file.hpp"
@@ -130,7 +130,7 @@ LoadedConfig load_and_log(const CommandLine& arguments, const std::string& text)
   if (!arguments.log_format.empty()) {
     set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
   }
-  LoadedConfig loaded = load_config(arguments.config, text, head_kinds());
+  LoadedConfig loaded = load_config(arguments.config, text, head_types());
   const std::string level{spdlog::level::to_string_view(spdlog_level(loaded.config.log_level)).data()};
   const std::string format = loaded.config.log_format == LogFormat::json ? "json" : "text";
   set_log(arguments.log_level.empty() ? level : arguments.log_level,
@@ -210,7 +210,7 @@ int check(const CommandLine& arguments) {
   try {
     const InheritedConfig inherited = inherit_config();
     const LoadedConfig loaded = load_config(
-        arguments.config, inherited.text ? *inherited.text : read_config(arguments.config), head_kinds());
+        arguments.config, inherited.text ? *inherited.text : read_config(arguments.config), head_types());
     const CheckReport report = check_config(loaded, !arguments.no_network);
     const int code = report.problems.empty() ? exit_clean : exit_config;
     if (arguments.json) {
@@ -234,7 +234,7 @@ int check(const CommandLine& arguments) {
 }
 
 int render_offline(const OfflineArguments& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config(), head_kinds());
+  const LoadedConfig loaded = load_config(arguments.config(), head_types());
   for (const std::string& warning : loaded.warning_lines()) {
     print_error("warning: " + warning);
   }

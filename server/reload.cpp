@@ -19,7 +19,7 @@
 #include "server/config/loader.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/daemon/process.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/try_bind.hpp"
 
@@ -167,7 +167,7 @@ std::optional<std::string> Reload::check(const std::stop_token& stop) {
     if (auto problem = checked_apart(in_use_.file, text, stop)) {
       return problem;
     }
-    if (auto problem = missing(load_config(in_use_.file, text, head_kinds()), in_use_)) {
+    if (auto problem = missing(load_config(in_use_.file, text, head_types()), in_use_)) {
       return problem;
     }
     checked_ = std::move(text);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/config/head_kind.hpp"
+#include "server/config/head_type.hpp"
 
 namespace sonard::server {
 

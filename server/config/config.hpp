@@ -23,7 +23,7 @@
 
 namespace sonard::server {
 
-class HeadKind;
+class HeadType;
 
 enum class LogLevel { trace, debug, info, warn, error };
 enum class LogFormat { text, json };
@@ -130,7 +130,7 @@ struct PoseConfig {
   PingClock clock = PingClock::wall;
 };
 
-/// The part of a head's configuration that only its kind of device reads.
+/// The part of a head's configuration that only its type of device reads.
 struct DeviceSettings {
   DeviceSettings() = default;
   virtual ~DeviceSettings() = default;
@@ -143,8 +143,8 @@ struct DeviceSettings {
 inline constexpr double longest_arm_m = 10.0;
 
 struct HeadConfig {
-  const HeadKind* kind = nullptr;                ///< kind of device; not null after loading
-  std::shared_ptr<const DeviceSettings> device;  ///< of that kind
+  const HeadType* type = nullptr;                ///< type of device; not null after loading
+  std::shared_ptr<const DeviceSettings> device;  ///< of that type
   std::string name;              ///< unique in the daemon; appears in every log line of this head
   render::Pose T_vehicle_sonar;  ///< mount
   /// The sonar of the world that gives the mount (resolve_mounts() reads it); empty: no such sonar.
@@ -173,7 +173,7 @@ enum class RecordingSync {
 /// Logs of what the heads send and receive.
 struct RecordingConfig {
   std::filesystem::path directory;  ///< created if missing; used by one daemon at a time
-  bool glf = true;                  ///< of heads whose users know it (HeadKind)
+  bool glf = true;                  ///< of heads whose users know it (HeadType)
   bool mcap = true;
   bool mcap_wire_bytes = true;  ///< whether it holds the bytes of both directions
   bool mcap_foxglove = false;   ///< whether it holds images, poses and echoes for Foxglove

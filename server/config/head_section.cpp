@@ -12,7 +12,7 @@
 
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/config/head_kind.hpp"
+#include "server/config/head_type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -287,12 +287,12 @@ void read_mount(YamlSection& section, HeadConfig& head) {
 }
 
 /// Reports a model that is given as the type.
-void report_model(YamlSection& section, std::span<const HeadKind* const> kinds) {
-  for (const HeadKind* kind : kinds) {
-    for (const std::string_view model : kind->models()) {
+void report_model(YamlSection& section, std::span<const HeadType* const> types) {
+  for (const HeadType* type : types) {
+    for (const std::string_view model : type->models()) {
       if (section.word("type") == model) {
         section.report("type",
-                       fmt::format("'{0}' is a model (expected type: {1}, model: {0})", model, kind->type()));
+                       fmt::format("'{0}' is a model (expected type: {1}, model: {0})", model, type->name()));
       }
     }
   }
@@ -301,22 +301,22 @@ void report_model(YamlSection& section, std::span<const HeadKind* const> kinds) 
 }  // namespace
 
 HeadConfig read_head(YamlSection& section, const HeadContext& context,
-                     std::span<const HeadKind* const> kinds) {
-  std::vector<std::pair<std::string_view, const HeadKind*>> types;
+                     std::span<const HeadType* const> types) {
+  std::vector<std::pair<std::string_view, const HeadType*>> choices;
   std::vector<std::string_view> names;
-  for (const HeadKind* kind : kinds) {
-    types.emplace_back(kind->type(), kind);
-    names.push_back(kind->type());
+  for (const HeadType* type : types) {
+    choices.emplace_back(type->name(), type);
+    names.push_back(type->name());
   }
-  const HeadKind* kind = kinds.front();
-  report_model(section, kinds);
+  const HeadType* type = types.front();
+  report_model(section, types);
   section.require("type", fmt::format("{}", fmt::join(names, " or ")));
-  const bool known = section.choice("type", kind, types, "type of device") && section.has("type");
+  const bool known = section.choice("type", type, choices, "type of device") && section.has("type");
   if (!known && !section.describing()) {
     section.ignore_rest();  // the keys of heads of other types are unknown here
     return {};
   }
-  return kind->read(section, context);
+  return type->read(section, context);
 }
 
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head) {

@@ -25,9 +25,9 @@ struct HeadContext {
   bool simulated_time = false;  ///< the stamps of the poses time the pings
 };
 
-/// @param kinds the permitted kinds of heads
+/// @param types the permitted types of heads
 HeadConfig read_head(YamlSection& section, const HeadContext& context,
-                     std::span<const HeadKind* const> kinds);
+                     std::span<const HeadType* const> types);
 
 /// Keys of any head: name, mount and dump. Copies the sampling from the context.
 void read_common(YamlSection& section, const HeadContext& context, HeadConfig& head);

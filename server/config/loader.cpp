@@ -508,7 +508,7 @@ void read_web(YamlSection& section, WebConfig& web) {
                   "Programs behind one gateway or proxy, such as Docker's, share its address");
 }
 
-void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, DaemonConfig& config) {
+void read_document(YamlSection& root, std::span<const HeadType* const> types, DaemonConfig& config) {
   HeadContext context;
   context.folder = config.file.parent_path();
   root.section("log", "level and format of the log",
@@ -567,7 +567,7 @@ void read_document(YamlSection& root, std::span<const HeadKind* const> kinds, Da
                [&](YamlSection& section) { read_web(section, config.web.emplace()); });
   root.require("heads", "a list of sonar heads");
   root.sections("heads", "sonar heads, one or more",
-                [&](YamlSection& section) { config.heads.push_back(read_head(section, context, kinds)); });
+                [&](YamlSection& section) { config.heads.push_back(read_head(section, context, types)); });
   if (root.is_list("heads") && config.heads.empty()) {
     root.report("heads", "no head is listed (expected at least one)");
   }
@@ -579,21 +579,21 @@ std::string head_type_of(const std::string& key, const std::vector<HeadConfig>& 
   std::size_t number = 0;
   if (!key.starts_with(front) ||
       std::from_chars(key.data() + front.size(), key.data() + key.size(), number).ec != std::errc() ||
-      number >= heads.size() || heads[number].kind == nullptr) {
+      number >= heads.size() || heads[number].type == nullptr) {
     return {};
   }
-  return std::string(heads[number].kind->type());
+  return std::string(heads[number].type->name());
 }
 
-void name_sections(YamlFindings& findings, std::span<const HeadKind* const> kinds,
+void name_sections(YamlFindings& findings, std::span<const HeadType* const> types,
                    const std::vector<HeadConfig>& heads) {
   if (findings.unknown_keys.empty() && findings.words_for_mappings.empty()) {
     return;
   }
-  std::vector<KindKeys> known;
-  known.reserve(kinds.size());
-  for (const HeadKind* const kind : kinds) {
-    known.push_back({std::string(kind->type()), describe_config(*kind)});
+  std::vector<TypeKeys> known;
+  known.reserve(types.size());
+  for (const HeadType* const type : types) {
+    known.push_back({std::string(type->name()), describe_config(*type)});
   }
   for (UnknownKey& key : findings.unknown_keys) {
     key.head_type = head_type_of(findings.problems[key.problem].key, heads);
@@ -611,21 +611,21 @@ std::string read_config(const std::filesystem::path& file) {
   return read_file(file);
 }
 
-LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds) {
-  return load_config(file, read_file(file), kinds);
+LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadType* const> types) {
+  return load_config(file, read_file(file), types);
 }
 
 LoadedConfig load_config(const std::filesystem::path& file, const std::string& text,
-                         std::span<const HeadKind* const> kinds) {
+                         std::span<const HeadType* const> types) {
   const YAML::Node document = parse_yaml(file, text);
   YamlFindings findings;
   LoadedConfig loaded;
   loaded.config.file = file;
   {
     YamlSection root(findings, document, "");
-    read_document(root, kinds, loaded.config);
+    read_document(root, types, loaded.config);
   }
-  name_sections(findings, kinds, loaded.config.heads);
+  name_sections(findings, types, loaded.config.heads);
   if (findings.problems.empty()) {
     findings.problems = find_overlaps(loaded.config, findings.positions);
   }
@@ -643,12 +643,12 @@ LoadedConfig load_config(const std::filesystem::path& file, const std::string& t
   return loaded;
 }
 
-std::vector<KeyReference> describe_config(const HeadKind& kind) {
+std::vector<KeyReference> describe_config(const HeadType& type) {
   YamlFindings findings;
   findings.describing = true;
   DaemonConfig config;
   YamlSection root(findings, YAML::Node(YAML::NodeType::Map), "");
-  read_document(root, std::array{&kind}, config);
+  read_document(root, std::array{&type}, config);
   return root.known();
 }
 

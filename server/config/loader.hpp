@@ -33,18 +33,18 @@ struct LoadedConfig {
 
 /// Reads and checks a configuration: loads no world and opens no socket. Relative paths are resolved against
 /// the configuration's folder.
-/// @param kinds the permitted kinds of heads
+/// @param types the permitted types of heads
 /// @throws ConfigError with every problem of the file.
-LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadKind* const> kinds);
+LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadType* const> types);
 
 /// Bytes of a configuration file. @throws ConfigError
 std::string read_config(const std::filesystem::path& file);
 /// The configuration in bytes that were read before.
 /// @param file for messages and relative paths; not read
 LoadedConfig load_config(const std::filesystem::path& file, const std::string& text,
-                         std::span<const HeadKind* const> kinds);
+                         std::span<const HeadType* const> types);
 
-/// All keys of a configuration whose heads are of one kind: for the schema and docs/configuration.md.
-std::vector<KeyReference> describe_config(const HeadKind& kind);
+/// All keys of a configuration whose heads are of one type: for the schema and docs/configuration.md.
+std::vector<KeyReference> describe_config(const HeadType& type);
 
 }  // namespace sonard::server

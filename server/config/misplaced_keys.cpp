@@ -42,7 +42,7 @@ std::string path_in_head(const std::string& key) {
 }
 
 /// The paths of a name in files whose heads are of this type, or of any type if it is empty.
-KnownPaths paths_of(const UnknownKey& key, std::span<const KindKeys> known,
+KnownPaths paths_of(const UnknownKey& key, std::span<const TypeKeys> known,
                     std::span<const KeyIndex> indexes) {
   KnownPaths paths;
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -55,17 +55,17 @@ KnownPaths paths_of(const UnknownKey& key, std::span<const KindKeys> known,
   return paths;
 }
 
-/// The kinds of heads that have a key of this path.
-std::vector<std::string_view> kinds_with(const std::string& name, const std::string& path,
-                                         std::span<const KindKeys> known, std::span<const KeyIndex> indexes) {
-  std::vector<std::string_view> kinds;
+/// The types of heads that have a key of this path.
+std::vector<std::string_view> types_with(const std::string& name, const std::string& path,
+                                         std::span<const TypeKeys> known, std::span<const KeyIndex> indexes) {
+  std::vector<std::string_view> types;
   for (std::size_t i = 0; i < known.size(); ++i) {
     const auto entry = indexes[i].find(name);
     if (entry != indexes[i].end() && entry->second.of_key.contains(path)) {
-      kinds.emplace_back(known[i].type);
+      types.emplace_back(known[i].type);
     }
   }
-  return kinds;
+  return types;
 }
 
 /// The places in the section that holds the key: "acoustics.physical.speckle" and "acoustics.paper.speckle"
@@ -111,12 +111,12 @@ std::string key_with_value(const KeyReference& mapping, std::string_view word) {
 }  // namespace
 
 void name_keys(std::vector<ConfigProblem>& problems, std::span<const WordForMapping> words,
-               std::span<const KindKeys> known) {
+               std::span<const TypeKeys> known) {
   for (const WordForMapping& given : words) {
     ConfigProblem& problem = problems[given.problem];
-    const auto kind = std::ranges::find_if(
-        known, [&](const KindKeys& keys) { return given.head_type.empty() || keys.type == given.head_type; });
-    const KeyReference* const mapping = kind == known.end() ? nullptr : mapping_at(kind->keys, problem.key);
+    const auto type = std::ranges::find_if(
+        known, [&](const TypeKeys& keys) { return given.head_type.empty() || keys.type == given.head_type; });
+    const KeyReference* const mapping = type == known.end() ? nullptr : mapping_at(type->keys, problem.key);
     if (mapping == nullptr) {
       continue;
     }
@@ -132,7 +132,7 @@ void name_keys(std::vector<ConfigProblem>& problems, std::span<const WordForMapp
 }
 
 void name_sections(std::vector<ConfigProblem>& problems, std::span<const UnknownKey> unknown,
-                   std::span<const KindKeys> known) {
+                   std::span<const TypeKeys> known) {
   std::vector<KeyIndex> indexes(known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
     add_keys(known[i].keys, "", indexes[i]);
@@ -151,10 +151,10 @@ void name_sections(std::vector<ConfigProblem>& problems, std::span<const Unknown
                !all.of_key.contains(here) && (inside.size() == 1 || inside.size() == 2)) {
       problem.message.insert(complaint.size(),
                              fmt::format(" here, did you mean '{}'?", fmt::join(inside, "' or '")));
-    } else if (const auto kinds = kinds_with(key.name, here, known, indexes);
-               !key.head_type.empty() && !kinds.empty()) {
+    } else if (const auto types = types_with(key.name, here, known, indexes);
+               !key.head_type.empty() && !types.empty()) {
       problem.message.insert(complaint.size(), fmt::format(" of a {}, it is a key of {}", key.head_type,
-                                                           fmt::join(kinds, ", ")));
+                                                           fmt::join(types, ", ")));
     }
   }
 }

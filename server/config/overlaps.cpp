@@ -61,9 +61,9 @@ class Overlaps {
     const HeadConfig& head = config_.heads[i];
     const HeadConfig& other = config_.heads[j];
     compare(i, {"name", fmt::format("'{}'", head.name)}, j, {"name", fmt::format("'{}'", other.name)});
-    for (const Identity& identity : head.kind->identities(head)) {
-      for (const Identity& taken : other.kind->identities(other)) {
-        if (head.kind == other.kind || !identity.of_kind) {
+    for (const Identity& identity : head.type->identities(head)) {
+      for (const Identity& taken : other.type->identities(other)) {
+        if (head.type == other.type || !identity.of_type) {
           compare(i, identity, j, taken);
         }
       }
@@ -99,7 +99,7 @@ std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config) {
     sockets.push_back({Transport::tcp, config.web->bind, "web.bind"});
   }
   for (std::size_t i = 0; i < config.heads.size(); ++i) {
-    for (PlannedSocket socket : config.heads[i].kind->sockets(config.heads[i])) {
+    for (PlannedSocket socket : config.heads[i].type->sockets(config.heads[i])) {
       socket.key = head_key(i, socket.key);
       sockets.push_back(std::move(socket));
     }

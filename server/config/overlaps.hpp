@@ -6,14 +6,14 @@
 
 #include "server/config/config.hpp"
 #include "server/config/config_error.hpp"
-#include "server/config/head_kind.hpp"
+#include "server/config/head_type.hpp"
 
 namespace sonard::server {
 
 /// Sockets of the pose input, then of each head; keys are paths in the whole configuration.
 std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config);
 
-/// Sockets that conflict, duplicate names, and values that two heads of a kind must not share.
+/// Sockets that conflict, duplicate names, and values that two heads of a type must not share.
 std::vector<ConfigProblem> find_overlaps(const DaemonConfig& config, const KeyPositions& positions);
 
 }  // namespace sonard::server

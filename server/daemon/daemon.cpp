@@ -32,7 +32,7 @@
 #include "server/daemon/exit_codes.hpp"
 #include "server/daemon/process.hpp"
 #include "server/daemon/resolve_mounts.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/devices/head.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/devices/ping_dump.hpp"
@@ -135,7 +135,7 @@ class Daemon {
   std::unique_ptr<RenderService> make_renderer_of(bool scanning, const DaemonConfig& config,
                                                   const RendererFactory& make_renderer);
   RenderService& renderer_of(const HeadConfig& head) const {
-    return *(kind_of(head).scanning() ? beam_renderer_ : fan_renderer_);
+    return *(type_of(head).scanning() ? beam_renderer_ : fan_renderer_);
   }
   void say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads, const render::World& world) const;
   std::string engine_text() const;
@@ -217,7 +217,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
     try {
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
-      const SocketTrouble trouble = trouble_of(error, kind_of(config.heads[i]));
+      const SocketTrouble trouble = trouble_of(error, type_of(config.heads[i]));
       throw StartError(head_key(i, trouble.key), trouble.of_network ? exit_network : exit_config,
                        error.what());
     }
@@ -259,7 +259,7 @@ std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const Dae
                                                         const RendererFactory& make_renderer) {
   const auto streams =
       std::count_if(config.heads.begin(), config.heads.end(),
-                    [scanning](const HeadConfig& head) { return kind_of(head).scanning() == scanning; });
+                    [scanning](const HeadConfig& head) { return type_of(head).scanning() == scanning; });
   return streams > 0 ? std::make_unique<RenderService>(make_renderer, static_cast<int>(streams), hooks())
                      : nullptr;
 }

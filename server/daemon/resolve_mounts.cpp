@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "server/config/head_kind.hpp"
+#include "server/config/head_type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -72,9 +72,9 @@ class MountResolver {
     } else if (found.size() > 1) {
       problem(key, fmt::format("'{}' is the name of several sonars of the world (expected one of {})",
                                head.mount_from_world, paths(found)));
-    } else if (found.front()->type != head.kind->type()) {
+    } else if (found.front()->type != head.type->name()) {
       problem(key, fmt::format("{} has type {} in the world (expected {}, the type of this head)",
-                               found.front()->path, found.front()->type, head.kind->type()));
+                               found.front()->path, found.front()->type, head.type->name()));
     } else {
       head.T_vehicle_sonar = found.front()->T_body_sonar;
       carry(key, *found.front());

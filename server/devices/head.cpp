@@ -12,7 +12,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/devices/head_diagnosis.hpp"
 #include "server/devices/head_log.hpp"
 #include "server/devices/head_rendering.hpp"
@@ -49,7 +49,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   const HeadConfig config;
   const HeadServices services;
   const int stream;
-  const DeviceKind& kind;
+  const DeviceType& type;
 
   std::unique_ptr<ConnectedDevice> connected;
   HeadRendering rendering;
@@ -138,8 +138,8 @@ Head::Impl::Impl(const HeadConfig& head_config, int stream_number, const HeadSer
     : config(head_config),
       services(head_services),
       stream(stream_number),
-      kind(kind_of(config)),
-      connected(kind.connect(config, services.io, services.clock)),
+      type(type_of(config)),
+      connected(type.connect(config, services.io, services.clock)),
       rendering(config, stream, services),
       timer(services.io),
       report_timer(services.io),
@@ -228,8 +228,8 @@ HeadCounts Head::Impl::counts() const {
 HeadStatus Head::Impl::status() const {
   const TimePoint now = services.clock.now();
   return {.name = config.name,
-          .kind = std::string(kind.type()),
-          .scanning = kind.scanning(),
+          .type = std::string(type.name()),
+          .scanning = type.scanning(),
           .serves = connected->transport().descriptions(),
           .link_faults = connected->transport().faults(),
           .clients = clients.since(now - std::chrono::minutes{1}),
@@ -259,7 +259,7 @@ void Head::Impl::look_at_addresses(const std::vector<InterfaceAddress>& now) {
   if (auto moved = connected->own_addresses()) {
     own = std::move(*moved);
   } else {
-    for (const PlannedSocket& socket : kind.sockets(config)) {
+    for (const PlannedSocket& socket : type.sockets(config)) {
       own.push_back(socket.endpoint.address);
     }
   }
@@ -391,7 +391,7 @@ void Head::Impl::send(std::vector<Outgoing> messages) {
     return;
   }
   for (const Outgoing& message : messages) {
-    if (kind.writes_glf() && message.to == Outgoing::To::everybody) {
+    if (type.writes_glf() && message.to == Outgoing::To::everybody) {
       recording.status(message.bytes);
     }
   }
@@ -410,7 +410,7 @@ void Head::Impl::record(TimePoint now, PingRecord ping) {
 }
 
 void Head::Impl::read_sensors(TimePoint now) {
-  if (!kind.has_sensors()) {
+  if (!type.has_sensors()) {
     return;
   }
   if (const auto T_world_mount = rendering.T_world_mount(services.poses.present(now))) {
@@ -502,8 +502,8 @@ bool Head::Impl::render(const PingJob& job) {
     T_world_at_end = T_world_transducer(*T_world_at_end, job.bearing_rad);
   }
   const render::Pose T_world_sonar = T_world_transducer(*T_world_mount, job.bearing_rad);
-  log.ping(job, kind.scanning(), T_world_sonar);
-  render::SonarSettings settings = kind.sonar_settings(job, config);
+  log.ping(job, type.scanning(), T_world_sonar);
+  render::SonarSettings settings = type.sonar_settings(job, config);
   newest = NewestPing{job.settings,
                       job.range_m(),
                       job.bearing_rad,

@@ -47,7 +47,7 @@ struct HeadServices {
   const render::World* world = nullptr;     ///< for diagnosis; null: no diagnosis
 };
 
-/// Passes events to Device::step() and carries out its actions, the same way for every kind of device. While
+/// Passes events to Device::step() and carries out its actions, the same way for every type of device. While
 /// the transport is blocked, events wait, so that a device does not send faster than the transport.
 ///
 /// Belongs to the I/O thread. The thread that owns the io_context constructs and destroys it while the

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/pose/pose_history.hpp"
 
 namespace sonard::server {
@@ -53,7 +53,7 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
   // line each time that it passes the limit.
   const double least = stands_out_.value_or(true) ? least_visible_echo : 2.0 * least_visible_echo;
   bool stands_out = echo_over_floor >= least;
-  if (kind_of(config_).scanning()) {
+  if (type_of(config_).scanning()) {
     sees_surface = surface_seen_.note(now, ping.bearing_rad, sees_surface);
     stands_out = echo_seen_.note(now, ping.bearing_rad, stands_out);
   }

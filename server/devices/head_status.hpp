@@ -38,7 +38,7 @@ struct NewestPing {
 /// State of one head at one moment.
 struct HeadStatus {
   std::string name;
-  std::string kind;  ///< as in the configuration
+  std::string type;  ///< as in the configuration
   bool scanning = false;
   std::vector<std::string> serves;  ///< Transport::descriptions()
   std::string link_faults;          ///< Transport::faults()

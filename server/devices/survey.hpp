@@ -15,7 +15,7 @@
 
 namespace sonard::server {
 
-/// Options of a sonar; each kind takes those it supports and rejects the others.
+/// Options of a sonar; each type takes those it supports and rejects the others.
 struct SurveyOptions {
   std::optional<double> range_m;
   std::optional<double> gain_percent;
@@ -59,7 +59,7 @@ class Survey {
 
   /// Settings of the frames as a JSON object, without the period.
   virtual nlohmann::ordered_json settings_json() const = 0;
-  /// The record of a ping, for a log. Its transmit time is not set, and its wire message only if a kind
+  /// The record of a ping, for a log. Its transmit time is not set, and its wire message only if a type
   /// overrides this function.
   /// @param samples 8 bits each, or the high bytes of 16 bits
   virtual PingRecord record(int ping, std::vector<std::uint8_t> samples) const;

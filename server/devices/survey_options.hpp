@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the options of a survey for a kind of device.
+// Reads the options of a survey for a type of device.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace sonard::server {
 
-/// For one kind of device. All functions throw CLI::ValidationError.
+/// For one type of device. All functions throw CLI::ValidationError.
 class OptionsOf {
  public:
   /// @param device as named in messages: "Example 100"

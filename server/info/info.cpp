@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "common/text/printable.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/info/info_text.hpp"
 #include "server/info/thumbnails.hpp"
 

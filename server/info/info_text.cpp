@@ -12,7 +12,7 @@
 
 #include "common/text/printable.hpp"
 
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 namespace {
@@ -30,9 +30,9 @@ std::string offset_text(std::int32_t utc_offset_s) {
 }
 
 std::string title_of(const HeadSummary& head, LogKind log) {
-  const DeviceKind* const kind = kind_of_logged(head.device, head.scanning, log);
+  const DeviceType* const type = type_of_logged(head.type, head.scanning, log);
   const std::string_view usual = head.scanning ? "scanning sonar" : "multibeam sonar";
-  return fmt::format("{} {}{}", kind != nullptr ? kind->title() : usual, head.id,
+  return fmt::format("{} {}{}", type != nullptr ? type->title() : usual, head.id,
                      head.name.empty() ? "" : fmt::format(" '{}'", printable(head.name)));
 }
 
@@ -114,13 +114,13 @@ Json json_settings(const SettingsCount& count) {
 
 Json json_head(const HeadSummary& head, LogKind log) {
   const PingRate rate = ping_rate(head.times_ns);
-  const DeviceKind* const kind = kind_of_logged(head.device, head.scanning, log);
-  const std::string device = kind != nullptr ? std::string(kind->type()) : head.device;
+  const DeviceType* const type = type_of_logged(head.type, head.scanning, log);
+  const std::string name = type != nullptr ? std::string(type->name()) : head.type;
   Json settings = Json::array();
   for (const SettingsCount& count : head.settings) {
     settings.push_back(json_settings(count));
   }
-  return {{"device", device.empty() ? Json() : Json(device)},
+  return {{"type", name.empty() ? Json() : Json(name)},
           {"scanning", head.scanning},
           {"name", head.name},
           {"id", head.id},

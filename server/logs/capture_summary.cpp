@@ -48,7 +48,7 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder&
                                         : "other packets");
   const std::optional<PingSeen> ping = ping_in(payload.bytes);
   if (ping && plausible_time(time_ns)) {
-    add_ping(head_of(log, {}, ping->device, ping->device_id, ping->settings.beams == 1), time_ns,
+    add_ping(head_of(log, {}, ping->type, ping->device_id, ping->settings.beams == 1), time_ns,
              ping->settings);
   }
 }

@@ -15,7 +15,7 @@ namespace {
 
 void add_pings(LogSummary& log, const Recording& recording) {
   for (const LoggedHead& logged : recording.heads()) {
-    HeadSummary& head = head_of(log, logged.name, logged.device, logged.device_id, logged.scanning);
+    HeadSummary& head = head_of(log, logged.name, logged.type, logged.device_id, logged.scanning);
     for (const LoggedPing& ping : logged.pings) {
       add_ping(head, ping.time_ns, ping.settings);
       include(log, ping.time_ns);
@@ -121,13 +121,13 @@ void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& s
   }
 }
 
-HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& device, std::uint16_t id,
+HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& type, std::uint16_t id,
                      bool scanning) {
   const auto known = std::ranges::find_if(log.heads, [&](const HeadSummary& head) {
-    return head.name == name && head.device == device && head.id == id && head.scanning == scanning;
+    return head.name == name && head.type == type && head.id == id && head.scanning == scanning;
   });
   return known != log.heads.end() ? *known
-                                  : log.heads.emplace_back(HeadSummary{name, device, id, scanning, {}, {}});
+                                  : log.heads.emplace_back(HeadSummary{name, type, id, scanning, {}, {}});
 }
 
 void include(LogSummary& log, std::int64_t time_ns) {

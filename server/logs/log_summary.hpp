@@ -35,7 +35,7 @@ PingRate ping_rate(const std::vector<std::int64_t>& times_ns);
 
 struct HeadSummary {
   std::string name;                     ///< empty if the log has no name
-  std::string device;                   ///< its type in the configuration; empty if the log does not have it
+  std::string type;                     ///< its type in the configuration; empty if the log does not have it
   std::uint16_t id = 0;                 ///< its ID on the wire
   bool scanning = false;                ///< true: a ping is a line of one beam
   std::vector<SettingsCount> settings;  ///< in order of appearance
@@ -56,9 +56,9 @@ struct LogSummary {
   std::vector<std::string> problems;                                 ///< one phrase each
 };
 
-/// A ping found in a datagram by a kind of device.
+/// A ping found in a datagram by a type of device.
 struct PingSeen {
-  std::string device;
+  std::string type;
   std::uint16_t device_id = 0;
   RecordedSettings settings;
 };
@@ -70,8 +70,8 @@ LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
 
 /// Adds a ping; times may come in any order, because summarise() sorts them.
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);
-/// The head with this name, device, ID and way of pinging; added if it is new.
-HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& device, std::uint16_t id,
+/// The head with this name, type, ID and way of pinging; added if it is new.
+HeadSummary& head_of(LogSummary& log, const std::string& name, const std::string& type, std::uint16_t id,
                      bool scanning);
 /// Extends the span of the log; ignores times that are not plausible_time().
 void include(LogSummary& log, std::int64_t time_ns);

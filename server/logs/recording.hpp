@@ -32,8 +32,8 @@ struct LoggedPing {
 
 /// A head of a log.
 struct LoggedHead {
-  std::string name;    ///< empty if the log has no name
-  std::string device;  ///< its type in the configuration; empty if the log does not have it
+  std::string name;  ///< empty if the log has no name
+  std::string type;  ///< its type in the configuration; empty if the log does not have it
   std::uint16_t device_id = 0;
   bool scanning = false;          ///< true: a ping is a line of one beam
   std::vector<LoggedPing> pings;  ///< at least one, in the order of their times

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "protocol/npy/npy_file.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/offline/frame_times.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
@@ -65,7 +65,7 @@ render::Pose FanFrames::T_world_sonar(std::int64_t time_ns) const {
 
 render::PingRequest FanFrames::request(int frame) const {
   const std::int64_t time_ns = times_.at(frame);
-  return {T_world_sonar(time_ns), kind_of(head_).sonar_settings(job_, head_),
+  return {T_world_sonar(time_ns), type_of(head_).sonar_settings(job_, head_),
           static_cast<std::uint64_t>(frame), head_.seed,
           trajectory_.T_world_vehicle_at_end(time_ns, time_ns + job_.listening_time.count()) *
               head_.T_vehicle_sonar};
@@ -109,7 +109,7 @@ std::string FanFrames::caption(int frame) const {
 }
 
 bool FanFrames::makes_glf() const {
-  return kind_of(head_).writes_glf();
+  return type_of(head_).writes_glf();
 }
 
 std::optional<PingRecord> FanFrames::ping_record(int frame, std::string_view npy) const {
@@ -147,7 +147,7 @@ std::optional<glf::ImageRecord> FanFrames::record(int frame, std::string_view np
     return std::nullopt;
   }
   return glf_image(std::move(*ping), unix_ns(frame),
-                   {0, static_cast<std::uint8_t>(place_.glf_number), kind_of(head_).device_id(head_)});
+                   {0, static_cast<std::uint8_t>(place_.glf_number), type_of(head_).device_id(head_)});
 }
 
 Json FanFrames::settings_json() const {
@@ -159,8 +159,8 @@ Json FanFrames::settings_json() const {
 std::string FanFrames::sidecar(int frame, const render::PingRequest& request) const {
   const int beams = static_cast<int>(bearings_rad_.size());
   Json json =
-      frame_json({frame, head_.name, std::string(head_.kind->type()), times_.at(frame), unix_ns(frame)});
-  json["device_id"] = head_.kind->device_id(head_);
+      frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(frame), unix_ns(frame)});
+  json["device_id"] = head_.type->device_id(head_);
   json["ping_number"] = frame;
   json["stream"] = place_.stream;
   json["seed"] = head_.seed;

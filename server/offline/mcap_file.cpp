@@ -7,7 +7,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 namespace {

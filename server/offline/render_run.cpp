@@ -35,7 +35,7 @@
 #include "server/clock/clock.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/frame_findings.hpp"
 #include "server/offline/frame_source.hpp"
@@ -82,7 +82,7 @@ DaemonConfig seeded(const LoadedConfig& loaded, const OfflineOptions& options) {
 HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   HeadPlace place{static_cast<int>(head), 0};
   for (std::size_t i = 0; i < head; ++i) {
-    place.glf_number += kind_of(heads[i]).writes_glf() ? 1 : 0;
+    place.glf_number += type_of(heads[i]).writes_glf() ? 1 : 0;
   }
   return place;
 }
@@ -159,9 +159,9 @@ void watch_for_interruption() {
 std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
-  const DeviceKind& kind = kind_of(heads[head]);
-  std::unique_ptr<Survey> survey = kind.survey(heads[head], options.survey);
-  if (kind.scanning()) {
+  const DeviceType& type = type_of(heads[head]);
+  std::unique_ptr<Survey> survey = type.survey(heads[head], options.survey);
+  if (type.scanning()) {
     return std::make_unique<SweepFrames>(heads[head], static_cast<int>(head), std::move(survey), trajectory,
                                          options, truth);
   }

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "protocol/npy/npy_file.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/offline/frame_times.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
@@ -62,7 +62,7 @@ render::PingRequest SweepFrames::request(int line) const {
   const auto transducer_at = [&](const render::Pose& T_world_vehicle) {
     return T_world_transducer(T_world_vehicle * head_.T_vehicle_sonar, ping.bearing_rad);
   };
-  return {transducer_at(trajectory_.T_world_vehicle(time_ns)), kind_of(head_).sonar_settings(ping, head_),
+  return {transducer_at(trajectory_.T_world_vehicle(time_ns)), type_of(head_).sonar_settings(ping, head_),
           static_cast<std::uint64_t>(line), head_.seed,
           transducer_at(trajectory_.T_world_vehicle_at_end(time_ns, time_ns + ping.listening_time.count()))};
 }
@@ -191,8 +191,8 @@ std::string SweepFrames::sidecar(int frame) const {
     transducer.push_back(pose_json(request(line).T_world_sonar));
   }
   Json json =
-      frame_json({frame, head_.name, std::string(head_.kind->type()), times_.at(first), unix_ns(frame)});
-  json["device_id"] = head_.kind->device_id(head_);
+      frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(first), unix_ns(frame)});
+  json["device_id"] = head_.type->device_id(head_);
   json["first_ping_number"] = first;
   json["stream"] = stream_;
   json["seed"] = head_.seed;

@@ -20,7 +20,7 @@ namespace sonard::server {
 /// Description of a head for its logs.
 struct HeadToRecord {
   std::string name;
-  std::string device;           ///< its type in the configuration
+  std::string type;             ///< its type in the configuration
   std::uint16_t device_id = 0;  ///< its ID on the wire
   /// Number of the head among the heads with .glf logs, 0..9; nullopt: such heads have no .glf logs.
   std::optional<std::uint8_t> glf_number;

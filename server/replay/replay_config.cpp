@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 namespace {
@@ -34,14 +34,14 @@ std::vector<const LoggedHead*> alike(const std::vector<LoggedHead>& logged, bool
 
 // IDs of some devices are unique only on their line; names are unique in a daemon.
 const LoggedHead* find_logged(const std::vector<LoggedHead>& logged, const HeadConfig& head, bool only_one) {
-  const std::vector<const LoggedHead*> candidates = alike(logged, kind_of(head).scanning());
+  const std::vector<const LoggedHead*> candidates = alike(logged, type_of(head).scanning());
   if (only_one && candidates.size() == 1) {
     return candidates.front();
   }
   const auto named = std::ranges::find(candidates, head.name, &LoggedHead::name);
   const auto found = named != candidates.end()
                          ? named
-                         : std::ranges::find(candidates, head.kind->device_id(head), &LoggedHead::device_id);
+                         : std::ranges::find(candidates, head.type->device_id(head), &LoggedHead::device_id);
   return found == candidates.end() ? nullptr : *found;
 }
 
@@ -66,41 +66,41 @@ void cast(const HeadConfig& head, const LoggedHead* logged, const LogFile& file,
     spdlog::warn("head={}: is not served: {} has no pings of it", head.name, file.path().string());
     return;
   }
-  const DeviceKind& kind = kind_of(head);
-  if (logged->device_id != kind.device_id(head)) {
+  const DeviceType& type = type_of(head);
+  if (logged->device_id != type.device_id(head)) {
     spdlog::warn("head={}: replays sonar {} under its own ID {}", head.name, logged->device_id,
-                 kind.device_id(head));
+                 type.device_id(head));
   }
-  if (const std::optional<std::string> reason = kind.why_not_played(*logged)) {
+  if (const std::optional<std::string> reason = type.why_not_played(*logged)) {
     throw file.error(fmt::format("head '{}' cannot play it: {}", head.name, *reason));
   }
-  for (const std::string& problem : kind.played_wrongly(*logged)) {
+  for (const std::string& problem : type.played_wrongly(*logged)) {
     spdlog::warn("head={}: {}", head.name, problem);
   }
   replay.played.push_back({head.name, logged});
-  replay.daemon.heads.push_back(kind.held_to_recording(head));
+  replay.daemon.heads.push_back(type.held_to_recording(head));
 }
 
-/// The kind that plays a head of a log: its own kind, or, if the log does not have it, the first that can.
-const DeviceKind& player_of(const LoggedHead& logged, const LogFile& file) {
-  if (const DeviceKind* own = kind_of_logged(logged.device, logged.scanning, file.kind())) {
+/// The type that plays a head of a log: its own type, or, if the log does not have it, the first that can.
+const DeviceType& player_of(const LoggedHead& logged, const LogFile& file) {
+  if (const DeviceType* own = type_of_logged(logged.type, logged.scanning, file.kind())) {
     return *own;
   }
-  const auto kinds = device_kinds();
-  if (!logged.device.empty()) {
-    std::vector<std::string_view> types;
-    std::ranges::transform(kinds, std::back_inserter(types), &DeviceKind::type);
+  const auto types = device_types();
+  if (!logged.type.empty()) {
+    std::vector<std::string_view> names;
+    std::ranges::transform(types, std::back_inserter(names), &DeviceType::name);
     throw file.error(
         fmt::format("head {} has the unknown type '{}' (expected {}, or --config with a head to play it)",
                     logged.name.empty() ? std::to_string(logged.device_id) : "'" + logged.name + "'",
-                    logged.device, fmt::join(types, " or ")));
+                    logged.type, fmt::join(names, " or ")));
   }
-  std::optional<std::string> reason;  // of the first kind that could have been it
-  for (const DeviceKind* kind : kinds) {
-    if (kind->scanning() == logged.scanning) {
-      const std::optional<std::string> hindrance = kind->why_not_played(logged);
+  std::optional<std::string> reason;  // of the first type that could have been it
+  for (const DeviceType* type : types) {
+    if (type->scanning() == logged.scanning) {
+      const std::optional<std::string> hindrance = type->why_not_played(logged);
       if (!hindrance) {
-        return *kind;
+        return *type;
       }
       reason = reason.value_or(*hindrance);
     }
@@ -126,9 +126,9 @@ ReplayConfig replay_config(DaemonConfig config, const std::vector<LoggedHead>& l
   ReplayConfig replay;
   replay.daemon = std::move(config);
   for (const HeadConfig& head : heads) {
-    const bool scanning = kind_of(head).scanning();
+    const bool scanning = type_of(head).scanning();
     const auto number = std::ranges::count_if(
-        heads, [scanning](const HeadConfig& other) { return kind_of(other).scanning() == scanning; });
+        heads, [scanning](const HeadConfig& other) { return type_of(other).scanning() == scanning; });
     cast(head, find_logged(logged, head, number == 1), file, replay);
   }
   if (replay.daemon.heads.empty()) {

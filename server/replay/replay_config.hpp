@@ -16,8 +16,8 @@ struct ReplayConfig {
 };
 
 /// Heads on loopback, from 127.0.0.2 up: first the multibeam heads, then the scanning ones. The log gives
-/// their kind, by name or by its format.
-/// @throws LogError if a head is of an unknown kind
+/// their type, by name or by its format.
+/// @throws LogError if a head is of an unknown type
 DaemonConfig loopback_config(const std::vector<LoggedHead>& logged, const LogFile& file);
 
 /// Gives every head of `config` the recorded head with its name, or else with its device ID, among the heads

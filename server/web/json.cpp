@@ -89,7 +89,7 @@ void add_newest_ping(json& head, const HeadStatus& status) {
 
 json head_json(const HeadStatus& status, TimePoint at) {
   json head{{"name", status.name},
-            {"kind", status.kind},
+            {"type", status.type},
             {"scanning", status.scanning},
             {"serves", status.serves},
             {"link_faults", status.link_faults},

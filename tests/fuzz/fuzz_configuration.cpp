@@ -7,7 +7,7 @@
 
 #include "server/config/config_error.hpp"
 #include "server/config/loader.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "tests/fuzz/file_in_memory.hpp"
 #include "tests/fuzz/require.hpp"
 
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const sonard::fuzz::FileInMemory file(".yaml");
   file.hold(data, size);
   try {
-    const sonard::server::LoadedConfig loaded = load_config(file.path(), sonard::server::head_kinds());
+    const sonard::server::LoadedConfig loaded = load_config(file.path(), sonard::server::head_types());
     require(!loaded.config.heads.empty(), "a configuration has a head");
   } catch (const sonard::server::ConfigError& error) {
     require(!error.lines().empty() && error.lines().size() <= 1001, "problems are listed, and bounded");

@@ -58,7 +58,7 @@ DeviceConfig config_of(unsigned flags) {
 }
 
 /// A ping of a log: lines, 256 beams or one, line length, sound speed and gain, as far as there are bytes.
-/// nullopt if a replay would not begin with it (server/logs, DeviceKind::why_not_played()).
+/// nullopt if a replay would not begin with it (server/logs, DeviceType::why_not_played()).
 std::optional<sonard::RecordedPing> recorded(std::span<const std::uint8_t> bytes, TimePoint now) {
   sonard::ByteReader reader(bytes);
   const auto number = [&](double fallback) {

@@ -89,7 +89,7 @@ class Bench {
   }
 
  private:
-  /// Feeds a line, unless a replay would not begin with it (DeviceKind::why_not_played()).
+  /// Feeds a line, unless a replay would not begin with it (DeviceType::why_not_played()).
   void feed_line(const Event& event) {
     sonard::RecordedPing ping;
     ping.wire = event.datagram;

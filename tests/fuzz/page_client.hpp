@@ -39,7 +39,7 @@ inline server::DaemonStatus status_of_one_head() {
   server::DaemonStatus status;
   server::HeadStatus& head = status.heads.emplace_back();
   head.name = "bow";
-  head.kind = "gemini_720i";
+  head.type = "gemini_720i";
   return status;
 }
 

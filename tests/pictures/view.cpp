@@ -12,11 +12,11 @@
 #include "protocol/micron/units.hpp"
 #include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
-#include "server/devices/device_kind.hpp"
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/device_type.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::pictures {
 namespace {
@@ -60,16 +60,16 @@ void aim_gemini(View& view, const server::HeadConfig& head, const Vehicle& vehic
   job.native_bin_m = sound_speed_mps / (2 * line_rate_hz);
   job.native_bins = static_cast<int>(range_m / job.native_bin_m);
   job.compression_log2 = 1;
-  view.settings = server::gemini_kind().sonar_settings(job, head);
+  view.settings = server::gemini_type().sonar_settings(job, head);
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 
 /// Settings for any other multibeam head, with its usual ping.
 void aim_fan(View& view, const server::HeadConfig& head, const Vehicle& vehicle, double range_m,
              double time_s) {
-  PingJob job = server::kind_of(head).usual_job(head);
+  PingJob job = server::type_of(head).usual_job(head);
   job.native_bins = static_cast<int>(range_m / job.native_bin_m);
-  view.settings = server::kind_of(head).sonar_settings(job, head);
+  view.settings = server::type_of(head).sonar_settings(job, head);
   view.T_world_sonar = vehicle.at(time_s) * head.T_vehicle_sonar;
 }
 
@@ -80,7 +80,7 @@ void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehic
   job.native_bin_m = range_m / micron_bins;
   job.sound_speed_mps = sound_speed_mps;
   job.gain_db = server::micron_config(head).nominal_gain_db;
-  view.settings = server::micron_kind().sonar_settings(job, head);
+  view.settings = server::micron_type().sonar_settings(job, head);
   view.scan_step = micron_step;
   for (int i = 0; i < micron::units_per_turn / micron_step; ++i) {
     const int bearing = micron::wrapped(i * micron_step);
@@ -90,7 +90,7 @@ void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehic
 }
 
 server::DaemonConfig load(const std::string& config) {
-  return server::load_config(SONARD_SOURCE_DIR "/configs/" + config, server::head_kinds()).config;
+  return server::load_config(SONARD_SOURCE_DIR "/configs/" + config, server::head_types()).config;
 }
 
 }  // namespace
@@ -114,11 +114,11 @@ View configured_view(const std::string& config, double range_m, double time_s, d
   view.world = render::load_world(daemon.world_file);
   const double sound_speed_mps = daemon.water.sound_speed_mps;
   const server::HeadConfig& head = daemon.heads.front();
-  if (head.kind == &server::gemini_kind()) {
+  if (head.type == &server::gemini_type()) {
     aim_gemini(view, head, vehicle, range_m, sound_speed_mps, time_s);
-  } else if (head.kind == &server::micron_kind()) {
+  } else if (head.type == &server::micron_type()) {
     aim_micron(view, head, vehicle, range_m, sound_speed_mps, time_s, line_s);
-  } else if (!server::kind_of(head).scanning()) {
+  } else if (!server::type_of(head).scanning()) {
     aim_fan(view, head, vehicle, range_m, time_s);
   } else {
     throw std::invalid_argument(config + ": of scanning heads only a Micron has a view");

@@ -33,7 +33,7 @@ GeminiImage image_of(float intensity, double range_m, int compression_log2 = 0) 
   gemini::PingSettings wanted;
   wanted.range_m = range_m;
   wanted.compression_log2 = compression_log2;
-  test::GeminiClient client(server::gemini_kind().make_default(), gemini::make_ping_config(wanted),
+  test::GeminiClient client(server::gemini_type().make_default(), gemini::make_ping_config(wanted),
                             test::EvenEcho(intensity));
   return client.images(1).front();
 }

@@ -31,7 +31,7 @@ struct Ask {
 
 std::vector<GeminiImage> images_of(const render::World& world, const render::Pose& T_world_sonar,
                                    const Ask& ask) {
-  server::HeadConfig head = server::gemini_kind().make_default();
+  server::HeadConfig head = server::gemini_type().make_default();
   if (ask.no_bounces) {
     head.acoustics.physical.multipath.most_bounces = 0;
   }
@@ -344,7 +344,7 @@ double highlights_db() {
   const GeminiImage image = world_of("demo.yaml", 40);
   gemini::PingSettings wanted;
   wanted.range_m = 40;
-  test::GeminiClient silent(server::gemini_kind().make_default(), gemini::make_ping_config(wanted),
+  test::GeminiClient silent(server::gemini_type().make_default(), gemini::make_ping_config(wanted),
                             test::EvenEcho(0));
   return 2 *
          decibels(quantile_of(image.codes, 0.999) / mean_code(silent.images(1).front(), 36, 39, -55, -10));

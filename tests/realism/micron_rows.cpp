@@ -65,7 +65,7 @@ std::vector<std::vector<double>> echo_turn(MicronClient& client) {
 }
 
 MicronClient client_at(double gain_percent) {
-  MicronClient client{server::micron_kind().make_default(), bin_m, bins};
+  MicronClient client{server::micron_type().make_default(), bin_m, bins};
   client.gain_db = 0.8 * gain_percent;
   return client;
 }
@@ -83,7 +83,7 @@ double noise_sd() {
 /// Correlation from bin to bin, of noise below the ceiling of the TVG or of an even echo.
 /// @param noise true: noise only, no echo
 double bins_shared(bool noise) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.interference.probability = 0;
   head.acoustics.physical.noise_by_bearing_db = 0;
   MicronClient client{head, bin_m, bins};
@@ -144,7 +144,7 @@ double bearings_stay() {
 /// Share of lines whose noise is raised for a metre or more. The noise does not depend on the bearing
 /// otherwise.
 double lines_hit() {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.noise_by_bearing_db = 0;
   MicronClient client{head, bin_m, bins};
   constexpr std::size_t window = 30;

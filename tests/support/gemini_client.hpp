@@ -19,8 +19,8 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/ping.hpp"
 #include "server/config/config.hpp"
-#include "server/devices/gemini/kind.hpp"
 #include "server/devices/gemini/settings.hpp"
+#include "server/devices/gemini/type.hpp"
 
 namespace sonard::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/devices/head.hpp"
 #include "server/devices/head_rendering.hpp"
 

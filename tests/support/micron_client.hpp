@@ -11,8 +11,8 @@
 #include "protocol/micron/codec.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "server/config/config.hpp"
-#include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
+#include "server/devices/micron/type.hpp"
 
 namespace sonard::test {
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 

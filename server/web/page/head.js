@@ -25,7 +25,7 @@ export class Head {
     this.inView = false;  // until the browser says otherwise
     this.picture = new Picture((ping) => this.drawn(ping));
     this.title = make("h2");
-    this.kind = make("span", { class: "kind" });
+    this.type = make("span", { class: "type" });
     this.fault = make("span", { class: "fault", hidden: true });
     this.findings = make("ul", { class: "findings", hidden: true });
     this.empty = make("p", { class: "empty" });
@@ -34,7 +34,7 @@ export class Head {
     this.facts = make("dl", { class: "facts" });
     this.makeMore();
     this.element = make("article", { class: "head", data: { head: index, frames: 0 } },
-      make("div", { class: "look" }, make("header", {}, this.title, this.kind, this.fault), this.findings, this.picture.stage,
+      make("div", { class: "look" }, make("header", {}, this.title, this.type, this.fault), this.findings, this.picture.stage,
         this.picture.legend, this.controls()),
       make("div", { class: "said" }, this.facts, this.stages, this.clients, this.skipped, this.settings, this.counters));
     new IntersectionObserver((entries) => {
@@ -154,7 +154,7 @@ export class Head {
     this.name = status.name;
     this.picture.stage.dataset.scanning = status.scanning;
     setText(this.title, status.name);
-    setText(this.kind, words(status.kind));
+    setText(this.type, words(status.type));
     this.fault.hidden = !status.link_faults;
     setText(this.fault, status.link_faults ? `Link faults: ${status.link_faults}` : "");
     setFindings(this.findings, status.findings ?? []);

@@ -46,7 +46,7 @@ function showState(state) {
 
 /** The heads of a daemon never change while it runs; another one may have others. */
 function showHeads(all, poses) {
-  onChange(at("heads"), all.map((head) => [head.name, head.kind]), () => {
+  onChange(at("heads"), all.map((head) => [head.name, head.type]), () => {
     heads = all.map((_, index) => new Head(index, () => live.ask()));
     at("heads").dataset.count = heads.length;
     at("heads").replaceChildren(...heads.map((head) => head.element));

@@ -18,7 +18,7 @@
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/rendering/world_renderer.hpp"
 #include "tests/gl/engine_choice/wall_and_ball.hpp"
@@ -43,7 +43,7 @@ class ServingWithoutGpu : public testing::Test {
     device->bind_address = head_address_;
     device->status = {StatusDestination::Mode::unicast, {client_address_}};
     device->allow = {{client_address_, 32}};
-    HeadConfig head = gemini_kind().make_default();
+    HeadConfig head = gemini_type().make_default();
     head.name = "head";
     head.device = std::move(device);
     config_.heads.push_back(head);

@@ -8,10 +8,10 @@
 
 #include "protocol/gemini/ping_plan.hpp"
 #include "protocol/gemini/ping_settings.hpp"
-#include "server/devices/gemini/kind.hpp"
 #include "server/devices/gemini/settings.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/settings.hpp"
+#include "server/devices/micron/type.hpp"
 #include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
@@ -61,7 +61,7 @@ TEST_P(SoundSpeed, GeminiShowsAWallAtTheRatioOfTheSpeeds) {
       make_world({make_body("wall", make_quad({12, -30, -5}, {0, 60, 0}, {0, 0, 10}))});
   for (const double water_mps : {1500.0, 1450.0, 1545.0}) {
     render::SonarSettings settings =
-        gemini_sonar_settings(gemini_job(water_mps), gemini_kind().make_default());
+        gemini_sonar_settings(gemini_job(water_mps), gemini_type().make_default());
     settings.aperture.beam_edges_rad = render::equal_angle_edges(2, 1 * degree);
     const render::EchoImage image = image_of(wall, settings);
     const double line_m = shown_m(1, 90'422.0);
@@ -78,7 +78,7 @@ TEST_P(SoundSpeed, MicronToo) {
     job.native_bins = 400;
     job.sound_speed_mps = water_mps;
     job.native_bin_m = bin_time_s * water_mps / 2;
-    const render::EchoImage image = image_of(wall, micron_sonar_settings(job, micron_kind().make_default()));
+    const render::EchoImage image = image_of(wall, micron_sonar_settings(job, micron_type().make_default()));
     const double bin_m = shown_m(1, 1 / bin_time_s);
     EXPECT_NEAR(first_line(image, 0), static_cast<int>(6.0 * assumed_mps / water_mps / bin_m), 1)
         << water_mps;
@@ -94,7 +94,7 @@ TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
   for (const bool error : {false, true}) {
     GeminiConfig config;
     config.steering_error = error;
-    HeadConfig head = gemini_kind().make_default();
+    HeadConfig head = gemini_type().make_default();
     head.device = std::make_shared<GeminiConfig>(config);
     const render::EchoImage image = image_of(post, gemini_sonar_settings(gemini_job(1450.0), head));
     const auto loudest = std::max_element(image.intensity.begin(), image.intensity.end());

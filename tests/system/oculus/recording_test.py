@@ -82,7 +82,7 @@ class Recording(HeadCase):
         self.assertIn("x 874 lines of 512 beams, range 5.00 m, sound speed 1500.0 m/s, gain 50 %, 750 kHz\n", text)
         said = json.loads(self.info(self.mcap, "--json"))
         head, = said["heads"]
-        self.assertEqual((head["device"], head["name"], head["id"], head["scanning"]), ("oculus", "bow", 7892, False))
+        self.assertEqual((head["type"], head["name"], head["id"], head["scanning"]), ("oculus", "bow", 7892, False))
 
     def test_the_capture_holds_the_stream_and_the_statuses(self):
         packets = pcapng_reader.read(self.pcapng)

@@ -215,9 +215,9 @@ export class MockDaemon {
     }
   }
 
-  head(name, kind, more) {
+  head(name, type, more) {
     return {
-      name, kind, scanning: false, serves: ["udp 127.0.0.2:52900"], clients: [{ address: "127.0.0.1:52901", idle_s: 0.2, messages: 1234 }],
+      name, type, scanning: false, serves: ["udp 127.0.0.2:52900"], clients: [{ address: "127.0.0.1:52901", idle_s: 0.2, messages: 1234 }],
       pings: this.pings, pings_per_s: 14.3, render_ms: 47.8, latency_ms: 61, pose_age_ms: 12, pings_without_pose: 0,
       stages_ms: { visibility: 28, binning: 9.5, multipath: 3.1, azimuth_pattern: 2.2, pulse: 0.6, receiver: 4.4 },
       skipped: [{ rule: "unchanged_scene", count: 12, why: "Nothing moved since the last ping, so its mean echo is used again." }],

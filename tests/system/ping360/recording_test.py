@@ -113,7 +113,7 @@ class Recording(HeadCase):
         said = json.loads(self.info(self.mcap, "--json"))
         self.assertTrue(said["closed"])
         head, = said["heads"]
-        self.assertEqual((head["device"], head["name"], head["id"], head["scanning"]), ("ping360", "ping360", 2, True))
+        self.assertEqual((head["type"], head["name"], head["id"], head["scanning"]), ("ping360", "ping360", 2, True))
 
     def test_info_draws_turns(self):
         """Single pings and those of the scan make one turn; the next turn begins when an angle repeats."""

@@ -88,7 +88,7 @@ class Web(OwnMachine):
         self.assertRegex(text, r'(?m)^sonard_pings_total\{head="bow"\} \d+$')
         status, text, _ = self.ask("GET", "/api/status")
         head = json.loads(text)["heads"][0]
-        self.assertEqual((head["name"], head["kind"], head["scanning"]), ("bow", "gemini_720i", False))
+        self.assertEqual((head["name"], head["type"], head["scanning"]), ("bow", "gemini_720i", False))
         status, text, _ = self.ask("GET", "/api/world")
         body = json.loads(text)["bodies"][0]
         self.assertEqual(body["name"], "sphere")

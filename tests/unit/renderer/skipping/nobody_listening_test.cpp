@@ -14,9 +14,9 @@
 
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/device.hpp"
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/head.hpp"
 #include "server/devices/head_rendering.hpp"
 #include "server/net/udp_endpoint.hpp"
@@ -188,7 +188,7 @@ class NobodyListening : public testing::Test {
     return poses;
   }();
   PoseHistory poses_{pose_config_};
-  HeadConfig config_ = gemini_kind().make_default();
+  HeadConfig config_ = gemini_type().make_default();
   GeminiConfig gemini_;
   std::promise<void> release_;
   bool released_ = false;

@@ -3,13 +3,13 @@
 
 #include <fstream>
 
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 
 LoadedConfig ConfigFolder::load(const std::string& text) const {
   std::ofstream(folder_ / "config.yaml", std::ios::binary) << text;
-  return load_config(folder_ / "config.yaml", head_kinds());
+  return load_config(folder_ / "config.yaml", head_types());
 }
 
 std::vector<std::string> ConfigFolder::complaints(const std::string& text) const {

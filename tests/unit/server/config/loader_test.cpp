@@ -19,9 +19,9 @@
 
 #include "server/config/overlaps.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/kinds/kinds.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/gemini/type.hpp"
+#include "server/devices/micron/type.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/net/interfaces.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
@@ -58,7 +58,7 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
 
   ASSERT_EQ(config.heads.size(), 1U);
   const HeadConfig& head = config.heads[0];
-  EXPECT_EQ(head.kind, &gemini_kind());
+  EXPECT_EQ(head.type, &gemini_type());
   EXPECT_EQ(head.name, "front");
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_FALSE(head.dump_directory);
@@ -352,20 +352,20 @@ TEST_F(Loader, OffersOnlyKeysThatAHeadOfThisTypeMayHave) {
     });
   };
   std::set<std::string> names;
-  for (const HeadKind* const kind : head_kinds()) {
-    add_names(describe_config(*kind), names);
+  for (const HeadType* const type : head_types()) {
+    add_names(describe_config(*type), names);
   }
   names.erase("type");
   std::size_t offers = 0;
-  for (const HeadKind* const kind : head_kinds()) {
-    const std::string head = fmt::format("{{type: {}", kind->type());
+  for (const HeadType* const type : head_types()) {
+    const std::string head = fmt::format("{{type: {}", type->name());
     const std::string all = fmt::format("heads: [{}, {}: 1}}]\n", head, fmt::join(names, ": 1, "));
     for (const std::string& problem : complaints(all)) {
       if (const std::string path = offered_in(problem); !path.empty()) {
         const std::string inner = nested(path, "1").substr(1);
         const bool in_head = is_known(fmt::format("heads: [{}, {}]\n", head, inner));
         EXPECT_TRUE(in_head || is_known(fmt::format("{{heads: [{}}}], {}\n", head, inner)))
-            << kind->type() << ": " << problem;
+            << type->name() << ": " << problem;
         ++offers;
       }
     }
@@ -580,7 +580,7 @@ TEST_F(Loader, AnInterfaceThatIsNotThereIsAMatterOfTheNetwork) {
     text.replace(text.find("255.0.0.0"), 9, mask);
     std::ofstream(folder_ / "config.yaml") << text;
     try {
-      load_config(folder_ / "config.yaml", head_kinds());
+      load_config(folder_ / "config.yaml", head_types());
     } catch (const ConfigError& error) {
       return std::pair(error.only_of_network(), error.lines());
     }
@@ -885,7 +885,7 @@ TEST_F(Loader, LetsHeadsOfTwoKindsHaveTheSameId) {
   const DaemonConfig config = load(text).config;
   ASSERT_EQ(config.heads.size(), 2U);
   for (const HeadConfig& head : config.heads) {
-    EXPECT_EQ(head.kind->device_id(head), 2);
+    EXPECT_EQ(head.type->device_id(head), 2);
   }
   EXPECT_THAT(complaints(minimal_config + micron_of("front", 2, "tcp: [{bind: 127.0.0.9:4001}]")),
               ElementsAre(HasSubstr("heads[1].name: 'front' is already used by heads[0]")))
@@ -935,8 +935,8 @@ TEST_F(Loader, RefusesASocketOfAHeadThatAnInputHas) {
 
 TEST_F(Loader, NamesTheTypesThatAHeadCanBeOf) {
   std::vector<std::string_view> types;
-  for (const HeadKind* kind : head_kinds()) {
-    types.push_back(kind->type());
+  for (const HeadType* type : head_types()) {
+    types.push_back(type->name());
   }
   ASSERT_THAT(types, testing::IsSupersetOf({"gemini_720i", "micron"}));
   std::string text = minimal_config;
@@ -1052,10 +1052,10 @@ TEST_F(Loader, BlamesNoQuoteThatIsClosed) {
 TEST_F(Loader, TakesNoOtherTypesThanItIsGiven) {
   const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
   load(minimal_config + micron);  // load() writes the file
-  const HeadKind* const kinds[] = {&gemini_kind()};
+  const HeadType* const types[] = {&gemini_type()};
   try {
-    load_config(folder_ / "config.yaml", kinds);
-    FAIL() << "a head of a type that is not among the kinds";
+    load_config(folder_ / "config.yaml", types);
+    FAIL() << "a head of another type";
   } catch (const ConfigError& error) {
     EXPECT_THAT(
         error.lines(),
@@ -1192,12 +1192,12 @@ TEST_F(Loader, WantsOneDocumentThatIsAMapping) {
 
 TEST_F(Loader, SaysWhyAFileCannotBeRead) {
   try {
-    load_config(folder_ / "absent.yaml", head_kinds());
+    load_config(folder_ / "absent.yaml", head_types());
     FAIL() << "loaded a file that is not there";
   } catch (const ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("absent.yaml: cannot be read: No such file or directory"));
   }
-  EXPECT_THROW(load_config(folder_, head_kinds()), ConfigError);
+  EXPECT_THROW(load_config(folder_, head_types()), ConfigError);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 #include "protocol/pose/trajectory.hpp"
 #include "server/config/loader.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/gemini/type.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 namespace {
@@ -29,7 +29,7 @@ TEST(ShippedConfigs, LoadWithoutWarnings) {
   for (const auto& entry : std::filesystem::directory_iterator(configs)) {
     if (entry.path().extension() == ".yaml") {
       ++files;
-      EXPECT_THAT(load_config(entry.path(), head_kinds()).warning_lines(), IsEmpty()) << entry.path();
+      EXPECT_THAT(load_config(entry.path(), head_types()).warning_lines(), IsEmpty()) << entry.path();
     }
   }
   EXPECT_GE(files, 4);
@@ -57,10 +57,10 @@ void find_silent(const std::vector<KeyReference>& keys, const std::string& path,
 }
 
 TEST(ShippedConfigs, EveryKeyOfTheSchemaHasItsSentence) {
-  for (const HeadKind* kind : head_kinds()) {
+  for (const HeadType* type : head_types()) {
     std::vector<std::string> silent;
-    find_silent(describe_config(*kind), "", silent);
-    EXPECT_THAT(silent, IsEmpty()) << kind->type();
+    find_silent(describe_config(*type), "", silent);
+    EXPECT_THAT(silent, IsEmpty()) << type->name();
   }
 }
 
@@ -74,13 +74,13 @@ TEST(ShippedConfigs, TrajectoriesLoad) {
 }
 
 DaemonConfig shipped(const char* file) {
-  return load_config(configs / file, head_kinds()).config;
+  return load_config(configs / file, head_types()).config;
 }
 
 void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(config.heads.size(), 1U);
   const HeadConfig& head = config.heads[0];
-  ASSERT_EQ(head.kind, &gemini_kind());
+  ASSERT_EQ(head.type, &gemini_type());
   EXPECT_EQ(gemini_config(head).device.sonar_id, 513);
   EXPECT_EQ(gemini_config(head).command_port, 52901);
   EXPECT_EQ(gemini_config(head).device.client_port, 52900);

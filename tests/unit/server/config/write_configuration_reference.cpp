@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/config/loader.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 namespace {
@@ -70,11 +70,11 @@ std::string value_schema(const KeyReference& key, const std::string& margin) {
                      : fmt::format("{{{}{}}}", key.schema, rest);
 }
 
-/// Documents differ only in `heads`, their last key, because each head is of one of the kinds.
-std::string schema_of(const std::vector<Keys>& of_kinds) {
-  Keys document = of_kinds.front();
+/// Documents differ only in `heads`, their last key, because each head is of one of the types.
+std::string schema_of(const std::vector<Keys>& of_types) {
+  Keys document = of_types.front();
   std::string heads;
-  for (const Keys& keys : of_kinds) {
+  for (const Keys& keys : of_types) {
     heads += (heads.empty() ? "" : ", ") + mapping_schema(keys.back().keys, "", "  ");
   }
   KeyReference& head = document.back();
@@ -92,12 +92,12 @@ std::string schema_of(const std::vector<Keys>& of_kinds) {
 
 struct Row {
   KeyReference key;      ///< its name is the path below the mapping of the table: "tcp[].bind"
-  std::string defaults;  ///< default, and kinds with another default
+  std::string defaults;  ///< default, and types with another default
 };
 
 struct Table {
   std::vector<std::string> paths;  ///< paths of the mappings with these keys: "heads[].mount"
-  std::vector<std::string> kinds;  ///< kinds of heads with these mappings
+  std::vector<std::string> types;  ///< types of heads with these mappings
   std::string introduction;
   std::vector<Row> rows;
 };
@@ -147,21 +147,21 @@ void add_rows(const Keys& keys, const std::string& path, std::vector<Row>& rows)
   }
 }
 
-void add_defaults(Table& table, const std::vector<Row>& rows, const std::string& kind) {
+void add_defaults(Table& table, const std::vector<Row>& rows, const std::string& type) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::string other = fmt::format("; {}: {}", kind, rows[i].defaults);
+    const std::string other = fmt::format("; {}: {}", type, rows[i].defaults);
     if (rows[i].defaults != default_of(table.rows[i].key) && !table.rows[i].defaults.ends_with(other)) {
       table.rows[i].defaults += other;
     }
   }
 }
 
-void add_inner_tables(const Keys& keys, const std::string& path, const std::string& kind,
+void add_inner_tables(const Keys& keys, const std::string& path, const std::string& type,
                       std::vector<Table>& tables);
 
 /// Adds a mapping and all mappings inside it. If a table has the same keys, the mapping joins this table.
 void add_tables(const Keys& keys, const std::string& path, const std::string& introduction,
-                const std::string& kind, std::vector<Table>& tables) {
+                const std::string& type, std::vector<Table>& tables) {
   std::vector<Row> rows;
   add_rows(keys, "", rows);
   auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& other) {
@@ -172,18 +172,18 @@ void add_tables(const Keys& keys, const std::string& path, const std::string& in
     table = tables.insert(table, {{}, {}, introduction, rows});
   }
   add_once(table->paths, path);
-  add_once(table->kinds, kind);
-  add_defaults(*table, rows, kind);
-  add_inner_tables(keys, path, kind, tables);
+  add_once(table->types, type);
+  add_defaults(*table, rows, type);
+  add_inner_tables(keys, path, type, tables);
 }
 
-void add_inner_tables(const Keys& keys, const std::string& path, const std::string& kind,
+void add_inner_tables(const Keys& keys, const std::string& path, const std::string& type,
                       std::vector<Table>& tables) {
   for (const KeyReference& key : keys) {
     if (is_small(key)) {
-      add_inner_tables(key.keys, path_of(path, key), kind, tables);
+      add_inner_tables(key.keys, path_of(path, key), type, tables);
     } else if (!key.keys.empty()) {
-      add_tables(key.keys, path_of(path, key), key.introduction, kind, tables);
+      add_tables(key.keys, path_of(path, key), key.introduction, type, tables);
     }
   }
 }
@@ -205,7 +205,7 @@ std::vector<Row> common_rows(std::vector<Table>& tables, const std::vector<std::
       }
       row.defaults += other->defaults == first
                           ? ""
-                          : fmt::format("; {}: {}", tables[place].kinds.front(), other->defaults);
+                          : fmt::format("; {}: {}", tables[place].types.front(), other->defaults);
       return true;
     });
     if (everywhere) {
@@ -223,7 +223,7 @@ void share_rows(std::vector<Table>& tables, const std::vector<std::size_t>& plac
     return;
   }
   for (const std::size_t place : places) {
-    shared.kinds.push_back(tables[place].kinds.front());
+    shared.types.push_back(tables[place].types.front());
     for (const Row& row : shared.rows) {
       tables[place].rows.erase(find_row(tables[place], row));
     }
@@ -231,11 +231,11 @@ void share_rows(std::vector<Table>& tables, const std::vector<std::size_t>& plac
   tables.insert(tables.begin() + static_cast<std::ptrdiff_t>(places.front()), shared);
 }
 
-/// The tables of one kind for mappings with this path.
+/// The tables of one type for mappings with this path.
 std::vector<std::size_t> places_of(const std::vector<Table>& tables, const std::string& path) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    if (tables[i].paths.front() == path && tables[i].kinds.size() == 1) {
+    if (tables[i].paths.front() == path && tables[i].types.size() == 1) {
       places.push_back(i);
     }
   }
@@ -253,12 +253,12 @@ void share_rows_of(std::vector<Table>& tables, const std::string& path) {
   }
 }
 
-/// Tables of all kinds come first, then those of the first kind.
-std::size_t order_of(const Table& table, const std::vector<std::string>& kinds) {
-  return table.kinds.size() == kinds.size()
+/// Tables of all types come first, then those of the first type.
+std::size_t order_of(const Table& table, const std::vector<std::string>& types) {
+  return table.types.size() == types.size()
              ? 0
-             : 1 + static_cast<std::size_t>(std::find(kinds.begin(), kinds.end(), table.kinds.front()) -
-                                            kinds.begin());
+             : 1 + static_cast<std::size_t>(std::find(types.begin(), types.end(), table.types.front()) -
+                                            types.begin());
 }
 
 std::string cell(const std::string& text) {
@@ -284,10 +284,10 @@ std::string folded(const std::string& paragraph) {
   return text;
 }
 
-std::string text_of(const Table& table, std::size_t kind_count) {
+std::string text_of(const Table& table, std::size_t type_count) {
   std::string text = table.paths.front().empty() ? "\n### Top level"
                                                  : fmt::format("\n### `{}`", fmt::join(table.paths, "`, `"));
-  text += table.kinds.size() < kind_count ? fmt::format(" ({})\n", fmt::join(table.kinds, ", ")) : "\n";
+  text += table.types.size() < type_count ? fmt::format(" ({})\n", fmt::join(table.types, ", ")) : "\n";
   text += table.introduction.empty() ? "" : folded(table.introduction) + "\n\n";
   text += "| key | type | default | meaning |\n|---|---|---|---|\n";
   for (const auto& [key, defaults] : table.rows) {
@@ -304,19 +304,19 @@ std::string read(const std::filesystem::path& file) {
 }
 
 int write_or_check(const std::string& program, bool check) {
-  std::vector<Keys> of_kinds;
-  std::vector<std::string> kinds;
+  std::vector<Keys> of_types;
+  std::vector<std::string> types;
   std::vector<Table> tables;
-  for (const HeadKind* kind : head_kinds()) {
-    kinds.emplace_back(kind->type());
-    of_kinds.push_back(describe_config(*kind));
-    add_tables(of_kinds.back(), "", "", kinds.back(), tables);
+  for (const HeadType* type : head_types()) {
+    types.emplace_back(type->name());
+    of_types.push_back(describe_config(*type));
+    add_tables(of_types.back(), "", "", types.back(), tables);
   }
   for (const char* path : {"heads[]", "heads[].acoustics"}) {
     share_rows_of(tables, path);
   }
   std::stable_sort(tables.begin(), tables.end(), [&](const Table& one, const Table& other) {
-    return order_of(one, kinds) < order_of(other, kinds);
+    return order_of(one, types) < order_of(other, types);
   });
   const std::filesystem::path source = SONARD_SOURCE_DIR;
   const std::filesystem::path page = source / "docs/configuration.md";
@@ -328,11 +328,11 @@ int write_or_check(const std::string& program, bool check) {
   }
   text.resize(kept + beginning.size());
   for (const Table& table : tables) {
-    text += text_of(table, of_kinds.size());
+    text += text_of(table, of_types.size());
   }
   int unlike = 0;
   for (const auto& [file, wanted] :
-       {std::pair(source / "configs/schema/sonard.schema.json", schema_of(of_kinds)),
+       {std::pair(source / "configs/schema/sonard.schema.json", schema_of(of_types)),
         std::pair(page, text)}) {
     if (!check) {
       std::ofstream(file, std::ios::binary) << wanted;

@@ -21,9 +21,9 @@
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
 #include "server/devices/playback.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "tests/support/fake_renderer.hpp"
@@ -80,7 +80,7 @@ struct DaemonTest : testing::Test {
     device->bind_address = address;
     device->status = {StatusDestination::Mode::unicast, {client_address}};
     device->allow = {{client_address, 32}};
-    HeadConfig result = gemini_kind().make_default();
+    HeadConfig result = gemini_type().make_default();
     result.name = name;
     result.device = std::move(device);
     return result;
@@ -104,14 +104,14 @@ struct DaemonTest : testing::Test {
   int serve_until(const std::function<bool(UdpEndpoint&, const Datagram&)>& react, bool send_signal = true) {
     boost::asio::io_context io;
     UdpEndpoint client(io, {client_address, 52900});
-    std::thread client([&] {
+    std::thread playing([&] {
       play_client(client, io, [&](const Datagram& datagram) { return react(client, datagram); });
       if (send_signal) {
         kill(getpid(), SIGTERM);
       }
     });
     const int code = serve(config, {}, test::fake_renderer_factory(renderer));
-    client.join();
+    playing.join();
     return code;
   }
 };
@@ -133,9 +133,9 @@ TEST_F(DaemonTest, RendersAPingOfEachHeadThatNobodyGetsBeforeItIsReady) {
   config.heads.push_back(mounted);
   config.poses.T_world_vehicle_initial = render::Pose{{10, 20, 30}, {1, 0, 0, 0}};
   std::vector<std::pair<int, render::PingRequest>> warmed;
-  renderer->warming_up = [&](const render::PingRequest& request, int stream) {
+  renderer->warming_up = [&](const render::PingRequest& request, int head) {
     EXPECT_EQ(renderer->attempts, 0);
-    warmed.emplace_back(stream, request);
+    warmed.emplace_back(head, request);
   };
   serve_until([](UdpEndpoint&, const Datagram& datagram) { return is(datagram, 0x40); });
   ASSERT_EQ(warmed.size(), 2U);
@@ -169,7 +169,7 @@ TEST_F(DaemonTest, ServesSeveralHeads) {
 TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   auto serial = std::make_shared<MicronConfig>();
   serial->serial.tcp = {{{head_address, 4001}, {{0x7F000000, 8}}}};
-  HeadConfig scanning = micron_kind().make_default();
+  HeadConfig scanning = micron_type().make_default();
   scanning.name = "micron";
   scanning.device = std::move(serial);
   config.heads.push_back(scanning);
@@ -183,17 +183,17 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   std::thread scan([&] {
     ASSERT_TRUE(test::wait_for([&] { return fan_is_busy.load(); }));
     const SteadyClock clock;
-    test::Client client = test::Client::tcp({head_address, 4001});
+    test::Client connection = test::Client::tcp({head_address, 4001});
     micron::Client client({}, clock.now());
     client.start(clock.now(), {}, 20);
     std::size_t consumed = 0;
     EXPECT_TRUE(test::wait_for([&] {
-      const test::Bytes& heard = client.heard();
+      const test::Bytes& heard = connection.heard();
       client.on_bytes(clock.now(), std::span(heard).subspan(consumed));
       consumed = heard.size();
       client.advance(clock.now());
       for (const auto& frame : client.take_outgoing()) {
-        client.write(frame);
+        connection.write(frame);
       }
       return client.finished();
     }));

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/gemini/type.hpp"
+#include "server/devices/micron/type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -33,7 +33,7 @@ class ResolveMounts : public testing::Test {
   }
 
   void add_gemini(const std::string& mount) {
-    HeadConfig head = gemini_kind().make_default();
+    HeadConfig head = gemini_type().make_default();
     head.mount_from_world = mount;
     config_.heads.push_back(head);
   }
@@ -55,7 +55,7 @@ TEST_F(ResolveMounts, ChangesNothingThatIsNotAskedOfIt) {
 
 TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
   add_gemini("gemini");
-  HeadConfig micron = micron_kind().make_default();
+  HeadConfig micron = micron_type().make_default();
   micron.mount_from_world = "rov::bow::micron";
   config_.heads.push_back(micron);
   config_.poses.gazebo.emplace();

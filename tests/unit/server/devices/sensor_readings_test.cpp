@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {

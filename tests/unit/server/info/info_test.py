@@ -63,7 +63,7 @@ class Info(unittest.TestCase):
                 self.assertEqual(seen["bytes"], os.path.getsize(path))
                 self.assertEqual(seen["other_records"], {"statuses": 3})
                 bow, stern = seen["heads"]
-                self.assertEqual((bow["device"], bow["scanning"], bow["id"], bow["pings"]),
+                self.assertEqual((bow["type"], bow["scanning"], bow["id"], bow["pings"]),
                                  ("gemini_720i", False, 600, 10))
                 self.assertEqual((stern["id"], stern["pings"]), (601, 4))
                 self.assertAlmostEqual(bow["median_interval_s"], 0.5, places=5)

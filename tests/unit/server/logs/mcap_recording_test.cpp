@@ -6,7 +6,7 @@
 #include "protocol/mcap/writer.hpp"
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/recorded_form.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/logs/log_summary.hpp"
 #include "server/logs/mcap_recording.hpp"
 #include "tests/unit/server/logs/temporary_log.hpp"
@@ -209,14 +209,14 @@ TEST(McapRecording, SaysWhichDevicesItsHeadsWere) {
   const McapRecording recording(file);
   std::vector<std::pair<std::string, std::string>> devices;
   for (const LoggedHead& head : recording.heads()) {
-    devices.emplace_back(head.name, head.device);
+    devices.emplace_back(head.name, head.type);
   }
   const std::vector<std::pair<std::string, std::string>> expected{
       {"bow", "gemini_720i"}, {"port", "blueview_p900"}, {"stern", ""}, {"mast", "micron"}};
   EXPECT_EQ(devices, expected);
   devices.clear();
   for (const HeadSummary& head : summarise(file, &ping_in).heads) {
-    devices.emplace_back(head.name, head.device);
+    devices.emplace_back(head.name, head.type);
   }
   EXPECT_EQ(devices, expected);
 }

@@ -6,7 +6,7 @@
 #include "protocol/gemini/codec.hpp"
 #include "protocol/micron/codec.hpp"
 #include "protocol/pcapng/blocks.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/info/info_text.hpp"
 #include "server/logs/log_summary.hpp"
 #include "tests/unit/server/logs/temporary_log.hpp"
@@ -70,30 +70,30 @@ TEST(InfoText, HeadsHaveTheTitleOfTheirKind) {
   const Said bow = said_of(LogKind::mcap, "bow", "gemini_720i", 513, false);
   EXPECT_THAT(bow.text, HasSubstr("\nhead     Gemini 720i 513 'bow': 1 pings\n"));
   EXPECT_THAT(bow.text, HasSubstr(" 1x 400 lines of 256 beams, range 10.00 m"));
-  EXPECT_THAT(bow.json, HasSubstr(R"([{"device":"gemini_720i","scanning":false,"name":"bow","id":513,)"));
+  EXPECT_THAT(bow.json, HasSubstr(R"([{"type":"gemini_720i","scanning":false,"name":"bow","id":513,)"));
   const Said stern = said_of(LogKind::mcap, "stern", "micron", 2, true);
   EXPECT_THAT(stern.text, HasSubstr("\nhead     Micron 2 'stern': 1 lines\n"));
   EXPECT_THAT(stern.text, HasSubstr(" 1x 400 bins, range 10.00 m"));
-  EXPECT_THAT(stern.json, HasSubstr(R"([{"device":"micron","scanning":true,"name":"stern","id":2,)"));
+  EXPECT_THAT(stern.json, HasSubstr(R"([{"type":"micron","scanning":true,"name":"stern","id":2,)"));
 }
 
 TEST(InfoText, WhatNobodyKnowsIsASonar) {
   const Said fan = said_of(LogKind::mcap, "bow", "", 600, false);
   EXPECT_THAT(fan.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
-  EXPECT_THAT(fan.json, HasSubstr(R"([{"device":null,"scanning":false,)"));
+  EXPECT_THAT(fan.json, HasSubstr(R"([{"type":null,"scanning":false,)"));
   const Said line = said_of(LogKind::mcap, "", "", 2, true);
   EXPECT_THAT(line.text, HasSubstr("\nhead     scanning sonar 2: 1 lines\n"));
-  EXPECT_THAT(line.json, HasSubstr(R"([{"device":null,"scanning":true,)"));
+  EXPECT_THAT(line.json, HasSubstr(R"([{"type":null,"scanning":true,)"));
   const Said other = said_of(LogKind::mcap, "bow", "other_900", 600, false);
   EXPECT_THAT(other.text, HasSubstr("\nhead     multibeam sonar 600 'bow': 1 pings\n"));
-  EXPECT_THAT(other.json, HasSubstr(R"([{"device":"other_900","scanning":false,)")) << "the log knows";
+  EXPECT_THAT(other.json, HasSubstr(R"([{"type":"other_900","scanning":false,)")) << "the log knows";
 }
 
 TEST(InfoText, TheFormatOfALogSaysWhoseItIs) {
   for (const LogKind kind : {LogKind::glf, LogKind::dat}) {
     const Said said = said_of(kind, "", "", 600, false);
     EXPECT_THAT(said.text, HasSubstr("\nhead     Gemini 720i 600: 1 pings\n"));
-    EXPECT_THAT(said.json, HasSubstr(R"([{"device":"gemini_720i","scanning":false,"name":"",)"));
+    EXPECT_THAT(said.json, HasSubstr(R"([{"type":"gemini_720i","scanning":false,"name":"",)"));
   }
 }
 
@@ -125,7 +125,7 @@ TEST(Capture, PingsAreCountedByTheirHeads) {
   const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
   ASSERT_EQ(summary.heads.size(), 1U);
   EXPECT_EQ(summary.heads[0].id, 600);
-  EXPECT_EQ(summary.heads[0].device, "gemini_720i");
+  EXPECT_EQ(summary.heads[0].type, "gemini_720i");
   EXPECT_FALSE(summary.heads[0].scanning);
   EXPECT_EQ(summary.heads[0].pings(), 3U);
   const RecordedSettings& settings = summary.heads[0].settings.at(0).settings;
@@ -162,11 +162,11 @@ TEST(Capture, HasThePingsThatAKindOfDeviceFinds) {
   const test::TemporaryLog temporary(".pcapng", capture_of({{7}, {7, 0}, {8}, {1, 2, 3}, {7}, {}}));
   const LogSummary summary = summarise(LogFile(temporary.path()), find);
   ASSERT_EQ(summary.heads.size(), 3U);
-  EXPECT_EQ(summary.heads[0].device, "fan");
+  EXPECT_EQ(summary.heads[0].type, "fan");
   EXPECT_EQ(summary.heads[0].id, 7);
   EXPECT_FALSE(summary.heads[0].scanning);
   EXPECT_THAT(summary.heads[0].times_ns, ElementsAre(1'000 * ms, 1'400 * ms));
-  EXPECT_EQ(summary.heads[1].device, "line");
+  EXPECT_EQ(summary.heads[1].type, "line");
   EXPECT_EQ(summary.heads[1].id, 7);
   EXPECT_TRUE(summary.heads[1].scanning);
   EXPECT_EQ(summary.heads[1].pings(), 1U);
@@ -185,9 +185,9 @@ TEST(Capture, KeepsDevicesOfOneIdApart) {
   const test::TemporaryLog temporary(".pcapng", capture_of({{1}, {2}, {1}}));
   const LogSummary summary = summarise(LogFile(temporary.path()), find);
   ASSERT_EQ(summary.heads.size(), 2U);
-  EXPECT_EQ(summary.heads[0].device, "one");
+  EXPECT_EQ(summary.heads[0].type, "one");
   EXPECT_EQ(summary.heads[0].pings(), 2U);
-  EXPECT_EQ(summary.heads[1].device, "other");
+  EXPECT_EQ(summary.heads[1].type, "other");
 }
 
 TEST(Capture, OfALineOfAMicronOnlyThePacketIsCounted) {

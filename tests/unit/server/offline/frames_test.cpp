@@ -13,9 +13,9 @@
 
 #include "protocol/npy/npy_file.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/sweep_frames.hpp"
 
@@ -39,7 +39,7 @@ VehicleTrajectory ahead(int seconds, double speed_mps = 1.0) {
 /// A Gemini whose device `change` sets up.
 template <class Change>
 HeadConfig gemini(const Change& change) {
-  HeadConfig head = gemini_kind().make_default();
+  HeadConfig head = gemini_type().make_default();
   auto config = std::make_shared<GeminiConfig>();
   change(config->device);
   head.device = std::move(config);
@@ -48,16 +48,16 @@ HeadConfig gemini(const Change& change) {
 
 FanFrames fans_of(const HeadConfig& head, const HeadPlace& place, const VehicleTrajectory& trajectory,
                   const OfflineOptions& options) {
-  return {head, place, kind_of(head).survey(head, options.survey), trajectory, options, nullptr};
+  return {head, place, type_of(head).survey(head, options.survey), trajectory, options, nullptr};
 }
 
 SweepFrames sweeps_of(const HeadConfig& head, const VehicleTrajectory& trajectory,
                       const OfflineOptions& options) {
-  return {head, 0, kind_of(head).survey(head, options.survey), trajectory, options, nullptr};
+  return {head, 0, type_of(head).survey(head, options.survey), trajectory, options, nullptr};
 }
 
 TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
-  HeadConfig head = gemini_kind().make_default();
+  HeadConfig head = gemini_type().make_default();
   head.T_vehicle_sonar.position_m = {0.5, 0, 0};
   head.seed = 9;
   const VehicleTrajectory trajectory = ahead(2);
@@ -121,7 +121,7 @@ TEST(FanFrames, RecordsAreThoseOfTheLog) {
 }
 
 TEST(FanFrames, StillsAreOneForEachPoseUnlessARateIsGiven) {
-  const HeadConfig head = gemini_kind().make_default();
+  const HeadConfig head = gemini_type().make_default();
   VehicleTrajectory trajectory = ahead(2);
   trajectory.rest_in_all_pings();
   OfflineOptions options;
@@ -138,7 +138,7 @@ TEST(FanFrames, StillsAreOneForEachPoseUnlessARateIsGiven) {
 
 // 200 lines, 1.8 degrees apart, from each of the two poses.
 TEST(SweepFrames, StillsAreAWholeTurnFromEachPose) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   VehicleTrajectory trajectory = ahead(2);
   trajectory.rest_in_all_pings();
   OfflineOptions options;
@@ -155,7 +155,7 @@ TEST(SweepFrames, StillsAreAWholeTurnFromEachPose) {
 }
 
 TEST(SweepFrames, LinesOfALogHaveTheirBearingsTimesAndPoses) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   const VehicleTrajectory trajectory = ahead(10);
   OfflineOptions options;
   options.rate_hz = 50.0;
@@ -177,7 +177,7 @@ TEST(SweepFrames, LinesOfALogHaveTheirBearingsTimesAndPoses) {
 }
 
 TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   const VehicleTrajectory trajectory = ahead(10);
   OfflineOptions options;
   options.rate_hz = 50.0;  // 501 lines
@@ -195,7 +195,7 @@ TEST(SweepFrames, ATurnEndsBeforeItsFirstBearingComesAgain) {
 }
 
 TEST(SweepFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   const VehicleTrajectory trajectory = ahead(3);
   OfflineOptions options;
   options.rate_hz = 50.0;                     // 151 lines
@@ -215,13 +215,13 @@ TEST(SweepFrames, ASweepEndsWithTheLineAtTheOtherLimit) {
 }
 
 TEST(SweepFrames, WithoutTimeForASweepThereIsNone) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   const VehicleTrajectory trajectory = ahead(1);
   EXPECT_EQ(sweeps_of(head, trajectory, {}).count(), 0);
 }
 
 TEST(SweepFrames, GoIntoNoLogOfFans) {
-  const HeadConfig head = micron_kind().make_default();
+  const HeadConfig head = micron_type().make_default();
   const VehicleTrajectory trajectory = ahead(10);
   const SweepFrames frames = sweeps_of(head, trajectory, {});
   EXPECT_FALSE(frames.makes_glf());
@@ -273,7 +273,7 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
 }
 
 TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
-  const HeadConfig head = gemini_kind().make_default();
+  const HeadConfig head = gemini_type().make_default();
   const VehicleTrajectory trajectory = ahead(1);
   OfflineOptions options;
   options.radius_px = 64;
@@ -291,7 +291,7 @@ TEST(FanFrames, OfSixteenBitsTheLogHasTheHighOnes) {
 }
 
 TEST(SweepFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
-  HeadConfig head = micron_kind().make_default();
+  HeadConfig head = micron_type().make_default();
   auto config = std::make_shared<MicronConfig>();
   config->device.node = 9;
   head.device = config;
@@ -359,7 +359,7 @@ void take_noise_off(HeadConfig& head) {
 }
 
 TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {
-  HeadConfig head = gemini_kind().make_default();
+  HeadConfig head = gemini_type().make_default();
   take_noise_off(head);
   const VehicleTrajectory trajectory = ahead(1, 0.0);
   FanFrames frames = fans_of(head, {}, trajectory, quiet_options());
@@ -370,7 +370,7 @@ TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {
 TEST(SweepFrames, HavePortOnTheLeftOfTheirPicturesHoweverTheHeadIsMounted) {
   for (const bool inverted : {false, true}) {
     SCOPED_TRACE(inverted ? "boot down" : "boot up");
-    HeadConfig head = micron_kind().make_default();
+    HeadConfig head = micron_type().make_default();
     take_noise_off(head);
     auto config = std::make_shared<MicronConfig>();
     config->device.mounted_inverted = inverted;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings of each kind of device for the options of a survey, and the options that it refuses.
+// The pings of each type of device for the options of a survey, and the options that it refuses.
 #include <chrono>
 #include <memory>
 #include <numbers>
@@ -11,18 +11,18 @@
 #include <CLI/Error.hpp>
 
 #include "protocol/gemini/bearings.hpp"
-#include "server/devices/gemini/kind.hpp"
-#include "server/devices/kinds/kinds.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
+#include "server/devices/types/types.hpp"
 
 namespace sonard::server {
 namespace {
 
 using testing::ElementsAre;
 
-std::unique_ptr<Survey> survey(const DeviceKind& kind, const SurveyOptions& options = {}) {
-  return kind.survey(kind.make_default(), options);
+std::unique_ptr<Survey> survey(const DeviceType& type, const SurveyOptions& options = {}) {
+  return type.survey(type.make_default(), options);
 }
 
 /// Options with one option set.
@@ -33,10 +33,10 @@ SurveyOptions with(Value SurveyOptions::*option, const std::type_identity_t<Valu
   return options;
 }
 
-/// The error message for the options, as "--option: problem"; empty if the kind accepts them.
-std::string complaint(const DeviceKind& kind, const SurveyOptions& options) {
+/// The error message for the options, as "--option: problem"; empty if the type accepts them.
+std::string complaint(const DeviceType& type, const SurveyOptions& options) {
   try {
-    survey(kind, options);
+    survey(type, options);
     return "";
   } catch (const CLI::ValidationError& error) {
     return error.what();
@@ -44,9 +44,9 @@ std::string complaint(const DeviceKind& kind, const SurveyOptions& options) {
 }
 
 TEST(Survey, EveryKindMakesPingsWithWhatItsClientsHaveAtFirst) {
-  for (const DeviceKind* kind : device_kinds()) {
-    SCOPED_TRACE(kind->type());
-    const std::unique_ptr<Survey> survey = server::survey(*kind);
+  for (const DeviceType* type : device_types()) {
+    SCOPED_TRACE(type->name());
+    const std::unique_ptr<Survey> survey = server::survey(*type);
     EXPECT_GT(survey->natural_period(), std::chrono::nanoseconds{0});
     const std::vector<int> frames = survey->frames(500);
     ASSERT_GE(frames.size(), 2U);
@@ -60,14 +60,14 @@ TEST(Survey, EveryKindMakesPingsWithWhatItsClientsHaveAtFirst) {
     EXPECT_TRUE(job.transmit);
     EXPECT_NEAR(survey->client_bin_m(), job.bin_m(), 1e-3 * job.bin_m())
         << "of water as clients take it to be";
-    EXPECT_EQ(survey->bearings_rad().empty(), kind->scanning());
+    EXPECT_EQ(survey->bearings_rad().empty(), type->scanning());
   }
 }
 
 // ---- Gemini
 
 TEST(GeminiSurvey, DoesWhatAClientWouldAskFor) {
-  const std::unique_ptr<Survey> plain = survey(gemini_kind());
+  const std::unique_ptr<Survey> plain = survey(gemini_type());
   EXPECT_EQ(plain->job(0).bins(), 2411);  // 20 m
   EXPECT_FALSE(plain->job(0).sixteen_bit);
   EXPECT_EQ(plain->bearings_rad(), gemini::bearings_rad());
@@ -79,7 +79,7 @@ TEST(GeminiSurvey, DoesWhatAClientWouldAskFor) {
   options.sound_speed_mps = 1480.0;
   options.compression_log2 = 3;
   options.bits = 16;
-  const std::unique_ptr<Survey> asked = survey(gemini_kind(), options);
+  const std::unique_ptr<Survey> asked = survey(gemini_type(), options);
   const PingJob job = asked->job(5);
   EXPECT_EQ(job.compression_log2, 3);
   EXPECT_NEAR(job.range_m(), 4.0, 0.02);
@@ -92,7 +92,7 @@ TEST(GeminiSurvey, MakesRecordsOfItsPings) {
   SurveyOptions options;
   options.range_m = 1.0;
   options.gain_percent = 30.0;
-  const std::unique_ptr<Survey> survey = server::survey(gemini_kind(), options);
+  const std::unique_ptr<Survey> survey = server::survey(gemini_type(), options);
   const std::vector<std::uint8_t> samples(121U * 256U, 9);
   const PingRecord record = survey->record(6, samples);
   EXPECT_EQ(record.number, 6U);
@@ -105,12 +105,12 @@ TEST(GeminiSurvey, MakesRecordsOfItsPings) {
 }
 
 TEST(Survey, EveryKindMakesRecordsOfItsPings) {
-  for (const DeviceKind* kind : device_kinds()) {
-    SCOPED_TRACE(kind->type());
-    const std::unique_ptr<Survey> survey = server::survey(*kind);
+  for (const DeviceType* type : device_types()) {
+    SCOPED_TRACE(type->name());
+    const std::unique_ptr<Survey> survey = server::survey(*type);
     survey->frames(10);
     const PingJob job = survey->job(3);
-    const std::size_t beams = kind->scanning() ? 1 : survey->bearings_rad().size();
+    const std::size_t beams = type->scanning() ? 1 : survey->bearings_rad().size();
     const std::vector<std::uint8_t> samples(static_cast<std::size_t>(job.bins()) * beams, 7);
     const PingRecord record = survey->record(3, samples);
     EXPECT_EQ(record.number, 3U);
@@ -118,26 +118,26 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
     EXPECT_EQ(record.settings.bins, job.bins());
     EXPECT_EQ(record.settings.beams, static_cast<int>(beams));
     EXPECT_NEAR(record.settings.bin_m, job.bin_m(), 1e-3 * job.bin_m());
-    if (kind->type() != "gemini_720i") {  // a Gemini's pings lack the frequency
+    if (type->name() != "gemini_720i") {  // a Gemini's pings lack the frequency
       EXPECT_GT(record.settings.frequency_hz, 5e5);
     }
     EXPECT_EQ(record.bearings_rad,
-              kind->scanning() ? std::vector<double>{job.bearing_rad} : survey->bearings_rad());
+              type->scanning() ? std::vector<double>{job.bearing_rad} : survey->bearings_rad());
   }
 }
 
 // docs/protocols/oculus.md 2: an M750d has two frequencies, and the fan of the higher one is narrower.
 TEST(Survey, AnOculusHasTwoFrequenciesAndOtherHeadsRefuseTheOption) {
-  for (const DeviceKind* kind : device_kinds()) {
-    SCOPED_TRACE(kind->type());
-    if (kind->type() != "oculus") {
-      EXPECT_THAT(complaint(*kind, with(&SurveyOptions::frequency, "high")),
+  for (const DeviceType* type : device_types()) {
+    SCOPED_TRACE(type->name());
+    if (type->name() != "oculus") {
+      EXPECT_THAT(complaint(*type, with(&SurveyOptions::frequency, "high")),
                   testing::StartsWith("--frequency: not an option for "));
       continue;
     }
-    const auto low = survey(*kind, with(&SurveyOptions::frequency, "low"));
-    const auto high = survey(*kind, with(&SurveyOptions::frequency, "high"));
-    EXPECT_EQ(survey(*kind)->record(0, {}).settings.frequency_hz, low->record(0, {}).settings.frequency_hz);
+    const auto low = survey(*type, with(&SurveyOptions::frequency, "low"));
+    const auto high = survey(*type, with(&SurveyOptions::frequency, "high"));
+    EXPECT_EQ(survey(*type)->record(0, {}).settings.frequency_hz, low->record(0, {}).settings.frequency_hz);
     EXPECT_GT(high->record(0, {}).settings.frequency_hz, 1.5 * low->record(0, {}).settings.frequency_hz);
     EXPECT_LT(high->bearings_rad().back(), 0.6 * low->bearings_rad().back());
     EXPECT_EQ(high->job(0).mode, 1);
@@ -145,24 +145,24 @@ TEST(Survey, AnOculusHasTwoFrequenciesAndOtherHeadsRefuseTheOption) {
 }
 
 TEST(GeminiSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
-  const DeviceKind& kind = gemini_kind();
-  EXPECT_EQ(complaint(kind, {}), "");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 400)), "--bins: not an option for Gemini");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.8)), "--step: not an option for Gemini");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {0.0, 90.0})),
+  const DeviceType& type = gemini_type();
+  EXPECT_EQ(complaint(type, {}), "");
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::bins, 400)), "--bins: not an option for Gemini");
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::step_deg, 1.8)), "--step: not an option for Gemini");
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::sector_deg, {0.0, 90.0})),
             "--sector: not an option for Gemini");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 190.0)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::range_m, 190.0)),
             "--range: 190 is out of range for Gemini (expected 0.3 to 150)");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 0.2)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::range_m, 0.2)),
             "--range: 0.2 is out of range for Gemini (expected 0.3 to 150)");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1600.0)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::sound_speed_mps, 1600.0)),
             "--sound-speed: 1600 is out of range for Gemini (expected 1400 to 1588)");
 }
 
 // ---- Micron
 
 TEST(MicronSurvey, DoesWhatAClientWouldAskFor) {
-  const std::unique_ptr<Survey> plain = survey(micron_kind());
+  const std::unique_ptr<Survey> plain = survey(micron_type());
   EXPECT_THAT(plain->frames(401), ElementsAre(0, 200, 400));
   EXPECT_EQ(plain->job(0).bins(), 400);
   EXPECT_NEAR(plain->job(0).range_m(), 10.0, 0.1);
@@ -177,7 +177,7 @@ TEST(MicronSurvey, DoesWhatAClientWouldAskFor) {
   options.bins = 200;
   options.step_deg = 0.9;
   options.sector_deg = {90.0, -90.0};
-  const std::unique_ptr<Survey> asked = survey(micron_kind(), options);
+  const std::unique_ptr<Survey> asked = survey(micron_type(), options);
   EXPECT_THAT(asked->frames(450), ElementsAre(0, 201, 401)) << "astern, 200 steps";
   EXPECT_EQ(asked->job(0).bins(), 200);
   EXPECT_NEAR(asked->job(0).gain_percent, 25.0, 0.5);
@@ -189,12 +189,12 @@ TEST(MicronSurvey, DoesWhatAClientWouldAskFor) {
 }
 
 TEST(MicronSurvey, AHeadThatIsMountedBootDownLooksToTheOtherSide) {
-  HeadConfig head = micron_kind().make_default();
+  HeadConfig head = micron_type().make_default();
   auto config = std::make_shared<MicronConfig>(micron_config(head));
   config->device.mounted_inverted = true;
   head.device = config;
   const std::unique_ptr<Survey> survey =
-      micron_kind().survey(head, with(&SurveyOptions::sector_deg, {-45.0, 90.0}));
+      micron_type().survey(head, with(&SurveyOptions::sector_deg, {-45.0, 90.0}));
   const std::vector<int> frames = survey->frames(100);
   ASSERT_GE(frames.size(), 2U);
   constexpr double eighth = std::numbers::pi / 4;
@@ -205,24 +205,24 @@ TEST(MicronSurvey, AHeadThatIsMountedBootDownLooksToTheOtherSide) {
 }
 
 TEST(MicronSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
-  const DeviceKind& kind = micron_kind();
-  EXPECT_EQ(complaint(kind, {}), "");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::compression_log2, 1)),
+  const DeviceType& type = micron_type();
+  EXPECT_EQ(complaint(type, {}), "");
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::compression_log2, 1)),
             "--compression: not an option for Micron");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bits, 8)), "--bits: not an option for Micron");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::range_m, 201.0)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::bits, 8)), "--bits: not an option for Micron");
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::range_m, 201.0)),
             "--range: 201 is out of range for Micron (expected 0.1 to 200)");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sound_speed_mps, 1200.0)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::sound_speed_mps, 1200.0)),
             "--sound-speed: 1200 is out of range for Micron (expected 1300 to 1700)");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::bins, 1501)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::bins, 1501)),
             "--bins: 1501 is out of range for Micron (expected 1 to 1500)");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::step_deg, 1.0)),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::step_deg, 1.0)),
             "--step: expected a multiple of 0.05625 degrees, 14.34375 at most, found 1");
-  EXPECT_EQ(complaint(kind, with(&SurveyOptions::sector_deg, {30.0, 30.0})),
+  EXPECT_EQ(complaint(type, with(&SurveyOptions::sector_deg, {30.0, 30.0})),
             "--sector: FROM and TO are equal; omit --sector to scan all round");
   SurveyOptions too_fine = with(&SurveyOptions::range_m, 0.1);
   too_fine.bins = 1500;
-  EXPECT_EQ(complaint(kind, too_fine), "--bins: 1500 bins over 0.1 m are too fine for a head");
+  EXPECT_EQ(complaint(type, too_fine), "--bins: 1500 bins over 0.1 m are too fine for a head");
 }
 
 }  // namespace

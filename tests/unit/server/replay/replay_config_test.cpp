@@ -14,9 +14,9 @@
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/micron/recorded_form.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -49,7 +49,7 @@ LoggedHead fan(std::uint16_t device_id, const std::string& name = "") {
 }
 
 HeadConfig gemini(const std::string& name, std::uint16_t id) {
-  HeadConfig head = gemini_kind().make_default();
+  HeadConfig head = gemini_type().make_default();
   head.name = name;
   auto config = std::make_shared<GeminiConfig>(gemini_config(head));
   config->device.sonar_id = id;
@@ -102,7 +102,7 @@ struct ReplayConfigTest : testing::Test {
 };
 
 TEST_F(ReplayConfigTest, HeadsFindTheirRecordingById) {
-  config.heads = {gemini("a", 600), gemini("b", 513), micron_kind().make_default()};
+  config.heads = {gemini("a", 600), gemini("b", 513), micron_type().make_default()};
   const std::vector<LoggedHead> logged{fan(513), fan(600)};
   const ReplayConfig replay = this->replay(logged);
   ASSERT_EQ(replay.played.size(), 2U);
@@ -189,7 +189,7 @@ LoggedHead scan(const std::string& name, std::uint16_t node) {
 }
 
 HeadConfig micron(const std::string& name, std::uint8_t node) {
-  HeadConfig head = micron_kind().make_default();
+  HeadConfig head = micron_type().make_default();
   head.name = name;
   auto config = std::make_shared<MicronConfig>(micron_config(head));
   config->device.node = node;
@@ -235,7 +235,7 @@ TEST_F(ReplayConfigTest, WithoutAConfigurationMicronsAreBehindTheGeminisOnLoopba
   const DaemonConfig loopback = this->loopback(logged);
   ASSERT_EQ(loopback.heads.size(), 4U);
 
-  ASSERT_EQ(loopback.heads[0].kind, &gemini_kind());
+  ASSERT_EQ(loopback.heads[0].type, &gemini_type());
   EXPECT_EQ(loopback.heads[0].name, "gemini-513");
   const GeminiConfig& first = gemini_config(loopback.heads[0]);
   EXPECT_EQ(first.device.sonar_id, 513);
@@ -250,7 +250,7 @@ TEST_F(ReplayConfigTest, WithoutAConfigurationMicronsAreBehindTheGeminisOnLoopba
   EXPECT_EQ(gemini_config(loopback.heads[1]).bind_address, 0x7F000003U);
   EXPECT_EQ(gemini_config(loopback.heads[1]).device.sonar_id, 2) << "clients send nothing to 1";
 
-  ASSERT_EQ(loopback.heads[2].kind, &micron_kind());
+  ASSERT_EQ(loopback.heads[2].type, &micron_type());
   EXPECT_EQ(loopback.heads[2].name, "micron-7");
   const MicronConfig& third = micron_config(loopback.heads[2]);
   EXPECT_EQ(third.device.node, 7);
@@ -290,18 +290,18 @@ TEST_F(ReplayConfigTest, LinesThatAreTooLongAreAnError) {
 
 TEST_F(ReplayConfigTest, ALogSaysOfWhichKindItsHeadsAre) {
   std::vector<LoggedHead> logged{fan(513), scan("", 7)};
-  logged[0].device = "gemini_720i";
-  logged[1].device = "micron";
+  logged[0].type = "gemini_720i";
+  logged[1].type = "micron";
   const DaemonConfig loopback = this->loopback(logged);
   ASSERT_EQ(loopback.heads.size(), 2U);
-  EXPECT_EQ(loopback.heads[0].kind, &gemini_kind());
-  EXPECT_EQ(loopback.heads[1].kind, &micron_kind());
+  EXPECT_EQ(loopback.heads[0].type, &gemini_type());
+  EXPECT_EQ(loopback.heads[1].type, &micron_type());
   EXPECT_EQ(complaint(logged), "it is played");
 }
 
 TEST_F(ReplayConfigTest, AKindThatALogNamesIsAskedWhetherItCanPlayIt) {
   std::vector<LoggedHead> logged{fan(513)};
-  logged[0].device = "gemini_720i";
+  logged[0].type = "gemini_720i";
   logged[0].pings[0].settings.beams = 512;
   EXPECT_THAT(complaint(logged), AllOf(StartsWith("head 'gemini-513' cannot play it: sonar 513 has an image"),
                                        HasSubstr("(expected 256 beams)")));
@@ -311,7 +311,7 @@ TEST_F(ReplayConfigTest, HeadsOfADeviceThatNobodyKnowsAreAnError) {
   LoggedHead wide = fan(513, "bow");
   wide.pings[0].settings.beams = 512;  // a width that a Gemini would refuse
   for (LoggedHead head : {fan(513, "bow"), wide, scan("bow", 7)}) {
-    head.device = "other_900";
+    head.type = "other_900";
     EXPECT_THAT(complaint({head}),
                 StartsWith("head 'bow' has the unknown type 'other_900' (expected gemini_720i or micron"));
   }

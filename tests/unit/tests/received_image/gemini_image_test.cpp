@@ -30,7 +30,7 @@ class Client {
   }
 
   std::vector<Image> images(int pings, float intensity) {
-    server::HeadConfig head = server::gemini_kind().make_default();
+    server::HeadConfig head = server::gemini_type().make_default();
     head.acoustics = acoustics_;
     return test::GeminiClient(head, config_, test::EvenEcho(intensity)).images(pings);
   }

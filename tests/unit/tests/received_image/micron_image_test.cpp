@@ -33,7 +33,7 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
     grid.insert(k * 255 / 160);
   }
   EXPECT_EQ(*grid.rbegin(), 191);
-  MicronClient client{server::micron_kind().make_default()};
+  MicronClient client{server::micron_type().make_default()};
   std::set<int> seen;
   for (float intensity = 1e-14F; intensity < 1e-2F; intensity *= 10) {
     for (const std::uint8_t code : client.line(intensity)) {
@@ -49,7 +49,7 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
 // 52 at 88 %, with a standard deviation of 1.5 to 3 dB from ping to ping. Behind it the vehicle reverberates
 // for 2 to 4 m: at 88 % more than 20 dB at 1.5 m, and almost 0 at 4 m.
 TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.interference.probability = 0;
   MicronClient client{head};
   const double nominal_gain_db = client.gain_db;
@@ -92,14 +92,14 @@ TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
 }
 
 TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
-  MicronClient client{server::micron_kind().make_default()};
+  MicronClient client{server::micron_type().make_default()};
   EXPECT_LT(decibels_of(client.line(0, false)[bin_at(0.3)]), 12);  // noise: 5 dB and two standard deviations
 }
 
 // Empty water to 50 m in bins of 64 mm at a gain of 28 %: 29 % zeros, spread over all ranges. From 34 m on a
 // floor of 4 to 6 dB, with a standard deviation of levels of 2.5 to 3.2 dB.
 TEST(MicronImage, EmptyWaterAlwaysShowsSomething) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.interference.probability = 0;
   head.acoustics.physical.noise_by_bearing_db = 0;
   MicronClient client{head, 0.064, 780};
@@ -134,7 +134,7 @@ TEST(MicronImage, EmptyWaterAlwaysShowsSomething) {
 TEST(MicronImage, NeighbouringBinsOverlap) {
   for (const double overlap : {0.25, 0.55, 1.0}) {
     for (const bool echo : {false, true}) {
-      server::HeadConfig head = server::micron_kind().make_default();
+      server::HeadConfig head = server::micron_type().make_default();
       if (overlap != 0.55) {  // the default
         head.acoustics.physical.bin_overlap = overlap;
       }
@@ -171,7 +171,7 @@ TEST(MicronImage, NeighbouringBinsOverlap) {
 // docs/physics.md 2.16: from sweep to sweep of a vehicle at rest, echoes repeat by about 0.95; noise does
 // not. An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
 TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9 - 20;
@@ -202,7 +202,7 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
 // all beds have. For an even echo, a field of exp(-(d / 3 degrees)^2) leaves .40 after the mean of four
 // decibels. Noise shares 0; its mean level differs between bearings by up to 7 dB and is constant.
 TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.interference.probability = 0;
@@ -255,7 +255,7 @@ TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
 // one, of a median length of 3 to 5 m. One burst in ten lasts to the end of the 25 m anyway, and of the
 // others 4 m * 3 / (4 ln 2) / 25 m = 17.3 %: 25.6 % in all (at 60 m one in six).
 TEST(MicronImage, OnePingOfSixIsHitByABurstOfInterference) {
-  server::HeadConfig head = server::micron_kind().make_default();
+  server::HeadConfig head = server::micron_type().make_default();
   head.acoustics.physical.tvg_log_coefficient = 0;
   head.acoustics.physical.tvg_absorption_db_per_m = 0;
   head.acoustics.physical.noise_level_db = 40 - 80 + 9;

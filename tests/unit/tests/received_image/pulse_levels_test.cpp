@@ -15,9 +15,9 @@
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/ping360/config.hpp"
-#include "server/devices/ping360/kind.hpp"
+#include "server/devices/ping360/type.hpp"
 #include "tests/support/engine_test.hpp"
 
 namespace sonard {
@@ -25,7 +25,7 @@ namespace {
 
 /// Settings of a client's usual ping of a Gemini, with a tone of so many cycles.
 render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double rounding_m = -1) {
-  server::HeadConfig head = server::gemini_kind().make_default();
+  server::HeadConfig head = server::gemini_type().make_default();
   if (rounding_m >= 0) {
     head.acoustics.physical.tone_rounding_m = rounding_m;
   }
@@ -33,20 +33,20 @@ render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double r
   wanted.range_m = range_m;
   gemini::PingConfig config = gemini::make_ping_config(wanted);
   config.tx_length = cycles;
-  return server::gemini_kind().sonar_settings(
+  return server::gemini_type().sonar_settings(
       gemini::plan_ping(config, server::gemini_config(head).device)->job, head);
 }
 
 /// Settings of a client's ping of a Ping360.
 render::SonarSettings ping360_with(std::uint16_t pulse_us, std::uint16_t sample_period,
                                    std::uint16_t frequency_khz = 740) {
-  const server::HeadConfig head = server::ping360_kind().make_default();
+  const server::HeadConfig head = server::ping360_type().make_default();
   ping360::Transducer command;
   command.number_of_samples = 1200;
   command.sample_period = sample_period;
   command.transmit_duration_us = pulse_us;
   command.transmit_frequency_khz = frequency_khz;
-  return server::ping360_kind().sonar_settings(
+  return server::ping360_type().sonar_settings(
       ping360::make_job(ping360::form_of(command), server::ping360_config(head).device), head);
 }
 

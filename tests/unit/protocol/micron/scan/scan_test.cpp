@@ -21,8 +21,8 @@
 #include "protocol/micron/units.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/scene/world.hpp"
-#include "server/devices/micron/kind.hpp"
 #include "server/devices/micron/settings.hpp"
+#include "server/devices/micron/type.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {
@@ -160,7 +160,7 @@ micron::HeadCommand all_round() {
 
 /// No random effects and sharp edges of the beam, so that echoes begin exactly at the surfaces.
 HeadConfig plain_head() {
-  HeadConfig config = micron_kind().make_default();
+  HeadConfig config = micron_type().make_default();
   auto device = std::make_shared<MicronConfig>();
   device->chirp_bandwidth_hz = 0;
   config.device = std::move(device);
@@ -246,7 +246,7 @@ TEST(MicronScan, AVehicleThatTurnsTwistsTheScan) {
 }
 
 TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
-  Scan scan(micron_kind().make_default());
+  Scan scan(micron_type().make_default());
   const std::vector<Line> lines = scan.run(all_round(), 200);
   ASSERT_EQ(lines.size(), 200u);
   for (const Line& line : lines) {

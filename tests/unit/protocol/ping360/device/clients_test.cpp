@@ -9,7 +9,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// A client's end of the line: it reads the frames sent to its address, with timeouts.
-struct Client {
+struct PublicClient {
   Bench& bench;
   Peer peer = client_a;
   std::size_t read = 0;
@@ -55,7 +55,7 @@ TEST(Ping360Clients, BrpingInitialisesAndTurnsWithMode0) {
   DeviceConfig config;
   config.max_datagram = 100;  // brping joins the pieces
   Bench bench(config);
-  Client client{bench};
+  PublicClient client{bench};
   bench.raw(fixture("request_protocol_version"));
   ASSERT_TRUE(client.wait_for<ProtocolVersion>(500ms));
   bench.raw(fixture("request_device_data"));
@@ -76,7 +76,7 @@ TEST(Ping360Clients, BrpingInitialisesAndTurnsWithMode0) {
 
 TEST(Ping360Clients, BrpingGetsANackBackForWhatIsRefused) {
   Bench bench;
-  Client client{bench};
+  PublicClient client{bench};
   Transducer command = as_brping(0);
   command.number_of_samples = 5000;
   bench.command(command);
@@ -89,7 +89,7 @@ TEST(Ping360Clients, BrpingOnASerialLineBeginsWithUAndFindsAQuietHead) {
   Bench bench(with_serial_line());
   bench.command(scan_of(0, 399), serial_client);  // an earlier client left this scan running
   bench.run_for(1s);
-  Client client{bench, serial_client, bench.heard.size()};
+  PublicClient client{bench, serial_client, bench.heard.size()};
   bench.raw({'U'}, serial_client);
   bench.raw(fixture("request_protocol_version"), serial_client);
   ASSERT_TRUE(client.wait_for<ProtocolVersion>(500ms));
@@ -101,7 +101,7 @@ TEST(Ping360Clients, BrpingOnASerialLineBeginsWithUAndFindsAQuietHead) {
 
 struct Ping360PingCpp : ::testing::Test {
   Bench bench;
-  Client client{bench};
+  PublicClient client{bench};
 
   void connect() {
     bench.raw({0x00, 0xFF});
@@ -140,7 +140,7 @@ TEST_F(Ping360PingCpp, HardwareTest200PingsAnd200OfAScanWithoutAGap) {
 
 TEST_F(Ping360PingCpp, BeginsOnASerialLineWithUAndNul) {
   Bench serial(with_serial_line());
-  Client end{serial, serial_client};
+  PublicClient end{serial, serial_client};
   serial.raw(Bytes{'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 'U', 0}, serial_client);
   serial.raw(fixture("request_protocol_version"), serial_client);
   EXPECT_TRUE(end.wait_for<ProtocolVersion>(500ms));
@@ -175,7 +175,7 @@ TEST_F(Ping360PingCpp, RosNodeSends400For0AndANackWouldBeStaleData) {
 
 TEST(Ping360Clients, RosNodeInPythonRepeatsItsBytes) {
   Bench bench;
-  Client client{bench};
+  PublicClient client{bench};
   for (int i = 0; i < 45; ++i) {
     bench.raw(fixture("transducer_ros_python"));
     const auto answer = client.wait_for<DeviceData, Nack>(4s);
@@ -221,7 +221,7 @@ TEST(Ping360Clients, PnarvorReads1000SamplesAndOfMoreOnlyWhereDatagramsAreSplit)
 
 struct Ping360PingViewer : ::testing::Test {
   Bench bench;
-  Client client{bench};
+  PublicClient client{bench};
   AutoTransmit wanted{.transmit_duration_us = 11,
                       .sample_period = 88,
                       .transmit_frequency_khz = 750,
@@ -292,7 +292,7 @@ TEST_F(Ping360PingViewer, ScansTurnsChangesSettingsAndLeaves) {
 }
 
 TEST_F(Ping360PingViewer, OlderFirmwareIsTurnedWithSingleCommandsQuicklyEnough) {
-  Client loop{bench};
+  PublicClient loop{bench};
   Transducer command = ping_at(0);
   command.number_of_samples = 1200;
   command.sample_period = 88;
@@ -307,7 +307,7 @@ TEST_F(Ping360PingViewer, OlderFirmwareIsTurnedWithSingleCommandsQuicklyEnough) 
 /// it sends the command for the angle after the answer's angle. Without an answer in time it repeats its
 /// command.
 struct StepLoop {
-  Client client;
+  PublicClient client;
   Transducer command;
   int step;
   std::chrono::nanoseconds patience;
@@ -432,7 +432,7 @@ TEST_F(Ping360PingViewer, AsksInTheOldWayToo) {
 
 TEST(Ping360Clients, BlueosAsksTenTimesAtEachSpeedAndHearsNothingAtWrongOnes) {
   Bench bench(with_serial_line());
-  Client client{bench, serial_client};
+  PublicClient client{bench, serial_client};
   for (int i = 0; i < 10; ++i) {
     bench.raw({0x11, 0x42, 0x52, 0xE6, 0x0F, 0x98, 0x00}, serial_client);  // as read at a wrong speed
     EXPECT_FALSE(client.wait_for<DeviceInformation>(100ms));

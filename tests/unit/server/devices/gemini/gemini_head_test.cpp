@@ -16,7 +16,7 @@
 #include <boost/asio/post.hpp>
 
 #include "server/devices/gemini/config.hpp"
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/devices/ping_viewer.hpp"
 #include "server/net/udp_endpoint.hpp"
@@ -62,7 +62,7 @@ struct GeminiHeadTest : testing::Test {
   SteadyClock clock;
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   PoseConfig pose_config;
-  HeadConfig config = gemini_kind().make_default();
+  HeadConfig config = gemini_type().make_default();
   GeminiConfig gemini_config;
   std::optional<double> water_surface_z_m;
   std::string vehicle_model;

@@ -5,14 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {
 namespace {
 
 HeadConfig plain_head() {
-  return gemini_kind().make_default();
+  return gemini_type().make_default();
 }
 
 PingJob job_at_20_m() {

@@ -17,7 +17,7 @@
 
 #include "protocol/micron/client.hpp"
 #include "server/devices/micron/config.hpp"
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
 #include "server/net/serial_transport.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/rendering/render_service.hpp"
@@ -46,7 +46,7 @@ struct MicronHeadTest : testing::Test {
   SteadyClock clock;
   std::shared_ptr<test::FakeRendererControl> renderer = std::make_shared<test::FakeRendererControl>();
   PoseConfig pose_config;
-  HeadConfig config = micron_kind().make_default();
+  HeadConfig config = micron_type().make_default();
   MicronConfig micron_config;
 
   std::unique_ptr<PoseHistory> poses;

@@ -13,15 +13,15 @@
 #include "protocol/oculus/ping_plan.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "server/devices/oculus/config.hpp"
-#include "server/devices/oculus/kind.hpp"
 #include "server/devices/oculus/settings.hpp"
+#include "server/devices/oculus/type.hpp"
 #include "tests/support/correlation.hpp"
 
 namespace sonard::server {
 namespace {
 
 HeadConfig m1200d() {
-  HeadConfig head = oculus_kind().make_default();
+  HeadConfig head = oculus_type().make_default();
   auto config = std::make_shared<OculusConfig>(oculus_config(head));
   config->device.plan.model = oculus::m1200d;
   config->modes = oculus_modes(oculus::m1200d);

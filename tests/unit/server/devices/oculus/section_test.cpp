@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/devices/oculus/kind.hpp"
+#include "server/devices/oculus/type.hpp"
 #include "tests/support/degree.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
@@ -38,7 +38,7 @@ TEST_F(OculusSection, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(document(with_network()));
   EXPECT_THAT(loaded.warning_lines(), ElementsAre(HasSubstr("1200 kHz is not within 0.2 to 1000 kHz")));
   const HeadConfig& head = loaded.config.heads.at(0);
-  EXPECT_EQ(head.kind, &oculus_kind());
+  EXPECT_EQ(head.type, &oculus_type());
   const OculusConfig& config = oculus_config(head);
   EXPECT_EQ(config.device.plan.model.part_number, 1032);
   EXPECT_EQ(config.device.id, 7892);
@@ -54,9 +54,9 @@ TEST_F(OculusSection, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(config.device.plan.roll_sign, 1);
   EXPECT_EQ(config.device.plan.surface_pressure_bar, 1.013);
   EXPECT_NEAR(config.modes[0].receive_beamwidth_rad, 1.0 * degree, 1e-12);
-  EXPECT_EQ(head.kind->summary(head),
+  EXPECT_EQ(head.type->summary(head),
             "ID 7892, part 1032, TCP 127.0.0.3:52100, status to 127.0.0.1, port 52102");
-  const auto sockets = head.kind->sockets(head);
+  const auto sockets = head.type->sockets(head);
   ASSERT_EQ(sockets.size(), 1U);
   EXPECT_EQ(sockets[0].transport, PlannedSocket::Transport::tcp);
 }

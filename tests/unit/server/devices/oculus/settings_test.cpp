@@ -9,7 +9,7 @@
 #include "protocol/oculus/image_form.hpp"
 #include "protocol/oculus/ping_plan.hpp"
 #include "server/devices/oculus/config.hpp"
-#include "server/devices/oculus/kind.hpp"
+#include "server/devices/oculus/type.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {
@@ -25,7 +25,7 @@ oculus::SimpleFire fire_with(int mode, int beams) {
 }
 
 render::SonarSettings settings_of(const oculus::SimpleFire& fire,
-                                  const HeadConfig& head = oculus_kind().make_default()) {
+                                  const HeadConfig& head = oculus_type().make_default()) {
   const oculus::PlanConfig& plan = oculus_config(head).device.plan;
   return oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
 }
@@ -54,7 +54,7 @@ TEST(OculusSettings, RowsAreThoseOfThePing) {
 }
 
 TEST(OculusSettings, RowsKeepTheirTimeInWaterOfAnotherSpeed) {
-  HeadConfig head = oculus_kind().make_default();
+  HeadConfig head = oculus_type().make_default();
   auto config = std::make_shared<OculusConfig>(oculus_config(head));
   config->device.plan.water_sound_speed_mps = 1450.0;
   head.device = config;

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <CLI/Error.hpp>
 
-#include "server/devices/oculus/kind.hpp"
+#include "server/devices/oculus/type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 
 std::unique_ptr<Survey> survey(const SurveyOptions& options) {
-  return oculus_kind().survey(oculus_kind().make_default(), options);
+  return oculus_type().survey(oculus_type().make_default(), options);
 }
 
 template <class Value>

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/devices/ping360/kind.hpp"
+#include "server/devices/ping360/type.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
 namespace sonard::server {
@@ -33,7 +33,7 @@ TEST_F(Ping360Section, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(document("name: mast, udp: [{bind: 127.0.0.1:12345}]"));
   EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   const HeadConfig& head = loaded.config.heads.at(0);
-  EXPECT_EQ(head.kind, &ping360_kind());
+  EXPECT_EQ(head.type, &ping360_type());
   const Ping360Config& config = ping360_config(head);
   ASSERT_EQ(config.udp.size(), 1U);
   EXPECT_EQ(endpoint_text(config.udp[0].bind), "127.0.0.1:12345");
@@ -41,7 +41,7 @@ TEST_F(Ping360Section, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(config.device.serial_channel, -1);
   EXPECT_EQ(config.device.idle_timeout, 0ns);
   EXPECT_FALSE(config.discovery);
-  EXPECT_EQ(head.kind->summary(head), "ID 2, UDP 127.0.0.1:12345");
+  EXPECT_EQ(head.type->summary(head), "ID 2, UDP 127.0.0.1:12345");
 }
 
 TEST_F(Ping360Section, ReadsWhatIsWritten) {

@@ -6,13 +6,13 @@
 
 #include "protocol/ping360/make_job.hpp"
 #include "server/devices/ping360/config.hpp"
-#include "server/devices/ping360/kind.hpp"
+#include "server/devices/ping360/type.hpp"
 
 namespace sonard::server {
 namespace {
 
 render::SonarSettings settings_of(const ping360::Transducer& command) {
-  const HeadConfig head = ping360_kind().make_default();
+  const HeadConfig head = ping360_type().make_default();
   return ping360_sonar_settings(ping360::make_job(ping360::form_of(command), ping360_config(head).device),
                                 head);
 }

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <CLI/Error.hpp>
 
-#include "server/devices/ping360/kind.hpp"
+#include "server/devices/ping360/type.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {
@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::unique_ptr<Survey> survey(const SurveyOptions& options) {
-  return ping360_kind().survey(ping360_kind().make_default(), options);
+  return ping360_type().survey(ping360_type().make_default(), options);
 }
 
 template <class Value>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the configuration needs to know of a kind of device.
+// What the configuration needs to know of a type of device.
 #pragma once
 
 #include <cstdint>
@@ -26,24 +26,24 @@ struct PlannedSocket {
 struct Identity {
   std::string key;      ///< of the head: "sonar_id"
   std::string value;    ///< as text: "513"
-  bool of_kind = true;  ///< heads of different kinds may share it; false: they may not
+  bool of_type = true;  ///< heads of different types may share it; false: they may not
 };
 
-/// One object for each kind of device, without state. A head of the configuration points to its kind; its
-/// `device` holds the settings that this kind has read.
-class HeadKind {
+/// One object for each type of device, without state. A head of the configuration points to its type; its
+/// `device` holds the settings that this type has read.
+class HeadType {
  public:
-  HeadKind() = default;
-  virtual ~HeadKind() = default;
-  HeadKind(const HeadKind&) = delete;
-  HeadKind& operator=(const HeadKind&) = delete;
+  HeadType() = default;
+  virtual ~HeadType() = default;
+  HeadType(const HeadType&) = delete;
+  HeadType& operator=(const HeadType&) = delete;
 
-  virtual std::string_view type() const = 0;   ///< as in the configuration: "example_100"
+  virtual std::string_view name() const = 0;   ///< as in the configuration: "example_100"
   virtual std::string_view title() const = 0;  ///< for people: "Example 100"
   /// Model names (values of the key `model`) that users may write as the type by mistake.
   virtual std::vector<std::string_view> models() const { return {}; }
 
-  /// A head with the defaults of this kind.
+  /// A head with the defaults of this type.
   virtual HeadConfig make_default() const = 0;
   /// Reads a section of `heads`, except its type.
   virtual HeadConfig read(YamlSection& section, const HeadContext& context) const = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/devices/micron/kind.hpp"
+#include "server/devices/micron/type.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -36,9 +36,9 @@ class ConnectedMicron final : public ConnectedDevice {
   SerialTransport transport_;
 };
 
-class MicronKind final : public DeviceKind {
+class MicronType final : public DeviceType {
  public:
-  std::string_view type() const override { return "micron"; }
+  std::string_view name() const override { return "micron"; }
   std::string_view title() const override { return "Micron"; }
   bool scanning() const override { return true; }
 
@@ -46,7 +46,7 @@ class MicronKind final : public DeviceKind {
 
   HeadConfig make_default() const override {
     HeadConfig head;
-    head.kind = this;
+    head.type = this;
     head.device = std::make_shared<MicronConfig>();
     head.acoustics = micron_acoustics();
     return head;
@@ -134,9 +134,9 @@ class MicronKind final : public DeviceKind {
 
 }  // namespace
 
-const DeviceKind& micron_kind() {
-  static const MicronKind kind;
-  return kind;
+const DeviceType& micron_type() {
+  static const MicronType type;
+  return type;
 }
 
 // Beam: docs/protocols/micron.md 10. Levels as in recordings (docs/physics.md 2.16): at the nominal gain, a

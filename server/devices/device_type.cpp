@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,11 @@
 
 namespace sonard::server {
 
-SocketTrouble trouble_of(const SocketError& error, const DeviceKind& kind) {
+SocketTrouble trouble_of(const SocketError& error, const DeviceType& type) {
   if (const auto* const link = dynamic_cast<const PtyLinkError*>(&error)) {
     return {fmt::format("serial.pty[{}].link", link->item), false};
   }
-  return {kind.socket_key(), true};
+  return {type.socket_key(), true};
 }
 
 // If the head looks straight up or down, heading and roll are not distinct: roll is then 0.
@@ -46,8 +46,8 @@ render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearin
 }
 
 render::SonarSettings usual_settings(const HeadConfig& head) {
-  const DeviceKind& kind = kind_of(head);
-  return kind.sonar_settings(kind.usual_job(head), head);
+  const DeviceType& type = type_of(head);
+  return type.sonar_settings(type.usual_job(head), head);
 }
 
 render::PingRequest usual_ping(const HeadConfig& head, const render::Pose& T_world_vehicle) {
@@ -66,11 +66,11 @@ std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads) {
   std::vector<HeadToRecord> recorded;
   int numbered = 0;
   for (const HeadConfig& head : heads) {
-    const DeviceKind& kind = kind_of(head);
-    HeadToRecord one{head.name, std::string(kind.type()), kind.device_id(head), std::nullopt, {}};
-    if (kind.writes_glf()) {
+    const DeviceType& type = type_of(head);
+    HeadToRecord one{head.name, std::string(type.name()), type.device_id(head), std::nullopt, {}};
+    if (type.writes_glf()) {
       one.glf_number = static_cast<std::uint8_t>(std::min(numbered++, most_numbered));
-      one.glf_status = [&kind](std::span<const std::uint8_t> message) { return kind.glf_status(message); };
+      one.glf_status = [&type](std::span<const std::uint8_t> message) { return type.glf_status(message); };
     }
     recorded.push_back(std::move(one));
   }

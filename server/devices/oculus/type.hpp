@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kind of device of the Oculus.
+// The type of device of the Oculus.
 #pragma once
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 
-const DeviceKind& oculus_kind();
+const DeviceType& oculus_type();
 
 }  // namespace sonard::server

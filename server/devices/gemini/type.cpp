@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/devices/gemini/kind.hpp"
+#include "server/devices/gemini/type.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +36,9 @@ double worst_bearing_error_rad(const LoggedHead& head) {
   return worst;
 }
 
-class GeminiKind final : public DeviceKind {
+class GeminiType final : public DeviceType {
  public:
-  std::string_view type() const override { return "gemini_720i"; }
+  std::string_view name() const override { return "gemini_720i"; }
   std::string_view title() const override { return "Gemini 720i"; }
   bool scanning() const override { return false; }
 
@@ -46,7 +46,7 @@ class GeminiKind final : public DeviceKind {
 
   HeadConfig make_default() const override {
     HeadConfig head;
-    head.kind = this;
+    head.type = this;
     head.device = std::make_shared<GeminiConfig>();
     head.acoustics = gemini_acoustics();
     return head;
@@ -139,7 +139,7 @@ class GeminiKind final : public DeviceKind {
     if (head == nullptr || (head->ping_id & resent_head_bit) != 0) {
       return std::nullopt;
     }
-    PingSeen seen{std::string(type()), head->header.sonar_id, gemini::settings_of(*head)};
+    PingSeen seen{std::string(name()), head->header.sonar_id, gemini::settings_of(*head)};
     seen.settings.frequency_hz = 0.0;  // not on the wire
     return seen;
   }
@@ -210,9 +210,9 @@ class GeminiKind final : public DeviceKind {
 
 }  // namespace
 
-const DeviceKind& gemini_kind() {
-  static const GeminiKind kind;
-  return kind;
+const DeviceType& gemini_type() {
+  static const GeminiType type;
+  return type;
 }
 
 // Leakage and noise as in recordings (docs/physics.md 2.16).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's interface to a kind of device. Each kind has its own folder below this one.
+// The server's interface to a type of device. Each type has its own folder below this one.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/head_kind.hpp"
+#include "server/config/head_type.hpp"
 #include "server/devices/survey.hpp"
 #include "server/logs/log_summary.hpp"
 #include "server/logs/recording.hpp"
@@ -52,11 +52,11 @@ class ConnectedDevice {
   /// Called once a second, so that a head named by its interface can follow the interface's address.
   virtual void follow_addresses(const std::vector<InterfaceAddress>& /*now*/) {}
   /// This machine's addresses at which clients reach the device; nullopt: the addresses of
-  /// HeadKind::sockets().
+  /// HeadType::sockets().
   virtual std::optional<std::vector<Ipv4>> own_addresses() const { return std::nullopt; }
 };
 
-class DeviceKind : public HeadKind {
+class DeviceType : public HeadType {
  public:
   /// True if a ping is one beam, at the bearing of the job; false if it is a fan.
   virtual bool scanning() const = 0;
@@ -103,9 +103,9 @@ class DeviceKind : public HeadKind {
   virtual std::unique_ptr<Survey> survey(const HeadConfig& head, const SurveyOptions& options) const = 0;
 };
 
-/// The kind of a head; every head of this program has a DeviceKind.
-inline const DeviceKind& kind_of(const HeadConfig& head) {
-  return static_cast<const DeviceKind&>(*head.kind);
+/// The type of a head; every head of this program has a DeviceType.
+inline const DeviceType& type_of(const HeadConfig& head) {
+  return static_cast<const DeviceType&>(*head.type);
 }
 
 /// Where a SocketError of a head lies.
@@ -113,7 +113,7 @@ struct SocketTrouble {
   std::string key;         ///< of the head: "serial.pty[0].link"
   bool of_network = true;  ///< it may pass; false: the configuration or a folder must change
 };
-SocketTrouble trouble_of(const SocketError& error, const DeviceKind& kind);
+SocketTrouble trouble_of(const SocketError& error, const DeviceType& type);
 
 /// Readings of a head's sensors if its mount has this pose.
 /// @param water_surface_z_m height of the surface in the world frame; nullopt: the world has no surface
@@ -122,9 +122,9 @@ SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<
 /// Pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, rotated about its z axis.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
 
-/// Renderer settings of DeviceKind::usual_job().
+/// Renderer settings of DeviceType::usual_job().
 render::SonarSettings usual_settings(const HeadConfig& head);
-/// The ping of DeviceKind::usual_job(), sent from the vehicle's pose.
+/// The ping of DeviceType::usual_job(), sent from the vehicle's pose.
 render::PingRequest usual_ping(const HeadConfig& head, const render::Pose& T_world_vehicle);
 /// The heads with the names that their logs use, in the order of the configuration.
 std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads);

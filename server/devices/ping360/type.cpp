@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/devices/ping360/kind.hpp"
+#include "server/devices/ping360/type.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -19,9 +19,9 @@
 namespace sonard::server {
 namespace {
 
-class Ping360Kind final : public DeviceKind {
+class Ping360Type final : public DeviceType {
  public:
-  std::string_view type() const override { return "ping360"; }
+  std::string_view name() const override { return "ping360"; }
   std::string_view title() const override { return "Ping360"; }
   bool scanning() const override { return true; }
 
@@ -29,7 +29,7 @@ class Ping360Kind final : public DeviceKind {
 
   HeadConfig make_default() const override {
     HeadConfig head;
-    head.kind = this;
+    head.type = this;
     head.device = std::make_shared<Ping360Config>();
     head.acoustics = ping360_acoustics();
     return head;
@@ -126,9 +126,9 @@ class Ping360Kind final : public DeviceKind {
 
 }  // namespace
 
-const DeviceKind& ping360_kind() {
-  static const Ping360Kind kind;
-  return kind;
+const DeviceType& ping360_type() {
+  static const Ping360Type type;
+  return type;
 }
 
 // Beam of 2 by 25 degrees, from the maker's data sheet. The law of the samples is not published. Assumed:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kind of device of the Ping360.
+// The type of device of the Micron.
 #pragma once
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 
-const DeviceKind& ping360_kind();
+const DeviceType& micron_type();
 
 }  // namespace sonard::server

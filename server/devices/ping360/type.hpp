@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kind of device of the Micron.
+// The type of device of the Ping360.
 #pragma once
 
-#include "server/devices/device_kind.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 
-const DeviceKind& micron_kind();
+const DeviceType& ping360_type();
 
 }  // namespace sonard::server

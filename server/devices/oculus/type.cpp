@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/devices/oculus/kind.hpp"
+#include "server/devices/oculus/type.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +23,9 @@ namespace {
 constexpr Ipv4 loopback_client = 0x7F000001;
 constexpr double degree = std::numbers::pi / 180.0;
 
-class OculusKind final : public DeviceKind {
+class OculusType final : public DeviceType {
  public:
-  std::string_view type() const override { return "oculus"; }
+  std::string_view name() const override { return "oculus"; }
   std::string_view title() const override { return "Oculus"; }
   std::vector<std::string_view> models() const override { return {"m750d", "m1200d"}; }
   bool scanning() const override { return false; }
@@ -35,7 +35,7 @@ class OculusKind final : public DeviceKind {
 
   HeadConfig make_default() const override {
     HeadConfig head;
-    head.kind = this;
+    head.type = this;
     auto config = std::make_shared<OculusConfig>();
     config->modes = oculus_modes(config->device.plan.model);
     head.device = std::move(config);
@@ -129,9 +129,9 @@ class OculusKind final : public DeviceKind {
 
 }  // namespace
 
-const DeviceKind& oculus_kind() {
-  static const OculusKind kind;
-  return kind;
+const DeviceType& oculus_type() {
+  static const OculusType type;
+  return type;
 }
 
 // Levels of the other multibeam head, at nearly the same frequency: recordings of both show the same ratio of

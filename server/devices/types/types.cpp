@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/devices/types/types.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace sonard::server {
+
+std::span<const HeadType* const> head_types() {
+  static const std::vector<const HeadType*> types(device_types().begin(), device_types().end());
+  return types;
+}
+
+const DeviceType* type_named(std::string_view name) {
+  const auto types = device_types();
+  const auto found = std::ranges::find(types, name, &DeviceType::name);
+  return found == types.end() ? nullptr : *found;
+}
+
+const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind log) {
+  if (!name.empty()) {
+    return type_named(name);
+  }
+  if (log != LogKind::glf && log != LogKind::dat) {
+    return nullptr;
+  }
+  const auto types = device_types();
+  const auto found = std::ranges::find_if(
+      types, [&](const DeviceType* type) { return type->writes_glf() && type->scanning() == scanning; });
+  return found == types.end() ? nullptr : *found;
+}
+
+std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) {
+  for (const DeviceType* type : device_types()) {
+    if (const std::optional<PingSeen> seen = type->ping_in(datagram)) {
+      return seen;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace sonard::server

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// All types of device in this program.
+#pragma once
+
+#include <span>
+
+#include "server/devices/device_type.hpp"
+
+namespace sonard::server {
+
+/// In the order of cmake/devices.cmake; the build writes this function.
+std::span<const DeviceType* const> device_types();
+
+/// The types for the loader of configurations.
+std::span<const HeadType* const> head_types();
+
+/// The type of this name; null if there is none.
+const DeviceType* type_named(std::string_view name);
+
+/// The type of a head in a log: named by the log, or the type that uses .glf and .dat logs; null if neither
+/// is known.
+const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind log);
+
+/// The first ping in a datagram of any type of device.
+std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram);
+
+}  // namespace sonard::server
