@@ -63,9 +63,9 @@ struct PingRequest {
   std::optional<Pose> T_world_sonar_at_end{};
 };
 
-/// A ping of one of the sonars that share a renderer.
-struct StreamPing {
-  int stream = 0;
+/// A ping of one of the heads that share a renderer.
+struct HeadRequest {
+  int head = 0;  ///< its index
   PingRequest request;
 };
 

@@ -63,7 +63,7 @@ inline constexpr std::array skip_rules{
                   "pings", 0},
     SkipRuleEntry{
         SkipRule::unchanged_scene, "unchanged_scene",
-        "sonar, bodies and all settings that affect the echo are unchanged since the stream's last ping",
+        "sonar, bodies and all settings that affect the echo are unchanged since the head's last ping",
         "pings", 0},
     SkipRuleEntry{SkipRule::unchanged_settings, "unchanged_settings",
                   "the settings of a table are unchanged since it was last made", "tables", 0},

@@ -37,7 +37,7 @@ struct Aperture {
   /// With `array`: `planar` bearings are azimuths. A straight array measures `conical` bearings, sin psi cos
   /// theta: objects off the horizontal plane appear nearer to the axis.
   enum class Bearing { planar, conical } bearing = Bearing::planar;
-  /// With `array`: errors of the elements, drawn by seed and stream. Standard deviations of the amplitude,
+  /// With `array`: errors of the elements, drawn by seed and head. Standard deviations of the amplitude,
   /// relative and >= 0, and of the phase.
   double element_amplitude_sd = 0.0;
   double element_phase_sd_rad = 0.0;

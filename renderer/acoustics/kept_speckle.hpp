@@ -13,7 +13,7 @@
 
 namespace sonard::render {
 
-/// Speckle and texture of one stream. Kinds `ou` and `frozen` are kept: per line and beam for a fan, by
+/// Speckle and texture of one head. Kinds `ou` and `frozen` are kept: per line and beam for a fan, by
 /// bearing for a single beam, because a scanning head returns to each bearing. Only one thread may call it.
 class KeptSpeckle {
  public:

@@ -9,7 +9,7 @@
 
 namespace sonard::render {
 
-void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int stream,
+void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int head,
                           const SkipSwitches& skip, SkipCounts& skipped) {
   uses_pattern_ = false;
   uses_pulse_ = false;
@@ -19,20 +19,20 @@ void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int
   }
   energy_ = pulse_energy(settings.physical, settings.range.step_m);
   if (has_array_beams(settings)) {
-    prepare_pattern(settings, seed, stream, skip, skipped);
+    prepare_pattern(settings, seed, head, skip, skipped);
   }
   if (settings.physical.pulse != PhysicalModel::Pulse::point && settings.physical.range_cell_m > 0) {
     prepare_pulse(settings, skip, skipped);
   }
 }
 
-void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
+void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int head,
                                   const SkipSwitches& skip, SkipCounts& skipped) {
   if (pattern_ && aperture_ == settings.aperture && seed_ == seed && skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
     // Ping number 0: element errors belong to the sonar and do not change from ping to ping.
-    pattern_.emplace(settings.aperture, make_random_key(settings.aperture.element_seed.value_or(seed), stream,
+    pattern_.emplace(settings.aperture, make_random_key(settings.aperture.element_seed.value_or(seed), head,
                                                         RandomField::array_elements, 0));
     aperture_ = settings.aperture;
     seed_ = seed;

@@ -20,7 +20,7 @@ class PointSpread {
  public:
   /// Makes the tables for these settings.
   /// @param skipped counts unchanged_settings, separate_beams and short_pulse
-  void prepare(const SonarSettings& settings, std::uint64_t seed, int stream, const SkipSwitches& skip,
+  void prepare(const SonarSettings& settings, std::uint64_t seed, int head, const SkipSwitches& skip,
                SkipCounts& skipped);
 
   /// True if the world must be sampled in fine beams, with sampled(), and form_beams() must join them.
@@ -47,8 +47,8 @@ class PointSpread {
     PulseResponse response;
   };
 
-  void prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int stream,
-                       const SkipSwitches& skip, SkipCounts& skipped);
+  void prepare_pattern(const SonarSettings& settings, std::uint64_t seed, int head, const SkipSwitches& skip,
+                       SkipCounts& skipped);
   void prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip, SkipCounts& skipped);
 
   std::optional<BeamPattern> pattern_;

@@ -40,9 +40,9 @@ std::uint64_t mix(std::uint64_t x) {
 
 }  // namespace
 
-RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number) {
+RandomKey make_random_key(std::uint64_t seed, int head, RandomField field, std::uint64_t ping_number) {
   std::uint64_t key = mix(seed);
-  key = mix(key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(stream)));
+  key = mix(key ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(head)));
   key = mix(key ^ static_cast<std::uint64_t>(field));
   return {mix(key ^ ping_number)};
 }

@@ -27,7 +27,7 @@ enum class RandomField : std::uint64_t {
 };
 
 /// Mixes all inputs so that any difference gives an unrelated field.
-RandomKey make_random_key(std::uint64_t seed, int stream, RandomField field, std::uint64_t ping_number);
+RandomKey make_random_key(std::uint64_t seed, int head, RandomField field, std::uint64_t ping_number);
 
 /// Circular complex Gaussians CN(0, 1), that is E|z|^2 = 1, for columns 0 ... count - 1 of row `row`.
 void fill_complex_gaussian(RandomKey key, std::uint32_t row, int count, float* real, float* imaginary);

@@ -20,19 +20,19 @@ std::uint64_t speckle_ping(const PingRequest& request) {
 }
 
 /// The noise level of a single beam depends on its bearing.
-float noise_factor_of(const PingRequest& request, int stream) {
+float noise_factor_of(const PingRequest& request, int head) {
   const PhysicalModel& model = request.settings.physical;
   if (request.settings.aperture.beam_count() > 1 || model.noise_by_bearing_db == 0) {
     return 1.0F;
   }
   return noise_at_bearing(model, ScanPose(request.T_world_sonar).bearing_rad,
-                          make_random_key(request.seed, stream, RandomField::noise_by_bearing, 0));
+                          make_random_key(request.seed, head, RandomField::noise_by_bearing, 0));
 }
 
 }  // namespace
 
-Receiver::Stream& Receiver::stream_for(const SonarSettings& settings, int stream) {
-  Stream& state = streams_[stream];
+Receiver::HeadState& Receiver::state_of(const SonarSettings& settings, int head) {
+  HeadState& state = heads_[head];
   if (state.tables.fits(settings) && skip_.on(SkipRule::unchanged_settings)) {
     skipped_.add(SkipRule::unchanged_settings);
   } else {
@@ -41,18 +41,18 @@ Receiver::Stream& Receiver::stream_for(const SonarSettings& settings, int stream
   return state;
 }
 
-RandomFieldOfPing Receiver::speckle_of(Stream& state, const PingRequest& request, int stream) {
+RandomFieldOfPing Receiver::speckle_of(HeadState& state, const PingRequest& request, int head) {
   return state.fields.speckle(
-      make_random_key(request.seed, stream, RandomField::speckle, speckle_ping(request)), skip_, skipped_);
+      make_random_key(request.seed, head, RandomField::speckle, speckle_ping(request)), skip_, skipped_);
 }
 
-RandomFieldOfPing Receiver::texture_of(Stream& state, const PingRequest& request, int stream) {
+RandomFieldOfPing Receiver::texture_of(HeadState& state, const PingRequest& request, int head) {
   return state.fields.texture(
-      make_random_key(request.seed, stream, RandomField::texture, speckle_ping(request)), skip_, skipped_);
+      make_random_key(request.seed, head, RandomField::texture, speckle_ping(request)), skip_, skipped_);
 }
 
 /// The noise of a single beam is drawn at once for all bins.
-RandomFieldOfPing Receiver::noise_of(Stream& state, RandomKey key) {
+RandomFieldOfPing Receiver::noise_of(HeadState& state, RandomKey key) {
   const ReceiverTables& tables = state.tables;
   if (tables.filter.beams() > 1 || !tables.model.noise) {
     return {.key = key};
@@ -62,47 +62,47 @@ RandomFieldOfPing Receiver::noise_of(Stream& state, RandomKey key) {
                                    state.white_noise, state.noise)};
 }
 
-PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int stream,
+PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request, int head,
                               WorkerPool& workers) {
   const SonarSettings& settings = request.settings;
   skipped_ = {};
   echo_over_floor_ = std::numeric_limits<double>::infinity();
   const auto key = [&](RandomField field) {
-    return make_random_key(request.seed, stream, field, request.ping_number);
+    return make_random_key(request.seed, head, field, request.ping_number);
   };
   if (settings.model == Model::paper) {
     const PaperPing ping{settings.paper, key(RandomField::paper_speckle), codes_per_amplitude(settings),
                          skip_};
     return receive_paper(echo, ping, settings, workers, skipped_);
   }
-  Stream& state = stream_for(settings, stream);
+  HeadState& state = state_of(settings, head);
   state.fields.advance(request, state.tables);
   const PhysicalPing ping{
       state.tables,
-      speckle_of(state, request, stream),
-      texture_of(state, request, stream),
+      speckle_of(state, request, head),
+      texture_of(state, request, head),
       noise_of(state, key(RandomField::noise)),
       draw_interference(settings.physical.interference, settings.range, key(RandomField::interference)),
       draw_ring_down(settings.physical.ring_down, key(RandomField::ring_down)),
-      noise_factor_of(request, stream),
+      noise_factor_of(request, head),
       skip_};
   return receive_physical(echo, ping, settings, workers, skipped_, echo_over_floor_);
 }
 
-bool Receiver::pass(const PingRequest& request, int stream, WorkerPool& workers) {
+bool Receiver::pass(const PingRequest& request, int head, WorkerPool& workers) {
   skipped_ = {};
   const SonarSettings& settings = request.settings;
   if (settings.model == Model::paper || settings.physical.speckle != PhysicalModel::Speckle::ou) {
     return true;  // no state between pings
   }
-  Stream& state = stream_for(settings, stream);
+  HeadState& state = state_of(settings, head);
   const bool single_beam = settings.aperture.beam_count() == 1;
   if (!single_beam && state.tables.pulse_correlation.reach() == 0) {
     return false;
   }
   state.fields.advance(request, state.tables);
   const PhysicalPing ping{
-      state.tables, speckle_of(state, request, stream), texture_of(state, request, stream), {}, {}, {}, {},
+      state.tables, speckle_of(state, request, head), texture_of(state, request, head), {}, {}, {}, {},
       skip_};
   evolve_fields(ping, workers, skipped_);
   return true;

@@ -9,7 +9,7 @@
 
 namespace sonard::render {
 
-/// The last mean echo of a stream, and its inputs (SkipRule::unchanged_scene).
+/// The last mean echo of a head, and its inputs (SkipRule::unchanged_scene).
 struct CachedEcho {
   EchoImage image;
   SonarSettings settings;

@@ -37,14 +37,14 @@ struct Rounds {
 };
 
 /// @param away distance from the position of the first round, in steps
-Rounds render_rounds(SonarRenderer& renderer, std::span<const StreamPing> pings, int most, int away = 0) {
+Rounds render_rounds(SonarRenderer& renderer, std::span<const HeadRequest> pings, int most, int away = 0) {
   Rounds rounds;
   double taken_s = 0.0;
   for (int round = 0; round < most && taken_s < longest_trial_s; ++round) {
     Stopwatch watch;
-    for (StreamPing ping : pings) {
+    for (HeadRequest ping : pings) {
       ping.request.T_world_sonar.position_m.x += (away + round) * step_m;
-      const EchoImage& image = renderer.render_echo(ping.request, ping.stream);
+      const EchoImage& image = renderer.render_echo(ping.request, ping.head);
       if (round == 0) {
         rounds.images.push_back(image);
       }
@@ -58,9 +58,9 @@ Rounds render_rounds(SonarRenderer& renderer, std::span<const StreamPing> pings,
 }
 
 /// The middle sixteenth of the beams of each fan. They take less time than all beams.
-std::vector<StreamPing> middle_beams(std::span<const StreamPing> pings) {
-  std::vector<StreamPing> few(pings.begin(), pings.end());
-  for (StreamPing& ping : few) {
+std::vector<HeadRequest> middle_beams(std::span<const HeadRequest> pings) {
+  std::vector<HeadRequest> few(pings.begin(), pings.end());
+  for (HeadRequest& ping : few) {
     std::vector<double>& edges_rad = ping.request.settings.aperture.beam_edges_rad;
     const auto beams = static_cast<std::ptrdiff_t>(edges_rad.size()) - 1;
     const std::ptrdiff_t kept = (beams + 15) / 16;
@@ -71,11 +71,11 @@ std::vector<StreamPing> middle_beams(std::span<const StreamPing> pings) {
 }
 
 /// Times the GPU and fills in the results.
-void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const Rounds& by_cpu,
+void try_gpu(SonarRenderer& renderer, std::span<const HeadRequest> pings, const Rounds& by_cpu,
              EngineTrial& trial) {
   renderer.use_engine(EngineKind::gpu);
   trial.gpu = renderer.engine_description();
-  const auto rounds = [&](std::span<const StreamPing> of, int most, int away = 0) {
+  const auto rounds = [&](std::span<const HeadRequest> of, int most, int away = 0) {
     Rounds made = render_rounds(renderer, of, most, away);
     trial.gpu_ms = made.fastest_ms;
     if (!made.all_drawn) {
@@ -83,7 +83,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
     }
     return made;
   };
-  const std::vector<StreamPing> few = middle_beams(pings);
+  const std::vector<HeadRequest> few = middle_beams(pings);
   // At the first draw, the driver builds shaders and the world is uploaded, which takes half a second. Later
   // pings do not need this, so the first round does not count.
   rounds(few, 1, most_rounds);
@@ -107,7 +107,7 @@ void try_gpu(SonarRenderer& renderer, std::span<const StreamPing> pings, const R
 
 }  // namespace
 
-EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings) {
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const HeadRequest> first_pings) {
   EngineTrial trial;
   renderer.use_engine(EngineKind::cpu);
   trial.cpu = renderer.engine_description();
@@ -126,7 +126,7 @@ EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> f
   return trial;
 }
 
-EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const StreamPing> first_pings,
+EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const HeadRequest> first_pings,
                                    const GpuOptions& gpu) {
   std::string software = software_gl(gpu.device);
   if (software.empty()) {

@@ -27,12 +27,12 @@ struct EngineTrial {
 /// one. The GPU is selected only if its bins agree with the CPU's within twice the error of each ping's
 /// preset. The GPU first renders some beams of each ping, so that its shaders are built.
 /// @throws RequestError, RendererError if the CPU cannot render them.
-EngineTrial choose_engine(SonarRenderer& renderer, std::span<const StreamPing> first_pings);
+EngineTrial choose_engine(SonarRenderer& renderer, std::span<const HeadRequest> first_pings);
 
 /// choose_engine() for a starting program. If OpenGL runs on the CPU, it selects the CPU engine without
 /// rendering: such OpenGL is always slower, and to measure it would take seconds.
 /// @throws RequestError, RendererError if the CPU cannot render them.
-EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const StreamPing> first_pings,
+EngineTrial choose_engine_at_start(SonarRenderer& renderer, std::span<const HeadRequest> first_pings,
                                    const GpuOptions& gpu);
 
 /// "cpu takes 14.2 ms a ping, gpu 410.0 ms (vendor / renderer / version): cpu is taken".

@@ -115,7 +115,7 @@ SelfTestResult run_self_test(RendererOptions options) {
 
 EngineTrial time_engines(const RendererOptions& options) {
   SonarRenderer renderer(make_wall(), options);
-  StreamPing ping;
+  HeadRequest ping;
   ping.request.settings = wall_settings(256, 1000);
   return choose_engine_at_start(renderer, std::vector{ping}, options.gpu);
 }

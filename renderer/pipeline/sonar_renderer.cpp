@@ -90,13 +90,13 @@ struct SonarRenderer::Impl {
   Multipath multipath;
   TerrainLevels terrain;
   Receiver receiver;
-  std::map<int, TransmissionLoss> losses;  // by stream
+  std::map<int, TransmissionLoss> losses;  // by head
   PingStatistics statistics;
   std::unordered_map<std::string, std::size_t> body_number;
   std::uint64_t world_revision = 1;          // counts the moves of bodies
-  std::map<int, CachedEcho> cached_echoes;   // by stream
-  std::map<int, PointSpread> point_spreads;  // by stream
-  std::map<int, Begun> begun;                // by stream
+  std::map<int, CachedEcho> cached_echoes;   // by head
+  std::map<int, PointSpread> point_spreads;  // by head
+  std::map<int, Begun> begun;                // by head
   EchoImage fine_echo;                       // memory
   // The strongest echo of each line, before the pulse; empty without echoes of the water.
   std::vector<float> strongest_of_surfaces, strongest_of_all;
@@ -159,7 +159,7 @@ struct SonarRenderer::Impl {
   }
 
   /// @param settings_and_seed its poses are not used
-  void render_echo(const PingRequest& settings_and_seed, int stream, const SonarMotion& motion,
+  void render_echo(const PingRequest& settings_and_seed, int head, const SonarMotion& motion,
                    EchoImage& image) {
     const SonarSettings& settings = settings_and_seed.settings;
     image.beams = settings.aperture.beam_count();
@@ -172,15 +172,15 @@ struct SonarRenderer::Impl {
                              0.0F);
       return;
     }
-    PointSpread& point_spread = point_spreads[stream];
-    point_spread.prepare(settings, settings_and_seed.seed, stream, skip, statistics.skipped);
+    PointSpread& point_spread = point_spreads[head];
+    point_spread.prepare(settings, settings_and_seed.seed, head, skip, statistics.skipped);
     if (point_spread.has_pattern()) {
-      sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, stream, motion, fine_echo);
+      sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, head, motion, fine_echo);
       Stopwatch watch;
       point_spread.form_beams(fine_echo, settings, image, workers, skip, statistics.skipped);
       statistics.azimuth_pattern_s = watch.lap();
     } else {
-      sample_echo(settings, settings_and_seed.seed, stream, motion, image);
+      sample_echo(settings, settings_and_seed.seed, head, motion, image);
     }
     Stopwatch watch;
     point_spread.spread(image, workers);
@@ -193,20 +193,20 @@ struct SonarRenderer::Impl {
     statistics.pulse_s = watch.lap();
   }
 
-  /// The request to the engine; it refers to the settings and to stored data of the stream.
-  EchoRequest engine_request(const SonarSettings& settings, int stream, const SonarMotion& motion) {
+  /// The request to the engine; it refers to the settings and to stored data of the head.
+  EchoRequest engine_request(const SonarSettings& settings, int head, const SonarMotion& motion) {
     static const std::vector<float> no_loss;
     const std::vector<float>& line_weight =
-        settings.model == Model::physical ? loss_for(settings, stream).of_line : no_loss;
+        settings.model == Model::physical ? loss_for(settings, head).of_line : no_loss;
     return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings)};
   }
 
   /// The echo as it arrives at the sonar.
-  void sample_echo(const SonarSettings& settings, std::uint64_t seed, int stream, const SonarMotion& motion,
+  void sample_echo(const SonarSettings& settings, std::uint64_t seed, int head, const SonarMotion& motion,
                    EchoImage& image) {
-    const EchoRequest request = engine_request(settings, stream, motion);
+    const EchoRequest request = engine_request(settings, head, motion);
     MeanEcho echo{std::move(image), {}};
-    if (const auto made = begun.find(stream); made != begun.end()) {
+    if (const auto made = begun.find(head); made != begun.end()) {
       echo = std::move(made->second.echo);
       const SkipCounts skipped = statistics.skipped;
       statistics = made->second.statistics;
@@ -290,8 +290,8 @@ struct SonarRenderer::Impl {
     }
   }
 
-  const TransmissionLoss& loss_for(const SonarSettings& settings, int stream) {
-    TransmissionLoss& loss = losses[stream];
+  const TransmissionLoss& loss_for(const SonarSettings& settings, int head) {
+    TransmissionLoss& loss = losses[head];
     if (loss.fits(settings) && skip.on(SkipRule::unchanged_settings)) {
       statistics.skipped.add(SkipRule::unchanged_settings);
     } else {
@@ -301,8 +301,8 @@ struct SonarRenderer::Impl {
   }
 
   /// Whether the engine has rendered this ping in advance. An advance result for another ping is dropped.
-  bool is_begun(int stream, const PingRequest& request, const SonarMotion& motion) {
-    const auto made = begun.find(stream);
+  bool is_begun(int head, const PingRequest& request, const SonarMotion& motion) {
+    const auto made = begun.find(head);
     if (made != begun.end() && !made->second.made_of.fits(request, motion, world_revision)) {
       begun.erase(made);
       return false;
@@ -312,41 +312,41 @@ struct SonarRenderer::Impl {
 
   /// Entry for a ping that the engine can render with others; nullptr: to be rendered alone, or not at all.
   /// @throws RequestError
-  Begun* may_begin(const StreamPing& ping) {
-    const auto& [stream, request] = ping;
+  Begun* may_begin(const HeadRequest& ping) {
+    const auto& [head, request] = ping;
     check(request.settings);
     const SonarMotion motion = motion_of(request);
     const bool unchanged =
-        skip.on(SkipRule::unchanged_scene) && cached_echoes[stream].fits(request, motion, world_revision);
-    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(stream, request, motion)) {
+        skip.on(SkipRule::unchanged_scene) && cached_echoes[head].fits(request, motion, world_revision);
+    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(head, request, motion)) {
       return nullptr;
     }
-    PointSpread& spread = point_spreads[stream];
-    spread.prepare(request.settings, request.seed, stream, skip, statistics.skipped);
+    PointSpread& spread = point_spreads[head];
+    spread.prepare(request.settings, request.seed, head, skip, statistics.skipped);
     const CachedEcho made_of{{}, request.settings, request.seed, motion, world_revision};
     return &begun
-                .emplace(stream, Begun{made_of, spread.has_pattern() ? PointSpread::sampled(request.settings)
-                                                                     : request.settings})
+                .emplace(head, Begun{made_of, spread.has_pattern() ? PointSpread::sampled(request.settings)
+                                                                   : request.settings})
                 .first->second;
   }
 
-  void begin(std::span<const StreamPing> pings) {
+  void begin(std::span<const HeadRequest> pings) {
     // Terrain detail and bent rays depend on the ping, so such pings are rendered one by one.
     if (engine.kind() != EngineKind::gpu || pings.size() < 2 || terrain.any() || ray_curvature_per_m != 0.0) {
       return;
     }
     std::deque<EchoRequest> requests;  // jobs refer to them
     std::vector<EchoJob> jobs;
-    std::vector<int> streams;
+    std::vector<int> heads;
     statistics = {};
-    for (const StreamPing& ping : pings) {
+    for (const HeadRequest& ping : pings) {
       try {
-        if (&ping == &pings.front() && is_begun(ping.stream, ping.request, motion_of(ping.request))) {
+        if (&ping == &pings.front() && is_begun(ping.head, ping.request, motion_of(ping.request))) {
           return;  // render it first; the next pings start together when all of these are done
         }
         if (Begun* made = may_begin(ping)) {
-          streams.push_back(ping.stream);
-          requests.push_back(engine_request(made->sampled, ping.stream, made->made_of.motion));
+          heads.push_back(ping.head);
+          requests.push_back(engine_request(made->sampled, ping.head, made->made_of.motion));
           jobs.push_back({requests.back(), made->echo, made->statistics});
         }
       } catch (const RequestError&) {
@@ -356,8 +356,8 @@ struct SonarRenderer::Impl {
     try {
       engine.images(jobs);
     } catch (const RequestError&) {
-      for (const int stream : streams) {
-        begun.erase(stream);
+      for (const int head : heads) {
+        begun.erase(head);
       }
     }
   }
@@ -390,23 +390,23 @@ bool SonarRenderer::set_body_pose(const std::string& body_name, const Pose& T_wo
   return true;
 }
 
-void SonarRenderer::begin_pings(std::span<const StreamPing> pings) {
+void SonarRenderer::begin_pings(std::span<const HeadRequest> pings) {
   impl_->begin(pings);
 }
 
-const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stream) {
+const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int head) {
   check(request.settings);
   impl_->statistics = {};
   const SonarMotion motion = impl_->motion_of(request);
-  impl_->is_begun(stream, request, motion);  // drops an advance result for another ping
-  CachedEcho& cached = impl_->cached_echoes[stream];
+  impl_->is_begun(head, request, motion);  // drops an advance result for another ping
+  CachedEcho& cached = impl_->cached_echoes[head];
   if (impl_->skip.on(SkipRule::unchanged_scene) && cached.fits(request, motion, impl_->world_revision)) {
     impl_->statistics.skipped.add(SkipRule::unchanged_scene);
     impl_->statistics.sees_surface = cached.sees_surface;
     return cached.image;
   }
   cached.world_revision = 0;  // until the image is complete
-  impl_->render_echo(request, stream, motion, cached.image);
+  impl_->render_echo(request, head, motion, cached.image);
   cached.settings = request.settings;
   cached.seed = request.seed;
   cached.motion = motion;
@@ -415,25 +415,25 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int stre
   return cached.image;
 }
 
-PingSamples SonarRenderer::render_ping(const PingRequest& request, int stream) {
-  const EchoImage& echo = render_echo(request, stream);
+PingSamples SonarRenderer::render_ping(const PingRequest& request, int head) {
+  const EchoImage& echo = render_echo(request, head);
   Stopwatch watch;
-  PingSamples samples = impl_->receiver.receive(echo, request, stream, impl_->workers);
+  PingSamples samples = impl_->receiver.receive(echo, request, head, impl_->workers);
   impl_->statistics.receiver_s = watch.lap();
   impl_->statistics.skipped += impl_->receiver.skipped();
   impl_->statistics.echo_over_floor = impl_->receiver.echo_over_floor();
   return samples;
 }
 
-void SonarRenderer::forget(int stream) {
-  impl_->cached_echoes.erase(stream);
-  impl_->receiver.forget(stream);
+void SonarRenderer::forget(int head) {
+  impl_->cached_echoes.erase(head);
+  impl_->receiver.forget(head);
 }
 
-bool SonarRenderer::pass_ping(const PingRequest& request, int stream) {
+bool SonarRenderer::pass_ping(const PingRequest& request, int head) {
   check(request.settings);
   impl_->statistics = {};
-  return impl_->receiver.pass(request, stream, impl_->workers);
+  return impl_->receiver.pass(request, head, impl_->workers);
 }
 
 const PingStatistics& SonarRenderer::last_statistics() const {

@@ -16,7 +16,7 @@ namespace sonard::render {
 
 /// Renders pings of one world. All calls, including construction and destruction, must come from one thread,
 /// which owns the GL context if there is one. Several sonars may share one renderer; each uses its own
-/// `stream` number, which separates their speckle.
+/// `head` number, which separates their speckle.
 class SonarRenderer {
  public:
   /// @throws RendererError if `gpu` is requested but unavailable.
@@ -41,30 +41,30 @@ class SonarRenderer {
   /// Renders the mean echoes of these pings in parallel, in advance; the later results are the same as
   /// without. Does nothing if there is no gain: on the CPU, and if a ping changes what the engine draws
   /// (motion within a ping, terrain in levels, bent rays).
-  /// @param pings of different streams
+  /// @param pings of different heads
   /// @throws RendererError
-  void begin_pings(std::span<const StreamPing> pings);
+  void begin_pings(std::span<const HeadRequest> pings);
 
   /// Renders the mean echo only: no speckle, noise or gain. The image stays valid until the next call for
-  /// this stream. If nothing it depends on has changed (SkipRule::unchanged_scene), the call returns the same
+  /// this head. If nothing it depends on has changed (SkipRule::unchanged_scene), the call returns the same
   /// image.
   /// @throws RequestError, RendererError
-  const EchoImage& render_echo(const PingRequest& request, int stream = 0);
+  const EchoImage& render_echo(const PingRequest& request, int head = 0);
 
-  /// Renders the samples of a ping. The bytes depend on the earlier requests of this stream; with speckle
+  /// Renders the samples of a ping. The bytes depend on the earlier requests of this head; with speckle
   /// `frozen` or `per_ping`, only on this request.
-  /// @throws RequestError, RendererError; std::bad_alloc, after which the caller must forget() the stream
-  PingSamples render_ping(const PingRequest& request, int stream = 0);
+  /// @throws RequestError, RendererError; std::bad_alloc, after which the caller must forget() the head
+  PingSamples render_ping(const PingRequest& request, int head = 0);
 
-  /// Drops the history of this stream; its next ping is rendered like its first one.
-  void forget(int stream);
+  /// Drops the history of this head; its next ping is rendered like its first one.
+  void forget(int head);
 
-  /// Advances the history of this stream like render_ping(), in a fraction of its time: rendering every n-th
+  /// Advances the history of this head like render_ping(), in a fraction of its time: rendering every n-th
   /// ping of a run gives the same bytes as the whole run.
   /// @return false, without any change, if this depends on the echo: if pulses are shorter than a line,
   /// speckle `ou` evolves only in lines with an echo. Use render_ping() then.
   /// @throws RequestError
-  bool pass_ping(const PingRequest& request, int stream = 0);
+  bool pass_ping(const PingRequest& request, int head = 0);
 
   const PingStatistics& last_statistics() const;
 

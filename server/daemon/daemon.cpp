@@ -71,7 +71,7 @@ std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig
 
 constexpr unsigned threads_of_opengl = 6;  // Mesa's, in addition to one per core
 
-// By stream; null for a head that dumps nothing.
+// By head; null for a head that dumps nothing.
 std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>& heads) {
   std::vector<std::unique_ptr<PingDump>> dumps(heads.size());
   for (std::size_t i = 0; i < heads.size(); ++i) {
@@ -257,11 +257,12 @@ std::string Daemon::engine_text() const {
 
 std::unique_ptr<RenderService> Daemon::make_renderer_of(bool scanning, const DaemonConfig& config,
                                                         const RendererFactory& make_renderer) {
-  const auto streams =
+  const auto head_count =
       std::count_if(config.heads.begin(), config.heads.end(),
                     [scanning](const HeadConfig& head) { return type_of(head).scanning() == scanning; });
-  return streams > 0 ? std::make_unique<RenderService>(make_renderer, static_cast<int>(streams), hooks())
-                     : nullptr;
+  return head_count > 0
+             ? std::make_unique<RenderService>(make_renderer, static_cast<int>(head_count), hooks())
+             : nullptr;
 }
 
 // Renders from the vehicle's pose, or from the origin if no pose is known yet.
@@ -269,7 +270,7 @@ void Daemon::warm_up(const std::vector<HeadConfig>& heads) const {
   const std::optional<PoseEstimate> vehicle = poses_.at(clock_.now());
   const render::Pose T_world_vehicle = vehicle ? vehicle->T_world_vehicle : render::Pose{};
   for (RenderService* renderer : {fan_renderer_.get(), beam_renderer_.get()}) {
-    std::vector<render::StreamPing> first_pings;
+    std::vector<render::HeadRequest> first_pings;
     for (std::size_t i = 0; i < heads.size(); ++i) {
       const HeadConfig& head = heads[i];
       if (&renderer_of(head) == renderer) {
@@ -335,7 +336,7 @@ RenderServiceHooks Daemon::hooks() {
     end(exit_renderer);
   };
   hooks.observe = [this](const RenderJob& job, const render::PingSamples& samples) {
-    if (PingDump* dump = dumps_[static_cast<std::size_t>(job.stream)].get()) {
+    if (PingDump* dump = dumps_[static_cast<std::size_t>(job.head)].get()) {
       dump->write(job, samples);
     }
   };

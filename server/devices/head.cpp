@@ -44,11 +44,11 @@ struct PosesToRecord {
 }  // namespace
 
 struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
-  Impl(const HeadConfig& head_config, int stream_number, const HeadServices& head_services);
+  Impl(const HeadConfig& head_config, int head_index, const HeadServices& head_services);
 
   const HeadConfig config;
   const HeadServices services;
-  const int stream;
+  const int index;  ///< among all heads
   const DeviceType& type;
 
   std::unique_ptr<ConnectedDevice> connected;
@@ -100,8 +100,8 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void report_every_period();
 };
 
-Head::Head(const HeadConfig& config, int stream, const HeadServices& services)
-    : impl_(std::make_shared<Impl>(config, stream, services)) {}
+Head::Head(const HeadConfig& config, int index, const HeadServices& services)
+    : impl_(std::make_shared<Impl>(config, index, services)) {}
 
 Head::~Head() {
   impl_->stop();
@@ -134,17 +134,17 @@ const RenderCounters& Head::render_counters() const {
   return impl_->rendering.counters();
 }
 
-Head::Impl::Impl(const HeadConfig& head_config, int stream_number, const HeadServices& head_services)
+Head::Impl::Impl(const HeadConfig& head_config, int head_index, const HeadServices& head_services)
     : config(head_config),
       services(head_services),
-      stream(stream_number),
+      index(head_index),
       type(type_of(config)),
       connected(type.connect(config, services.io, services.clock)),
-      rendering(config, stream, services),
+      rendering(config, index, services),
       timer(services.io),
       report_timer(services.io),
       log(config.name),
-      recording(services.recorder, stream, services.clock),
+      recording(services.recorder, index, services.clock),
       diagnosis(config, services) {}
 
 // ---- Life
@@ -374,7 +374,7 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
     rendering.rest();
   }
   if (services.playback != nullptr) {
-    services.playback->progress(stream, now, connected->device().progress());
+    services.playback->progress(index, now, connected->device().progress());
   }
   if (actions.cancelled && rendering.withdraw()) {
     return actions.cancelled;
@@ -405,7 +405,7 @@ void Head::Impl::record(TimePoint now, PingRecord ping) {
   }
   if (services.viewer != nullptr) {
     services.viewer->show(std::make_shared<const ShownPing>(
-        ShownPing{stream, now, std::move(ping), newest ? newest->T_world_mount : std::nullopt}));
+        ShownPing{index, now, std::move(ping), newest ? newest->T_world_mount : std::nullopt}));
   }
 }
 
@@ -443,7 +443,7 @@ void Head::Impl::note_water(TimePoint now) {
 
 void Head::Impl::feed(TimePoint now) {
   if (services.playback != nullptr) {
-    step(now, PingFed{services.playback->next_ping(stream, now)});
+    step(now, PingFed{services.playback->next_ping(index, now)});
   }
 }
 
@@ -484,7 +484,7 @@ void Head::Impl::schedule(TimePoint now) {
 // Returns false if this ping is impossible.
 bool Head::Impl::render(const PingJob& job) {
   if (job.record) {
-    services.playback->started(stream, job);
+    services.playback->started(index, job);
   }
   const TimePoint pose_time = rendering.pose_time(job.transmit_time);
   const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);

@@ -58,7 +58,7 @@ struct HeadServices {
 class Head {
  public:
   /// @throws SocketError
-  Head(const HeadConfig& config, int stream, const HeadServices& services);
+  Head(const HeadConfig& config, int index, const HeadServices& services);
   ~Head();
   Head(const Head&) = delete;
   Head& operator=(const Head&) = delete;

@@ -28,11 +28,8 @@ StageSeconds& StageSeconds::operator+=(const render::PingStatistics& ping) {
   return *this;
 }
 
-HeadRendering::HeadRendering(const HeadConfig& config, int stream, const HeadServices& services)
-    : config_(config),
-      stream_(stream),
-      services_(services),
-      load_(config.acoustics, config.adaptive_quality) {
+HeadRendering::HeadRendering(const HeadConfig& config, int index, const HeadServices& services)
+    : config_(config), index_(index), services_(services), load_(config.acoustics, config.adaptive_quality) {
   if (services.poses.ping_clock() != PingClock::wall) {
     ping_times_.emplace(services.poses);
   }
@@ -105,8 +102,8 @@ std::vector<PosedBody> HeadRendering::bodies_at(TimePoint time) const {
 void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
   submitted_ = true;
   RenderJob job;
-  job.stream = stream_;
-  job.head = config_.name;
+  job.head = index_;
+  job.head_name = config_.name;
   job.transmit_us = ping.transmit_us;
   // If poses bring the time, pings wait for them, and the image must depend on nothing else. A recording is
   // played as it is.
@@ -148,7 +145,7 @@ bool HeadRendering::take(const RenderResult& result) {
 }
 
 bool HeadRendering::withdraw() {
-  if (!services_.skip.on(render::SkipRule::nobody_listening) || !services_.renderer.withdraw(stream_)) {
+  if (!services_.skip.on(render::SkipRule::nobody_listening) || !services_.renderer.withdraw(index_)) {
     return false;
   }
   submitted_ = false;

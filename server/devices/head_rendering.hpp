@@ -54,7 +54,7 @@ struct HeadPing {
 /// Belongs to the I/O thread.
 class HeadRendering {
  public:
-  HeadRendering(const HeadConfig& config, int stream, const HeadServices& services);
+  HeadRendering(const HeadConfig& config, int index, const HeadServices& services);
 
   /// Time of the poses, on the clock of PoseHistory, of a ping transmitted at this time of the head: the time
   /// that PingTimes returned, or else the same time.
@@ -95,7 +95,7 @@ class HeadRendering {
   void rest_when_idle(TimePoint now);
 
   const HeadConfig& config_;
-  int stream_;
+  int index_;
   HeadServices services_;
   std::optional<PingTimes> ping_times_;  ///< in simulated time
   std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last

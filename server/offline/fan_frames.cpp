@@ -74,15 +74,15 @@ render::PingRequest FanFrames::request(int frame) const {
 void FanFrames::pass(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
   place_bodies(trajectory_, times_.at(frame), renderer, nullptr);
-  if (!renderer.pass_ping(ping, place_.stream)) {
-    renderer.render_ping(ping, place_.stream);
+  if (!renderer.pass_ping(ping, place_.head)) {
+    renderer.render_ping(ping, place_.head);
   }
 }
 
 Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
   place_bodies(trajectory_, times_.at(frame), renderer, truth_);
-  render::PingSamples rendered = renderer.render_ping(ping, place_.stream);
+  render::PingSamples rendered = renderer.render_ping(ping, place_.head);
   auto samples = std::make_shared<const npy::Table>(
       npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
   Frame made;
@@ -162,7 +162,7 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
       frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(frame), unix_ns(frame)});
   json["device_id"] = head_.type->device_id(head_);
   json["ping_number"] = frame;
-  json["stream"] = place_.stream;
+  json["stream"] = place_.head;
   json["seed"] = head_.seed;
   if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
     json["element_seed"] = *element_seed;

@@ -21,7 +21,7 @@ namespace sonard::server {
 
 /// Numbers of a head in its configuration.
 struct HeadPlace {
-  int stream = 0;      ///< among all heads
+  int head = 0;        ///< among all heads
   int glf_number = 0;  ///< among heads with .glf logs
 };
 

@@ -301,7 +301,7 @@ void RenderRun::choose_engine() {
       return;
     }
   }
-  const std::vector<render::StreamPing> first{
+  const std::vector<render::HeadRequest> first{
       {static_cast<int>(head_),
        usual_ping(config_.heads[head_], trajectory_.T_world_vehicle(trajectory_.start_ns()))}};
   spdlog::info("engine auto: {}", describe(render::choose_engine_at_start(renderer_, first, config_.gpu)));

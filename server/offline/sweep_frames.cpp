@@ -34,11 +34,11 @@ int bins_of(const Survey& survey, const std::vector<int>& first_lines) {
 
 }  // namespace
 
-SweepFrames::SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
+SweepFrames::SweepFrames(const HeadConfig& head, int head_index, std::unique_ptr<Survey> survey,
                          const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
       options_(options),
-      stream_(stream),
+      head_index_(head_index),
       trajectory_(trajectory),
       survey_(std::move(survey)),
       times_(frame_times(trajectory, options, *survey_)),
@@ -71,8 +71,8 @@ void SweepFrames::pass(render::SonarRenderer& renderer, int frame) {
   for (int line = first_line(frame); line < first_line(frame + 1); ++line) {
     const render::PingRequest ping = request(line);
     place_bodies(trajectory_, times_.at(line), renderer, nullptr);
-    if (!renderer.pass_ping(ping, stream_)) {
-      renderer.render_ping(ping, stream_);
+    if (!renderer.pass_ping(ping, head_index_)) {
+      renderer.render_ping(ping, head_index_);
     }
   }
 }
@@ -92,7 +92,7 @@ Frame SweepFrames::render(render::SonarRenderer& renderer, int frame) {
     const render::PingRequest ping = request(first + column);
     place_bodies(trajectory_, times_.at(first + column), renderer, truth_);
     picture::SweepLine line{picture::turn_bearing(survey_->job(first + column).bearing_rad),
-                            renderer.render_ping(ping, stream_).u8};
+                            renderer.render_ping(ping, head_index_).u8};
     view.range_m = ping.settings.range.max_range_m();
     view.add(renderer.last_statistics());
     const std::vector<std::uint16_t> nearby =
@@ -194,7 +194,7 @@ std::string SweepFrames::sidecar(int frame) const {
       frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(first), unix_ns(frame)});
   json["device_id"] = head_.type->device_id(head_);
   json["first_ping_number"] = first;
-  json["stream"] = stream_;
+  json["stream"] = head_index_;
   json["seed"] = head_.seed;
   if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
     json["element_seed"] = *element_seed;

@@ -23,7 +23,7 @@ namespace sonard::server {
 class SweepFrames final : public FrameSource {
  public:
   /// All references and `truth` must outlive this object. @param truth null: not requested
-  SweepFrames(const HeadConfig& head, int stream, std::unique_ptr<Survey> survey,
+  SweepFrames(const HeadConfig& head, int head_index, std::unique_ptr<Survey> survey,
               const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
   /// 0 if the trajectory ends before the first sweep does.
@@ -51,7 +51,7 @@ class SweepFrames final : public FrameSource {
 
   const HeadConfig& head_;
   const OfflineOptions options_;
-  int stream_;
+  int head_index_;
   const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;
   PingTimes times_;

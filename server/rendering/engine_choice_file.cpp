@@ -150,9 +150,9 @@ fs::path engine_choice_path() {
 }
 
 std::string situation_of(const render::RendererOptions& options, const render::World& world,
-                         std::span<const render::StreamPing> first_pings) {
+                         std::span<const render::HeadRequest> first_pings) {
   std::vector<std::string> pings;
-  for (const render::StreamPing& ping : first_pings) {
+  for (const render::HeadRequest& ping : first_pings) {
     pings.push_back(ping_size(ping.request.settings));
   }
   std::error_code ignored;

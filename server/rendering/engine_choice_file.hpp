@@ -40,6 +40,6 @@ std::filesystem::path engine_choice_path();
 /// Everything that decides which engine is faster, as one line: this program, the processor, the OpenGL
 /// devices and drivers, the options, the world's name and size, and the size of the pings.
 std::string situation_of(const render::RendererOptions& options, const render::World& world,
-                         std::span<const render::StreamPing> first_pings);
+                         std::span<const render::HeadRequest> first_pings);
 
 }  // namespace sonard::server

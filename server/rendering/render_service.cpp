@@ -59,7 +59,7 @@ void make_sure_of_room(const render::PingSamples& samples) {
 
 struct RenderService::Impl {
   struct WarmUp {
-    std::vector<render::StreamPing> first_pings;
+    std::vector<render::HeadRequest> first_pings;
     std::promise<void> done;
   };
   struct Entry {
@@ -87,19 +87,19 @@ struct RenderService::Impl {
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
   void describe(const PingRenderer& renderer);
-  std::vector<render::StreamPing> next_pings(const RenderJob& first);
+  std::vector<render::HeadRequest> next_pings(const RenderJob& first);
   void serve(PingRenderer& renderer);
   void warm_up(PingRenderer& renderer, WarmUp& warm_up);
   void move_bodies(PingRenderer& renderer, const RenderJob& job);
   RenderResult render(PingRenderer& renderer, const RenderJob& job,
-                      const std::vector<render::StreamPing>& next);
+                      const std::vector<render::HeadRequest>& next);
   void close_queue();
 };
 
-RenderService::RenderService(const RendererFactory& make_renderer, int stream_count, RenderServiceHooks hooks)
+RenderService::RenderService(const RendererFactory& make_renderer, int head_count, RenderServiceHooks hooks)
     : impl_(std::make_unique<Impl>()) {
   impl_->hooks = std::move(hooks);
-  impl_->capacity = static_cast<std::size_t>(stream_count);
+  impl_->capacity = static_cast<std::size_t>(head_count);
   std::promise<void> ready;
   std::future<void> made = ready.get_future();
   impl_->thread = std::thread(&Impl::run, impl_.get(), std::cref(make_renderer), std::move(ready));
@@ -123,14 +123,14 @@ void RenderService::submit(RenderJob job, Done done) {
       return;
     }
     if (impl_->queue.size() >= impl_->capacity) {
-      throw std::logic_error("render queue is full: a stream has more than one job outstanding");
+      throw std::logic_error("render queue is full: a head has more than one job outstanding");
     }
     impl_->queue.push_back(std::move(entry));
   }
   impl_->wake.notify_one();
 }
 
-void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
+void RenderService::warm_up(std::vector<render::HeadRequest> first_pings) {
   Impl::WarmUp warm_up{std::move(first_pings), {}};
   std::future<void> done = warm_up.done.get_future();
   {
@@ -144,12 +144,12 @@ void RenderService::warm_up(std::vector<render::StreamPing> first_pings) {
   done.get();
 }
 
-bool RenderService::withdraw(int stream) {
+bool RenderService::withdraw(int head) {
   std::optional<Impl::Entry> forgotten;  // destroyed outside the lock: its callback owns other objects
   const std::lock_guard lock(impl_->mutex);
-  const auto entry = std::find_if(
-      impl_->queue.begin(), impl_->queue.end(),
-      [stream](const Impl::Entry& waiting) { return waiting.job && waiting.job->stream == stream; });
+  const auto entry =
+      std::find_if(impl_->queue.begin(), impl_->queue.end(),
+                   [head](const Impl::Entry& waiting) { return waiting.job && waiting.job->head == head; });
   if (entry == impl_->queue.end()) {
     return false;
   }
@@ -245,7 +245,7 @@ void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
 }
 
 /// This ping and the waiting pings that move no body; empty if this ping is the only one.
-std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob& first) {
+std::vector<render::HeadRequest> RenderService::Impl::next_pings(const RenderJob& first) {
   std::vector<std::shared_ptr<const RenderJob>> waiting;
   {
     const std::lock_guard lock(mutex);
@@ -253,36 +253,36 @@ std::vector<render::StreamPing> RenderService::Impl::next_pings(const RenderJob&
       waiting.push_back(entry.job);
     }
   }
-  std::vector<render::StreamPing> pings;
+  std::vector<render::HeadRequest> pings;
   for (const auto& job : waiting) {  // copied without the lock
     if (job == nullptr || job->bodies != first.bodies) {
       break;
     }
     if (pings.empty()) {
-      pings.push_back({first.stream, first.request});
+      pings.push_back({first.head, first.request});
     }
-    pings.push_back({job->stream, job->request});
+    pings.push_back({job->head, job->request});
   }
   return pings;
 }
 
 /// @param next from next_pings()
 RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job,
-                                         const std::vector<render::StreamPing>& next) {
+                                         const std::vector<render::HeadRequest>& next) {
   RenderResult result;
   try {
     move_bodies(renderer, job);
     if (next.size() > 1) {
       renderer.begin_pings(next);
     }
-    result.samples = renderer.render_ping(job.request, job.stream);
+    result.samples = renderer.render_ping(job.request, job.head);
     make_sure_of_room(result.samples);
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {
     result.error = error.what();
   } catch (const std::bad_alloc&) {  // a too large request must not end other clients
     result.samples = {};
-    renderer.forget(job.stream);
+    renderer.forget(job.head);
     result.error = "out of memory for this ping; use a shorter range or fewer bins";
   }
   return result;

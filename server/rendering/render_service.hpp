@@ -26,16 +26,16 @@ class PingRenderer {
   /// @return false if the world has no such body
   virtual bool set_body_pose(const std::string& body, const render::Pose& T_world_body) = 0;
   /// @throws render::RequestError (this ping is impossible), render::RendererError (all pings are);
-  /// std::bad_alloc (call forget() for the stream)
-  virtual render::PingSamples render_ping(const render::PingRequest& request, int stream) = 0;
-  /// Frees all caches of this stream; its next ping is rendered like its first.
-  virtual void forget(int /*stream*/) {}
+  /// std::bad_alloc (call forget() for the head)
+  virtual render::PingSamples render_ping(const render::PingRequest& request, int head) = 0;
+  /// Frees all caches of this head; its next ping is rendered like its first.
+  virtual void forget(int /*head*/) {}
   /// Prepares the engine, trees, shaders and memory for such pings. Called once, before the first ping.
   /// @throws as render_ping()
-  virtual void warm_up(const std::vector<render::StreamPing>& /*first_pings*/) {}
+  virtual void warm_up(const std::vector<render::HeadRequest>& /*first_pings*/) {}
   /// Announces the pings that are rendered next, one by one; they move no body. Common work may start.
   /// @throws render::RendererError
-  virtual void begin_pings(const std::vector<render::StreamPing>& /*pings*/) {}
+  virtual void begin_pings(const std::vector<render::HeadRequest>& /*pings*/) {}
   /// Statistics of the last render_ping().
   virtual render::PingStatistics last_statistics() const = 0;
 };
@@ -45,8 +45,8 @@ using RendererFactory = std::function<std::unique_ptr<PingRenderer>()>;
 
 /// One ping to render.
 struct RenderJob {
-  int stream = 0;                 ///< one per head, 0, 1, 2, ...
-  std::string head;               ///< name of the head, for logs and dumps
+  int head = 0;                   ///< its index, 0, 1, 2, ...
+  std::string head_name;          ///< name of the head, for logs and dumps
   std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
   std::int64_t pose_ns = 0;       ///< transmit time on the clock of the poses, for dumps
   render::PingRequest request;
@@ -74,7 +74,7 @@ struct RenderServiceHooks {
 /// Owns the render thread. All member functions are thread-safe, but stop() and the destructor must not run
 /// at the same time.
 ///
-/// Jobs wait in a queue of `stream_count` places. Each head has at most one job outstanding, so the queue
+/// Jobs wait in a queue of `head_count` places. Each head has at most one job outstanding, so the queue
 /// cannot overflow. Shutdown: stop() drops the waiting jobs, lets the current ping finish, and joins. Results
 /// already posted may still arrive after stop(); the submitter must accept that.
 class RenderService {
@@ -83,20 +83,20 @@ class RenderService {
 
   /// Returns when the renderer is made.
   /// @throws any exception of the factory
-  RenderService(const RendererFactory& make_renderer, int stream_count, RenderServiceHooks hooks);
+  RenderService(const RendererFactory& make_renderer, int head_count, RenderServiceHooks hooks);
   ~RenderService();
   RenderService(const RenderService&) = delete;
   RenderService& operator=(const RenderService&) = delete;
 
   /// Runs PingRenderer::warm_up(); returns when it is done.
   /// @throws any exception of warm_up(); std::future_error if the service is stopped first
-  void warm_up(std::vector<render::StreamPing> first_pings);
+  void warm_up(std::vector<render::HeadRequest> first_pings);
   /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
-  /// @throws std::logic_error if the queue is full: more than one job per stream was submitted
+  /// @throws std::logic_error if the queue is full: more than one job per head was submitted
   void submit(RenderJob job, Done done);
-  /// Drops the waiting job of a stream; its `done` is never called. @return false if no job is waiting: it
+  /// Drops the waiting job of a head; its `done` is never called. @return false if no job is waiting: it
   /// has begun and is answered as usual
-  bool withdraw(int stream);
+  bool withdraw(int head);
   /// Ends the render thread after its current ping. Can be called again.
   void stop();
 

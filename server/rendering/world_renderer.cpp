@@ -31,29 +31,29 @@ class WorldRenderer final : public PingRenderer {
     return renderer_.set_body_pose(body, T_world_body);
   }
 
-  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
-    return renderer_.render_ping(request, stream);
+  render::PingSamples render_ping(const render::PingRequest& request, int head) override {
+    return renderer_.render_ping(request, head);
   }
 
-  void forget(int stream) override { renderer_.forget(stream); }
+  void forget(int head) override { renderer_.forget(head); }
 
-  void warm_up(const std::vector<render::StreamPing>& first_pings) override {
+  void warm_up(const std::vector<render::HeadRequest>& first_pings) override {
     if (options_.engine == render::EngineKind::automatic && measure_engines(first_pings)) {
       return;
     }
-    for (const render::StreamPing& ping : first_pings) {
+    for (const render::HeadRequest& ping : first_pings) {
       // The receiver keeps speckle from ping to ping and needs no warm-up.
-      renderer_.render_echo(ping.request, ping.stream);
+      renderer_.render_echo(ping.request, ping.head);
     }
   }
 
-  void begin_pings(const std::vector<render::StreamPing>& pings) override { renderer_.begin_pings(pings); }
+  void begin_pings(const std::vector<render::HeadRequest>& pings) override { renderer_.begin_pings(pings); }
 
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }
 
  private:
   /// Measures both engines, unless an earlier start has. @return true if pings were rendered
-  bool measure_engines(const std::vector<render::StreamPing>& first_pings) {
+  bool measure_engines(const std::vector<render::HeadRequest>& first_pings) {
     const std::string situation = situation_of(options_, world_, first_pings);
     if (const std::optional<KeptChoice> kept = choices_.find(situation); kept && take(*kept)) {
       return false;

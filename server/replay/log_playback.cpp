@@ -26,9 +26,9 @@ class LogRenderer final : public PingRenderer {
 
   std::string description() const override { return "recording"; }
   bool set_body_pose(const std::string&, const render::Pose&) override { return true; }
-  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+  render::PingSamples render_ping(const render::PingRequest& request, int head) override {
     try {
-      return samples_of(*heads_.at(static_cast<std::size_t>(stream)).logged, request.ping_number);
+      return samples_of(*heads_.at(static_cast<std::size_t>(head)).logged, request.ping_number);
     } catch (const LogError& error) {
       throw render::RequestError(error.what());
     }
@@ -64,12 +64,12 @@ LogPlayback::LogPlayback(std::vector<PlayedHead> heads, const ReplayTiming& timi
   }
 }
 
-std::optional<RecordedPing> LogPlayback::next_ping(int stream, TimePoint now) {
-  const std::optional<ReplaySchedule::Ping> next = schedule_.next(static_cast<std::size_t>(stream), now);
+std::optional<RecordedPing> LogPlayback::next_ping(int index, TimePoint now) {
+  const std::optional<ReplaySchedule::Ping> next = schedule_.next(static_cast<std::size_t>(index), now);
   if (!next) {
     return std::nullopt;
   }
-  const LoggedPing& ping = head(stream).played.logged->pings.at(next->image);
+  const LoggedPing& ping = head(index).played.logged->pings.at(next->image);
   return RecordedPing{.record = next->image,
                       .settings = ping.settings,
                       .bearing_rad = -ping.bearing_rad,  // devices count bearings to starboard
@@ -78,13 +78,13 @@ std::optional<RecordedPing> LogPlayback::next_ping(int stream, TimePoint now) {
                       .due = next->due};
 }
 
-void LogPlayback::started(int stream, const PingJob& job) {
-  Head& head = this->head(stream);
+void LogPlayback::started(int index, const PingJob& job) {
+  Head& head = this->head(index);
   for (const Difference& difference : job.differences) {
     count(head, difference);
   }
   ++head.pings;
-  schedule_.started(static_cast<std::size_t>(stream), job.transmit_time);
+  schedule_.started(static_cast<std::size_t>(index), job.transmit_time);
 }
 
 // Logs only the first difference of each kind.
@@ -99,8 +99,8 @@ void LogPlayback::count(Head& head, const Difference& difference) {
   }
 }
 
-void LogPlayback::progress(int stream, TimePoint now, const PingProgress& done) {
-  Head& head = this->head(stream);
+void LogPlayback::progress(int index, TimePoint now, const PingProgress& done) {
+  Head& head = this->head(index);
   if (done.ended < head.pings || done.messages != head.messages) {
     head.idle_at = now;
   }

@@ -22,7 +22,7 @@ struct PlayedHead {
   std::vector<std::int64_t> times_ns() const;
 };
 
-/// All heads, by stream. Belongs to the I/O thread.
+/// All heads, by index. Belongs to the I/O thread.
 class LogPlayback final : public Playback {
  public:
   /// Clients may request lost lines for so long after the last ping, or after their last request.
@@ -30,9 +30,9 @@ class LogPlayback final : public Playback {
 
   LogPlayback(std::vector<PlayedHead> heads, const ReplayTiming& timing, TimePoint now);
 
-  std::optional<RecordedPing> next_ping(int stream, TimePoint now) override;
-  void started(int stream, const PingJob& job) override;
-  void progress(int stream, TimePoint now, const PingProgress& done) override;
+  std::optional<RecordedPing> next_ping(int index, TimePoint now) override;
+  void started(int index, const PingJob& job) override;
+  void progress(int index, TimePoint now, const PingProgress& done) override;
   bool finished(TimePoint now) const override;
 
   /// Call it once, at the end.
@@ -49,7 +49,7 @@ class LogPlayback final : public Playback {
     std::optional<TimePoint> idle_at{};  ///< last time at which the head had data to send
   };
 
-  Head& head(int stream) { return heads_.at(static_cast<std::size_t>(stream)); }
+  Head& head(int index) { return heads_.at(static_cast<std::size_t>(index)); }
   static void count(Head& head, const Difference& difference);
 
   std::vector<Head> heads_;

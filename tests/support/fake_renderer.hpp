@@ -19,9 +19,9 @@ namespace sonard::test {
 /// during a run.
 struct FakeRendererControl {
   /// Called before each ping on the render thread; may throw or block.
-  std::function<void(const render::PingRequest&, int stream)> before_ping;
+  std::function<void(const render::PingRequest&, int head)> before_ping;
   /// Called for each warm-up ping on the render thread; may throw.
-  std::function<void(const render::PingRequest&, int stream)> warming_up;
+  std::function<void(const render::PingRequest&, int head)> warming_up;
   std::string engine = "fake";  ///< PingRenderer::description(); change it on the render thread only
   /// Streams of each call of begin_pings(); read it only after the service has ended.
   std::vector<std::vector<int>> begun;
@@ -79,10 +79,10 @@ class FakeRenderer final : public server::PingRenderer {
 
   void forget(int) override { ++control_->forgotten; }
 
-  render::PingSamples render_ping(const render::PingRequest& request, int stream) override {
+  render::PingSamples render_ping(const render::PingRequest& request, int head) override {
     ++control_->attempts;
     if (control_->before_ping) {
-      control_->before_ping(request, stream);
+      control_->before_ping(request, head);
     }
     control_->record(request);
     render::PingSamples samples;
@@ -102,18 +102,18 @@ class FakeRenderer final : public server::PingRenderer {
     return samples;
   }
 
-  void warm_up(const std::vector<render::StreamPing>& first_pings) override {
-    for (const render::StreamPing& ping : first_pings) {
+  void warm_up(const std::vector<render::HeadRequest>& first_pings) override {
+    for (const render::HeadRequest& ping : first_pings) {
       if (control_->warming_up) {
-        control_->warming_up(ping.request, ping.stream);
+        control_->warming_up(ping.request, ping.head);
       }
     }
   }
 
-  void begin_pings(const std::vector<render::StreamPing>& pings) override {
-    std::vector<int>& streams = control_->begun.emplace_back();
-    for (const render::StreamPing& ping : pings) {
-      streams.push_back(ping.stream);
+  void begin_pings(const std::vector<render::HeadRequest>& pings) override {
+    std::vector<int>& heads = control_->begun.emplace_back();
+    for (const render::HeadRequest& ping : pings) {
+      heads.push_back(ping.head);
     }
   }
 

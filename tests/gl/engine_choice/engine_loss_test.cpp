@@ -85,7 +85,7 @@ class EngineTrials : public EngineLoss {};
 
 TEST_F(EngineTrials, TakeTheFasterAndTellBothTimes) {
   render::SonarRenderer renderer(wall_and_ball(), {EngineKind::automatic});
-  const std::vector<render::StreamPing> pings{{0, request(0)}, {1, request(1)}};
+  const std::vector<render::HeadRequest> pings{{0, request(0)}, {1, request(1)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_GT(trial.cpu_ms, 0.0);
   EXPECT_GT(trial.gpu_ms, 0.0);
@@ -103,7 +103,7 @@ TEST_F(EngineTrials, AGpuThatIsLostOnTheWayIsNotTaken) {
   render::RendererOptions options = losing_at(1);
   options.engine = EngineKind::automatic;
   render::SonarRenderer renderer(wall_and_ball(), options);
-  const std::vector<render::StreamPing> pings{{0, request(0)}};
+  const std::vector<render::HeadRequest> pings{{0, request(0)}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);
   EXPECT_THAT(trial.gpu_problem, HasSubstr("the GPU is lost"));
@@ -117,7 +117,7 @@ TEST(EngineTrialsWithoutGl, SayWhatIsMissing) {
   render::PingRequest request;
   request.settings.aperture.beam_edges_rad = render::equal_angle_edges(4, 0.1);
   request.settings.range = {10, 0.1, 0, false};
-  const std::vector<render::StreamPing> pings{{0, request}};
+  const std::vector<render::HeadRequest> pings{{0, request}};
   const render::EngineTrial trial = choose_engine(renderer, pings);
   EXPECT_EQ(trial.taken, EngineKind::cpu);
   EXPECT_EQ(trial.gpu, "");

@@ -14,7 +14,7 @@ namespace sonard::test {
 namespace {
 
 using render::EngineKind;
-using render::StreamPing;
+using render::HeadRequest;
 
 class PingsInFlight : public testing::Test {
  protected:
@@ -28,16 +28,16 @@ class PingsInFlight : public testing::Test {
   }
 
   /// Heads with different settings, more than may be in flight at once.
-  static std::vector<StreamPing> pings() {
-    std::vector<StreamPing> pings;
-    for (int stream = 0; stream < 11; ++stream) {
-      StreamPing ping;
-      ping.stream = stream;
+  static std::vector<HeadRequest> pings() {
+    std::vector<HeadRequest> pings;
+    for (int head = 0; head < 11; ++head) {
+      HeadRequest ping;
+      ping.head = head;
       ping.request.seed = 7;
-      ping.request.T_world_sonar.position_m.y = 0.1 * stream;
+      ping.request.T_world_sonar.position_m.y = 0.1 * head;
       render::SonarSettings& settings = ping.request.settings;
-      settings.aperture.beam_edges_rad = render::equal_angle_edges(16 + stream, 1.0);
-      settings.range = {400 + stream, 0.03, 0, false};
+      settings.aperture.beam_edges_rad = render::equal_angle_edges(16 + head, 1.0);
+      settings.range = {400 + head, 0.03, 0, false};
       pings.push_back(ping);
     }
     pings[1].request.settings.model = render::Model::paper;
@@ -50,23 +50,23 @@ class PingsInFlight : public testing::Test {
     return pings;
   }
 
-  static std::vector<float> alone(const StreamPing& ping, EngineKind engine = EngineKind::gpu) {
+  static std::vector<float> alone(const HeadRequest& ping, EngineKind engine = EngineKind::gpu) {
     render::SonarRenderer renderer(wall_and_ball(), {engine});
-    return renderer.render_echo(ping.request, ping.stream).intensity;
+    return renderer.render_echo(ping.request, ping.head).intensity;
   }
 };
 
 TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
   render::SonarRenderer renderer(wall_and_ball(), options());
-  const std::vector<StreamPing> all = pings();
+  const std::vector<HeadRequest> all = pings();
   renderer.begin_pings(all);
-  for (const StreamPing& ping : all) {
-    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity, alone(ping)) << ping.stream;
+  for (const HeadRequest& ping : all) {
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.head).intensity, alone(ping)) << ping.head;
     const render::PingStatistics& statistics = renderer.last_statistics();
-    if (ping.stream != 4 && ping.stream != 6) {
-      EXPECT_GE(statistics.passes, 1U) << ping.stream;
-      EXPECT_LE(statistics.synchronisations, statistics.passes + 1) << ping.stream;
-      EXPECT_GT(statistics.samples, 0U) << ping.stream;
+    if (ping.head != 4 && ping.head != 6) {
+      EXPECT_GE(statistics.passes, 1U) << ping.head;
+      EXPECT_LE(statistics.synchronisations, statistics.passes + 1) << ping.head;
+      EXPECT_GT(statistics.samples, 0U) << ping.head;
     }
   }
 }
@@ -74,7 +74,7 @@ TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
 TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
   render::SonarRenderer renderer(wall_and_ball(), options());
   render::SonarRenderer other(wall_and_ball(), options());
-  const std::vector<StreamPing> all = pings();
+  const std::vector<HeadRequest> all = pings();
   renderer.begin_pings(all);
   for (render::SonarRenderer* one : {&renderer, &other}) {
     ASSERT_TRUE(one->set_body_pose("ball", {{4, 0, 0}, {1, 0, 0, 0}}));
@@ -85,7 +85,7 @@ TEST_F(PingsInFlight, AreMadeAgainWhenTheWorldHasMovedOn) {
 
 TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {
   render::SonarRenderer renderer(wall_and_ball(), options());
-  std::vector<StreamPing> all = pings();
+  std::vector<HeadRequest> all = pings();
   renderer.begin_pings(all);
   all[0].request.T_world_sonar.position_m.x = 1;
   EXPECT_EQ(renderer.render_echo(all[0].request, 0).intensity, alone(all[0]));
@@ -93,12 +93,12 @@ TEST_F(PingsInFlight, AreThoseThatAreAskedForInTheEnd) {
 
 TEST_F(PingsInFlight, ComeFromTheCpuWhenTheGpuIsLostOnTheWay) {
   render::SonarRenderer renderer(wall_and_ball(), options(3));
-  const std::vector<StreamPing> all = pings();
+  const std::vector<HeadRequest> all = pings();
   renderer.begin_pings(all);
   EXPECT_EQ(renderer.engine(), EngineKind::cpu);
-  for (const StreamPing& ping : all) {
-    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity, alone(ping, EngineKind::cpu))
-        << ping.stream;
+  for (const HeadRequest& ping : all) {
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.head).intensity, alone(ping, EngineKind::cpu))
+        << ping.head;
   }
 }
 
@@ -107,25 +107,25 @@ TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
   const render::World large = make_world({wall_ahead(), make_body("ball", make_sphere(1, 200))});
   render::RendererOptions bounded = options();
   bounded.gpu.memory_mib = 1;
-  std::vector<StreamPing> two{pings()[0], pings()[8]};
-  for (StreamPing& ping : two) {
-    ping.request.T_world_sonar = looking({3, 0, 0}, ping.stream == 0 ? 0 : 180, 0);
+  std::vector<HeadRequest> two{pings()[0], pings()[8]};
+  for (HeadRequest& ping : two) {
+    ping.request.T_world_sonar = looking({3, 0, 0}, ping.head == 0 ? 0 : 180, 0);
   }
   render::SonarRenderer renderer(large, bounded);
   renderer.begin_pings(two);
-  for (const StreamPing& ping : two) {
-    render::SonarRenderer alone(large, {ping.stream == 0 ? EngineKind::gpu : EngineKind::cpu});
-    EXPECT_EQ(renderer.render_echo(ping.request, ping.stream).intensity,
-              alone.render_echo(ping.request, ping.stream).intensity)
-        << ping.stream;
-    EXPECT_EQ(renderer.last_statistics().passes > 0, ping.stream == 0) << ping.stream;
+  for (const HeadRequest& ping : two) {
+    render::SonarRenderer alone(large, {ping.head == 0 ? EngineKind::gpu : EngineKind::cpu});
+    EXPECT_EQ(renderer.render_echo(ping.request, ping.head).intensity,
+              alone.render_echo(ping.request, ping.head).intensity)
+        << ping.head;
+    EXPECT_EQ(renderer.last_statistics().passes > 0, ping.head == 0) << ping.head;
   }
   EXPECT_EQ(renderer.engine(), EngineKind::gpu);
 }
 
 TEST_F(PingsInFlight, OneThatCannotBeMadeIsToldWhenItIsItsTurn) {
   render::SonarRenderer renderer(wall_and_ball(), options());
-  std::vector<StreamPing> all = pings();
+  std::vector<HeadRequest> all = pings();
   all[0].request.settings.range.count = 0;
   renderer.begin_pings(all);
   EXPECT_THROW(renderer.render_echo(all[0].request, 0), render::RequestError);

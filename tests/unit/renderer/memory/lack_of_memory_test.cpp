@@ -97,7 +97,7 @@ PingRequest ping(int lines, std::uint64_t number) {
   return request;
 }
 
-/// Images of two pings for comparison: a long ping of stream 0 and a short ping of stream 1.
+/// Images of two pings for comparison: a long ping of head 0 and a short ping of head 1.
 std::pair<std::vector<std::uint8_t>, std::vector<std::uint8_t>> images(SonarRenderer& renderer) {
   auto first = renderer.render_ping(ping(160, 7), 0).u8;
   return {std::move(first), renderer.render_ping(ping(80, 8), 1).u8};

@@ -37,7 +37,7 @@ const Bytes ping_config{0x21, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x
                         0x00, 0x00, 0x07, 0x00, 0x01, 0x00, 0x90, 0x3a, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00,
                         0x00, 0x00, 0x00, 0x00, 0x01, 0x1d, 0x00, 0x00, 0x01, 0x12, 0x1e, 0x11};
 constexpr std::uint8_t tail_type = 0x43;
-constexpr int other_stream = 1;
+constexpr int other_head = 1;
 
 Bytes reboot_command() {
   gemini::Reboot reboot;
@@ -55,7 +55,7 @@ std::uint64_t cancelled(Head& head) {
   return device_counters(head).pings_cancelled;
 }
 
-/// A head on stream 0, and the render thread held up by a ping of another head until release().
+/// A head on head 0, and the render thread held up by a ping of another head until release().
 class NobodyListening : public testing::Test {
  protected:
   NobodyListening() {
@@ -82,8 +82,8 @@ class NobodyListening : public testing::Test {
 
   void start(const render::SkipSwitches& skip) {
     renderer_->before_ping = [released = release_.get_future().share()](const render::PingRequest&,
-                                                                        int stream) {
-      if (stream == other_stream) {
+                                                                        int head) {
+      if (head == other_head) {
         released.wait_for(std::chrono::seconds{20});
       }
     };
@@ -96,7 +96,7 @@ class NobodyListening : public testing::Test {
     head_ = std::make_unique<Head>(config_, 0, services);
     head_->start();
     RenderJob job;
-    job.stream = other_stream;
+    job.head = other_head;
     job.request.settings.aperture.beam_edges_rad = {0.1, -0.1};
     service_->submit(std::move(job), [this](const RenderResult&) { other_done_ = true; });
   }
@@ -168,7 +168,7 @@ class NobodyListening : public testing::Test {
 
   bool withdraws_the_ping_being_rendered() {
     EXPECT_TRUE(run_until([&] { return renderer_->attempts == 1; }));
-    return service_->withdraw(other_stream);
+    return service_->withdraw(other_head);
   }
 
   std::uint64_t skipped() const {

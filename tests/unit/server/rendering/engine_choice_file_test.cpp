@@ -18,8 +18,8 @@ using render::EngineKind;
 class EngineChoiceFileTest : public ::testing::Test {
  protected:
   std::string content() const {
-    std::ifstream stream(path_);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    std::ifstream head(path_);
+    return {std::istreambuf_iterator<char>(head), {}};
   }
 
   test::TemporaryFolder folder_;
@@ -69,7 +69,7 @@ TEST_F(EngineChoiceFileTest, IsDoneWithoutWhereNothingCanBeWritten) {
 TEST(EngineChoiceSituation, ChangesWithWhatDecides) {
   render::RendererOptions options;
   render::World world;
-  render::StreamPing ping;
+  render::HeadRequest ping;
   ping.request.settings.aperture.beam_edges_rad = render::equal_angle_edges(64, 1.0);
   const std::string before = situation_of(options, world, std::vector{ping});
   EXPECT_EQ(situation_of(options, world, std::vector{ping}), before);

@@ -60,9 +60,9 @@ class Inbox {
   std::deque<std::function<void()>> tasks_;
 };
 
-RenderJob small_job(std::uint64_t number, int stream = 0) {
+RenderJob small_job(std::uint64_t number, int head = 0) {
   RenderJob job;
-  job.stream = stream;
+  job.head = head;
   job.request.ping_number = number;
   job.request.settings.aperture.beam_edges_rad = {0.2, 0.0, -0.2};
   job.request.settings.range.count = 3;
@@ -96,9 +96,9 @@ TEST_F(RenderServiceTest, TellsTheRendererWhatComesNext) {
   int answers = 0;
   {
     RenderService service(fake_renderer_factory(control), 5, hooks());
-    for (int stream = 0; stream < 5; ++stream) {
-      RenderJob job = small_job(static_cast<std::uint64_t>(stream), stream);
-      if (stream == 4) {
+    for (int head = 0; head < 5; ++head) {
+      RenderJob job = small_job(static_cast<std::uint64_t>(head), head);
+      if (head == 4) {
         job.bodies = {{"boat", {}}};
       }
       service.submit(std::move(job), [&](const RenderResult&) { ++answers; });
@@ -193,10 +193,10 @@ TEST_F(RenderServiceTest, MemoryThatRunsOutFailsOnePingOnly) {
   };
   RenderService service(fake_renderer_factory(control), 2, hooks());
   std::vector<std::string> errors(2, "none yet");
-  for (const int stream : {0, 1}) {
-    service.submit(small_job(static_cast<std::uint64_t>(1 + stream), stream),
-                   [&errors, stream](const RenderResult& result) {
-                     errors[static_cast<std::size_t>(stream)] = result.error;
+  for (const int head : {0, 1}) {
+    service.submit(small_job(static_cast<std::uint64_t>(1 + head), head),
+                   [&errors, head](const RenderResult& result) {
+                     errors[static_cast<std::size_t>(head)] = result.error;
                    });
   }
   ASSERT_TRUE(inbox.run_until([&] { return errors[1] != "none yet"; }));
@@ -298,8 +298,8 @@ TEST_F(RenderServiceTest, SurvivesManyShortLives) {
   for (int life = 0; life < 300; ++life) {
     std::atomic<int> answers{0};
     RenderService service(fake_renderer_factory(control), 3, hooks());
-    for (int stream = 0; stream < life % 4; ++stream) {
-      service.submit(small_job(1, stream), [&](const RenderResult&) { ++answers; });
+    for (int head = 0; head < life % 4; ++head) {
+      service.submit(small_job(1, head), [&](const RenderResult&) { ++answers; });
     }
     if (life % 3 == 0) {
       inbox.run_pending();
