@@ -18,12 +18,12 @@
 #include "server/clock/clock.hpp"
 #include "server/config/head_type.hpp"
 #include "server/devices/survey.hpp"
+#include "server/logs/log_reader.hpp"
 #include "server/logs/log_summary.hpp"
-#include "server/logs/recording.hpp"
 #include "server/net/interfaces.hpp"
 #include "server/net/transport.hpp"
 #include "server/net/udp_endpoint.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace boost::asio {
 class io_context;

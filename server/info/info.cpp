@@ -32,8 +32,7 @@ void info(const std::filesystem::path& path, const InfoOptions& options) {
     fmt::print(stderr, "warning: {}: {}\n", printable(path.string()), printable(problem));
   }
   if (options.pictures) {
-    const std::uint64_t written =
-        write_thumbnails(*open_recording(file), file, *options.pictures, options.every);
+    const std::uint64_t written = write_thumbnails(*open_log(file), file, *options.pictures, options.every);
     fmt::print(stderr, "{} pictures in {}\n", written, options.pictures->string());
   }
 }

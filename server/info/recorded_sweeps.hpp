@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/picture/sweep_image.hpp"
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 namespace sonard::server {
 

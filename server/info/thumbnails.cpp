@@ -55,7 +55,7 @@ void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   }
 }
 
-std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, const LogFile& file,
+std::uint64_t write_fans(const LogReader& recording, const LoggedHead& head, const LogFile& file,
                          const std::filesystem::path& folder, std::uint64_t every) {
   std::optional<picture::FanImage> fan;
   std::uint64_t written = 0;
@@ -78,7 +78,7 @@ std::uint64_t write_fans(const Recording& recording, const LoggedHead& head, con
   return written;
 }
 
-picture::SweepLine drawn_line(const Recording& recording, const LoggedPing& line) {
+picture::SweepLine drawn_line(const LogReader& recording, const LoggedPing& line) {
   picture::SweepLine drawn{picture_bearing(line), recording.samples(line)};
   if (line.bits_per_bin == 4) {
     constexpr int to_full_scale = 17;
@@ -89,7 +89,7 @@ picture::SweepLine drawn_line(const Recording& recording, const LoggedPing& line
   return drawn;
 }
 
-std::uint64_t write_sweeps(const Recording& recording, const LoggedHead& scan,
+std::uint64_t write_sweeps(const LogReader& recording, const LoggedHead& scan,
                            const std::filesystem::path& folder, std::uint64_t every) {
   const std::vector<RecordedSweep> sweeps = sweeps_of(scan);
   std::uint64_t written = 0;
@@ -109,7 +109,7 @@ std::uint64_t write_sweeps(const Recording& recording, const LoggedHead& scan,
 
 }  // namespace
 
-std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
+std::uint64_t write_thumbnails(const LogReader& recording, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

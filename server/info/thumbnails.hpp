@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 namespace sonard::server {
 
@@ -14,7 +14,7 @@ namespace sonard::server {
 /// Creates the folder; overwrites files.
 /// @return number of files. @throws LogError naming the file that cannot be written or the head that cannot
 /// be drawn
-std::uint64_t write_thumbnails(const Recording& recording, const LogFile& file,
+std::uint64_t write_thumbnails(const LogReader& recording, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every);
 
 }  // namespace sonard::server

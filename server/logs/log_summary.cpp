@@ -7,13 +7,13 @@
 
 #include "protocol/glf/log_time.hpp"
 #include "server/logs/capture_summary.hpp"
-#include "server/logs/glf_recording.hpp"
-#include "server/logs/mcap_recording.hpp"
+#include "server/logs/glf_log_reader.hpp"
+#include "server/logs/mcap_log_reader.hpp"
 
 namespace sonard::server {
 namespace {
 
-void add_pings(LogSummary& log, const Recording& recording) {
+void add_pings(LogSummary& log, const LogReader& recording) {
   for (const LoggedHead& logged : recording.heads()) {
     HeadSummary& head = head_of(log, logged.name, logged.type, logged.device_id, logged.scanning);
     for (const LoggedPing& ping : logged.pings) {
@@ -26,7 +26,7 @@ void add_pings(LogSummary& log, const Recording& recording) {
 }
 
 void summarise_glf(LogSummary& log, const LogFile& file) {
-  const GlfRecording recording(file);
+  const GlfLogReader recording(file);
   log.local_time = true;
   add_pings(log, recording);
   if (log.problems.empty() && !recording.view().matches_checksum()) {
@@ -50,7 +50,7 @@ void summarise_glf(LogSummary& log, const LogFile& file) {
 }
 
 void summarise_mcap(LogSummary& log, const LogFile& file) {
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   add_pings(log, recording);
   const mcap::Summary& summary = recording.reader().summary();
   if (summary.message_count() > 0) {

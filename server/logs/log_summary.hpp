@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 namespace sonard::server {
 

@@ -8,7 +8,7 @@
 
 #include "server/config/config.hpp"
 #include "server/offline/output_folder.hpp"
-#include "server/recording/mcap_log.hpp"
+#include "server/recording/mcap_log_writer.hpp"
 
 namespace sonard::server {
 
@@ -33,7 +33,7 @@ class McapFile {
   RecordingConfig config_;
   std::vector<HeadToRecord> heads_;
   LogSetting setting_;
-  McapLog log_;
+  McapLogWriter log_;
 };
 
 }  // namespace sonard::server

@@ -5,10 +5,10 @@
 #include <ctime>
 
 #include "protocol/glf/log_time.hpp"
-#include "server/recording/glf_log.hpp"
+#include "server/recording/glf_log_writer.hpp"
 #include "server/recording/log_names.hpp"
-#include "server/recording/mcap_log.hpp"
-#include "server/recording/pcapng_log.hpp"
+#include "server/recording/mcap_log_writer.hpp"
+#include "server/recording/pcapng_log_writer.hpp"
 
 namespace sonard::server {
 namespace {
@@ -34,51 +34,52 @@ LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& h
     return;
   }
   if (config.mcap) {
-    logs_.push_back(std::make_unique<McapLog>(setting_));
+    logs_.push_back(std::make_unique<McapLogWriter>(setting_));
   }
   if (config.pcapng) {
-    logs_.push_back(std::make_unique<PcapngLog>(setting_));
+    logs_.push_back(std::make_unique<PcapngLogWriter>(setting_));
   }
   for (std::size_t head = 0; config.glf && head < heads.size(); ++head) {
     if (heads[head].glf_number) {
-      logs_.push_back(std::make_unique<GlfLog>(setting_, static_cast<int>(head)));
+      logs_.push_back(std::make_unique<GlfLogWriter>(setting_, static_cast<int>(head)));
     }
   }
 }
 
 void LogSet::write(const RecordingEvent& event) {
-  for (const std::unique_ptr<Log>& log : logs_) {
+  for (const std::unique_ptr<LogWriter>& log : logs_) {
     log->write(event);
   }
 }
 
 bool LogSet::any_good() const {
-  return std::ranges::any_of(
-      logs_, [](const std::unique_ptr<Log>& log) { return log->file().begun() && !log->file().failed(); });
+  return std::ranges::any_of(logs_, [](const std::unique_ptr<LogWriter>& log) {
+    return log->file().begun() && !log->file().failed();
+  });
 }
 
 void LogSet::flush(TimePoint now) {
-  for (const std::unique_ptr<Log>& log : logs_) {
+  for (const std::unique_ptr<LogWriter>& log : logs_) {
     log->flush(now);
   }
 }
 
 void LogSet::sync() {
-  for (const std::unique_ptr<Log>& log : logs_) {
+  for (const std::unique_ptr<LogWriter>& log : logs_) {
     log->file().sync();
   }
 }
 
 bool LogSet::is_over(TimePoint now) const {
   return now - begin_ >= setting_.config.rotate_after ||
-         std::ranges::any_of(logs_, [&](const std::unique_ptr<Log>& log) {
+         std::ranges::any_of(logs_, [&](const std::unique_ptr<LogWriter>& log) {
            return log->file().size() >= setting_.config.rotate_bytes;
          });
 }
 
 LogSet::Closed LogSet::close() {
   Closed closed;
-  for (const std::unique_ptr<Log>& log : logs_) {
+  for (const std::unique_ptr<LogWriter>& log : logs_) {
     log->close();
     if (!log->file().begun()) {
       continue;

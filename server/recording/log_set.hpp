@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace sonard::server {
 
@@ -41,7 +41,7 @@ class LogSet {
  private:
   LogSetting setting_;
   TimePoint begin_;
-  std::vector<std::unique_ptr<Log>> logs_;
+  std::vector<std::unique_ptr<LogWriter>> logs_;
 };
 
 }  // namespace sonard::server

@@ -10,7 +10,7 @@
 #include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
 #include "server/recording/event_queue.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace sonard::server {
 

@@ -21,7 +21,7 @@ std::vector<std::vector<std::int64_t>> times_of(const std::vector<PlayedHead>& h
 
 class LogRenderer final : public PingRenderer {
  public:
-  LogRenderer(const Recording& recording, std::vector<PlayedHead> heads)
+  LogRenderer(const LogReader& recording, std::vector<PlayedHead> heads)
       : recording_(recording), heads_(std::move(heads)) {}
 
   std::string description() const override { return "recording"; }
@@ -45,7 +45,7 @@ class LogRenderer final : public PingRenderer {
     return samples;
   }
 
-  const Recording& recording_;
+  const LogReader& recording_;
   std::vector<PlayedHead> heads_;
 };
 
@@ -130,7 +130,7 @@ void LogPlayback::log_totals() const {
   }
 }
 
-RendererFactory make_log_renderer(const Recording& recording, std::vector<PlayedHead> heads) {
+RendererFactory make_log_renderer(const LogReader& recording, std::vector<PlayedHead> heads) {
   return [&recording, heads = std::move(heads)] { return std::make_unique<LogRenderer>(recording, heads); };
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/devices/playback.hpp"
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 #include "server/rendering/render_service.hpp"
 #include "server/replay/replay_schedule.hpp"
 
@@ -57,6 +57,6 @@ class LogPlayback final : public Playback {
 };
 
 /// Replaces the renderer: returns the samples of the record with the ping's number. Render thread.
-RendererFactory make_log_renderer(const Recording& recording, std::vector<PlayedHead> heads);
+RendererFactory make_log_renderer(const LogReader& recording, std::vector<PlayedHead> heads);
 
 }  // namespace sonard::server

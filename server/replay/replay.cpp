@@ -12,7 +12,7 @@ namespace sonard::server {
 
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing) {
   const LogFile file(log);
-  const std::unique_ptr<Recording> recording = open_recording(file);
+  const std::unique_ptr<LogReader> recording = open_log(file);
   for (const std::string& problem : recording->problems()) {
     spdlog::warn("{}: {}", log.string(), problem);
   }

@@ -19,8 +19,8 @@
 #include "protocol/log/log_messages.hpp"
 #include "protocol/mcap/writer.hpp"
 #include "protocol/pcapng/blocks.hpp"
+#include "server/logs/log_reader.hpp"
 #include "server/logs/log_summary.hpp"
-#include "server/logs/recording.hpp"
 #include "tests/unit/server/logs/temporary_log.hpp"
 
 namespace sonard::server {
@@ -150,7 +150,7 @@ Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& w
   std::vector<std::string> read;
   try {
     const LogFile file(temporary.path());
-    const auto recording = open_recording(file);
+    const auto recording = open_log(file);
     for (const LoggedHead& head : recording->heads()) {
       for (const LoggedPing& ping : head.pings) {
         try {
@@ -398,7 +398,7 @@ TEST(Damage, ReplayAndInfoTellAnImageThatDoesNotUnpackWhenTheyOpenTheLog) {
   dat.insert(dat.end(), glf::dat_terminator.begin(), glf::dat_terminator.end());
   const test::TemporaryLog temporary(".dat", dat);
   const LogFile file(temporary.path());
-  const auto recording = open_recording(file);
+  const auto recording = open_log(file);
   ASSERT_EQ(recording->heads().at(0).pings.size(), 2U);
   EXPECT_EQ(recording->samples(recording->heads()[0].pings[1]), Bytes(60, 2));
   EXPECT_THAT(recording->problems(),

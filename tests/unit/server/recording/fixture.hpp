@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/recording/events.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace sonard::test {

@@ -14,10 +14,10 @@
 #include "protocol/glf/dat_index.hpp"
 #include "protocol/mcap/reader.hpp"
 #include "protocol/pcapng/blocks.hpp"
-#include "server/recording/glf_log.hpp"
+#include "server/recording/glf_log_writer.hpp"
 #include "server/recording/glf_packing.hpp"
-#include "server/recording/mcap_log.hpp"
-#include "server/recording/pcapng_log.hpp"
+#include "server/recording/mcap_log_writer.hpp"
+#include "server/recording/pcapng_log_writer.hpp"
 #include "tests/support/without_rights.hpp"
 #include "tests/unit/server/recording/fixture.hpp"
 
@@ -56,11 +56,11 @@ struct RecoveryTest : testing::Test {
   Bytes killed(Arguments... arguments) {
     Kind log(setting, arguments...);
     for (int number = 0; number < pings; ++number) {
-      const TimePoint time = TimePoint{1'795'184'553'000'000'000} + number * McapLog::longest_chunk;
+      const TimePoint time = TimePoint{1'795'184'553'000'000'000} + number * McapLogWriter::longest_chunk;
       log.write(test::ping_event(static_cast<std::uint64_t>(number), 32, time));
       log.flush(time);
       log.write(test::wire_event(100, time));
-      log.flush(time + McapLog::longest_wait);
+      log.flush(time + McapLogWriter::longest_wait);
     }
     path = log.file().path();
     return test::contents(path);
@@ -83,7 +83,7 @@ std::uint64_t messages_in(const Bytes& file) {
 }
 
 TEST_F(RecoveryTest, EndsAnMcapFile) {
-  killed<McapLog>();
+  killed<McapLogWriter>();
   EXPECT_TRUE(recover_logs(folder.path()).empty());
   EXPECT_EQ(messages_in(test::contents(path)), 2U * pings);
   EXPECT_EQ(folder.names(), std::vector<std::string>{"log_stem.mcap"});
@@ -91,14 +91,14 @@ TEST_F(RecoveryTest, EndsAnMcapFile) {
 
 // Recovery writes the open chunk again with its true length, so no message is lost.
 TEST_F(RecoveryTest, TellsThatNothingIsLostOfALogWithoutEnd) {
-  killed<McapLog>();
+  killed<McapLogWriter>();
   EXPECT_THAT(told(), HasSubstr("log_stem.mcap: nothing is lost"));
-  killed<GlfLog>(0);
+  killed<GlfLogWriter>(0);
   EXPECT_THAT(told(), HasSubstr(".dat: nothing is lost"));
 }
 
 TEST_F(RecoveryTest, TellsTheSizeOfTheRecordThatWasBeingWritten) {
-  Bytes whole = killed<McapLog>();
+  Bytes whole = killed<McapLogWriter>();
   whole.insert(whole.end(), {5, 200, 0, 0, 0, 0, 0, 0, 0, 1, 2});  // the first 11 bytes of a message
   test::write_file(path, whole);
   EXPECT_THAT(
@@ -107,7 +107,7 @@ TEST_F(RecoveryTest, TellsTheSizeOfTheRecordThatWasBeingWritten) {
 }
 
 TEST_F(RecoveryTest, CutsAnMcapFileAnywhere) {
-  const Bytes whole = killed<McapLog>();
+  const Bytes whole = killed<McapLogWriter>();
   std::uint64_t before = 0;
   for (std::size_t size = 200; size < whole.size(); size += 173) {
     test::write_file(path, Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
@@ -140,7 +140,7 @@ TEST_F(RecoveryTest, LeavesAloneWhatItMayNotRead) {
 }
 
 TEST_F(RecoveryTest, LeavesAloneWhatIsWhole) {
-  killed<McapLog>();
+  killed<McapLogWriter>();
   recover_logs(folder.path());
   const Bytes whole = test::contents(path);
   recover_logs(folder.path());
@@ -148,7 +148,7 @@ TEST_F(RecoveryTest, LeavesAloneWhatIsWhole) {
 }
 
 TEST_F(RecoveryTest, CutsACaptureAnywhere) {
-  const Bytes whole = killed<PcapngLog>();
+  const Bytes whole = killed<PcapngLogWriter>();
   const std::uint64_t all = pcapng::recover(whole)->packets;
   EXPECT_EQ(all, static_cast<std::uint64_t>(pings));
   std::uint64_t before = 0;
@@ -167,12 +167,12 @@ TEST_F(RecoveryTest, CutsACaptureAnywhere) {
 }
 
 TEST_F(RecoveryTest, NamesADatToBePacked) {
-  killed<GlfLog>(0);
+  killed<GlfLogWriter>(0);
   EXPECT_EQ(recover_logs(folder.path()), std::vector<fs::path>{path});
 }
 
 TEST_F(RecoveryTest, RemovesADatThatWasPacked) {
-  const Bytes dat = killed<GlfLog>(0);
+  const Bytes dat = killed<GlfLogWriter>(0);
   GlfPacking packing(path, RecordingSync::never);
   while (packing.step()) {
   }
@@ -184,7 +184,7 @@ TEST_F(RecoveryTest, RemovesADatThatWasPacked) {
 }
 
 TEST_F(RecoveryTest, KeepsADamagedDatAndAllItsWholeRecords) {
-  Bytes dat = killed<GlfLog>(0);
+  Bytes dat = killed<GlfLogWriter>(0);
   const glf::DatIndex index = glf::index_dat(glf::PiecewiseBytes(dat));
   ASSERT_EQ(index.records.size(), 3U);
   dat[index.records[1].offset] = 0;  // no record begins with this byte
@@ -198,7 +198,7 @@ TEST_F(RecoveryTest, KeepsADamagedDatAndAllItsWholeRecords) {
 }
 
 TEST_F(RecoveryTest, SaysWhatADamagedDatLost) {
-  Bytes dat = killed<GlfLog>(0);
+  Bytes dat = killed<GlfLogWriter>(0);
   const glf::RecordEntry second = glf::index_dat(glf::PiecewiseBytes(dat)).records.at(1);
   dat[second.offset] = 0;
   test::write_file(path, dat);
@@ -208,7 +208,7 @@ TEST_F(RecoveryTest, SaysWhatADamagedDatLost) {
 }
 
 TEST_F(RecoveryTest, KeepsThePacketsAfterADamagedOne) {
-  Bytes file = killed<PcapngLog>();
+  Bytes file = killed<PcapngLogWriter>();
   std::vector<std::size_t> packets;
   ASSERT_TRUE(pcapng::for_each_block(file, [&](const pcapng::Block& block) {
     if (block.type == static_cast<std::uint32_t>(pcapng::BlockType::enhanced_packet)) {
@@ -225,7 +225,7 @@ TEST_F(RecoveryTest, KeepsThePacketsAfterADamagedOne) {
 }
 
 TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
-  Bytes file = killed<McapLog>();
+  Bytes file = killed<McapLogWriter>();
   const auto chunks = mcap::Reader::open(file)->summary().chunks;
   ASSERT_EQ(chunks.size(), 3U);
   file[chunks[0].offset + 80] ^= 1;
@@ -242,7 +242,7 @@ TEST_F(RecoveryTest, KeepsAnMcapFileWithADamagedChunk) {
 }
 
 TEST_F(RecoveryTest, KeepsAllMessagesOfAnMcapFileWithADamagedStart) {
-  const Bytes whole = killed<McapLog>();
+  const Bytes whole = killed<McapLogWriter>();
   recover_logs(folder.path());
   const Bytes finished = test::contents(path);
   for (const Bytes& file : {whole, finished}) {
@@ -262,7 +262,7 @@ TEST_F(RecoveryTest, KeepsAllMessagesOfAnMcapFileWithADamagedStart) {
 
 // With the section, and then also with the interface that the packets name.
 TEST_F(RecoveryTest, KeepsAllPacketsOfACaptureWithADamagedStart) {
-  const Bytes whole = killed<PcapngLog>();
+  const Bytes whole = killed<PcapngLogWriter>();
   std::vector<std::size_t> ends;
   ASSERT_TRUE(
       pcapng::for_each_block(whole, [&](const pcapng::Block& block) { ends.push_back(block.end()); }));
@@ -286,7 +286,7 @@ TEST_F(RecoveryTest, KeepsAllPacketsOfACaptureWithADamagedStart) {
 
 // A wrong length that points beyond the end looks like a record that was being written.
 TEST_F(RecoveryTest, KeepsTheChunksAfterAChunkWithAWrongLength) {
-  Bytes file = killed<McapLog>();
+  Bytes file = killed<McapLogWriter>();
   const auto chunks = mcap::Reader::open(file)->summary().chunks;
   file[chunks[1].offset + 8] ^= 1;
   test::write_file(path, file);

@@ -190,7 +190,7 @@ TEST_F(LoggedDifferences, OfNoneNothingIsSaid) {
 // ---- The recording instead of the renderer
 
 /// A recording in which every sample of a ping equals the ping's place.
-class PlacesAsSamples final : public Recording {
+class PlacesAsSamples final : public LogReader {
  public:
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override {
     if (ping.settings.beams == 1) {

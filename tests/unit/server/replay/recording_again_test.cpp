@@ -11,7 +11,7 @@
 #include "protocol/gemini/device.hpp"
 #include "protocol/gemini/recorded_form.hpp"
 #include "protocol/glf/codec.hpp"
-#include "server/logs/glf_recording.hpp"
+#include "server/logs/glf_log_reader.hpp"
 #include "server/recording/glf_records.hpp"
 #include "server/replay/log_playback.hpp"
 #include "tests/unit/server/logs/temporary_log.hpp"
@@ -112,7 +112,7 @@ void receive(std::vector<Received>& pings, const Outgoing& message) {
 }
 
 /// Plays all images on a new head, in virtual time. Returns the received and the recorded pings.
-Played played(const GlfRecording& recording) {
+Played played(const GlfLogReader& recording) {
   gemini::DeviceConfig config;
   config.sonar_id = sonar_id;
   config.alternate_address = 0x7F000002;
@@ -157,7 +157,7 @@ TEST(RecordingAgain, GivesTheSameImages) {
   const std::vector<glf::ImageRecord> written = images();
   const test::TemporaryLog log(".dat", dat_of(written));
   const LogFile file(log.path());
-  const GlfRecording recording(file);
+  const GlfLogReader recording(file);
   const auto [received, recorded] = played(recording);
   ASSERT_EQ(received.size(), written.size());
   ASSERT_EQ(recorded.size(), written.size());

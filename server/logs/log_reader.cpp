@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "server/logs/glf_recording.hpp"
-#include "server/logs/mcap_recording.hpp"
+#include "server/logs/glf_log_reader.hpp"
+#include "server/logs/mcap_log_reader.hpp"
 
 namespace sonard::server {
 
-LoggedHead& Recording::head(const std::string& name, std::uint16_t device_id, bool scanning) {
+LoggedHead& LogReader::head(const std::string& name, std::uint16_t device_id, bool scanning) {
   const auto known = std::ranges::find_if(heads_, [&](const LoggedHead& head) {
     return head.name == name && head.device_id == device_id && head.scanning == scanning;
   });
@@ -24,19 +24,19 @@ LoggedHead& Recording::head(const std::string& name, std::uint16_t device_id, bo
   return head;
 }
 
-void Recording::sort_by_time() {
+void LogReader::sort_by_time() {
   for (LoggedHead& head : heads_) {
     std::ranges::stable_sort(head.pings, {}, &LoggedPing::time_ns);
   }
 }
 
-std::unique_ptr<Recording> open_recording(const LogFile& file) {
+std::unique_ptr<LogReader> open_log(const LogFile& file) {
   switch (file.kind()) {
     case LogKind::glf:
     case LogKind::dat:
-      return std::make_unique<GlfRecording>(file);
+      return std::make_unique<GlfLogReader>(file);
     case LogKind::mcap:
-      return std::make_unique<McapRecording>(file);
+      return std::make_unique<McapLogReader>(file);
     case LogKind::pcapng:
       break;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/recording/mcap_log.hpp"
+#include "server/recording/mcap_log_writer.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -84,18 +84,18 @@ log::WireBytes::Transport to_message(WireTransport transport) {
 
 }  // namespace
 
-McapLog::McapLog(const LogSetting& setting)
-    : Log(setting),
+McapLogWriter::McapLogWriter(const LogSetting& setting)
+    : LogWriter(setting),
       writer_("sonard " SONARD_VERSION, chunk_bytes,
               setting.config.mcap_zstd ? mcap::Compression::zstd : mcap::Compression::none) {}
 
-void McapLog::write(const RecordingEvent& event) {
+void McapLogWriter::write(const RecordingEvent& event) {
   if (!file().failed()) {
     std::visit([&](const auto& what) { add(event.head, event.time, what); }, event.what);
   }
 }
 
-void McapLog::add(int head, TimePoint time, const PingSent& sent) {
+void McapLogWriter::add(int head, TimePoint time, const PingSent& sent) {
   const std::int64_t transmit_ns = setting().unix_ns(sent.ping.transmit_time);
   const std::string topic = "/" + head_of(head).name;
   if (sent.ping.settings.beams > 1) {
@@ -109,7 +109,7 @@ void McapLog::add(int head, TimePoint time, const PingSent& sent) {
   image_waits_ = true;
 }
 
-void McapLog::add_for_foxglove(int head, TimePoint time, const PingSent& sent) {
+void McapLogWriter::add_for_foxglove(int head, TimePoint time, const PingSent& sent) {
   const std::int64_t transmit_ns = setting().unix_ns(sent.ping.transmit_time);
   const std::string& name = head_of(head).name;
   const std::string topic = "/" + name;
@@ -131,7 +131,7 @@ void McapLog::add_for_foxglove(int head, TimePoint time, const PingSent& sent) {
   }
 }
 
-void McapLog::add(int, TimePoint time, const PingPosed& pose) {
+void McapLogWriter::add(int, TimePoint time, const PingPosed& pose) {
   log::PoseUsed used;
   const std::int64_t transmit_ns = setting().unix_ns(pose.poses->time);
   used.set_time_ns(transmit_ns);
@@ -144,7 +144,7 @@ void McapLog::add(int, TimePoint time, const PingPosed& pose) {
   add_message("/pose", time, transmit_ns, used);
 }
 
-void McapLog::add(int head, TimePoint time, const WirePassed& wire) {
+void McapLogWriter::add(int head, TimePoint time, const WirePassed& wire) {
   if (!setting().config.mcap_wire_bytes) {
     return;
   }
@@ -162,8 +162,8 @@ void McapLog::add(int head, TimePoint time, const WirePassed& wire) {
 }
 
 template <class Message>
-void McapLog::add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns,
-                          const Message& message) {
+void McapLogWriter::add_message(const std::string& topic, TimePoint time, std::int64_t publish_ns,
+                                const Message& message) {
   if (!file().begun()) {
     flushed_at_ = chunk_begun_at_ = time;
     file().begin(mcap_path(setting().config.directory, setting().stem));
@@ -173,7 +173,7 @@ void McapLog::add_message(const std::string& topic, TimePoint time, std::int64_t
 }
 
 template <class Message>
-std::uint16_t McapLog::channel(const std::string& topic) {
+std::uint16_t McapLogWriter::channel(const std::string& topic) {
   if (const auto known = channels_.find(topic); known != channels_.end()) {
     return known->second;
   }
@@ -189,7 +189,7 @@ std::uint16_t McapLog::channel(const std::string& topic) {
   return channels_.emplace(topic, writer_.add_channel(schema_id, topic, log::encoding_name)).first->second;
 }
 
-void McapLog::flush(TimePoint now) {
+void McapLogWriter::flush(TimePoint now) {
   if (!file().begun()) {
     return;  // the writer's data, the start of the file, waits for begin()
   }
@@ -205,11 +205,11 @@ void McapLog::flush(TimePoint now) {
   write_taken();
 }
 
-void McapLog::write_taken() {
+void McapLogWriter::write_taken() {
   writer_.take().apply_to(file());
 }
 
-void McapLog::close() {
+void McapLogWriter::close() {
   if (file().begun() && !file().failed()) {
     writer_.finish();
     write_taken();

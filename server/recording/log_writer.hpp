@@ -42,12 +42,12 @@ struct LogSetting {
 };
 
 /// A file that records the events it supports. The file is created at the first such event.
-class Log {
+class LogWriter {
  public:
-  explicit Log(const LogSetting& setting) : setting_(setting), file_(setting.config.sync) {}
-  virtual ~Log() = default;
-  Log(const Log&) = delete;
-  Log& operator=(const Log&) = delete;
+  explicit LogWriter(const LogSetting& setting) : setting_(setting), file_(setting.config.sync) {}
+  virtual ~LogWriter() = default;
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
 
   virtual void write(const RecordingEvent& event) = 0;
   /// Writes all data so far to the file, so that it survives the end of this process.

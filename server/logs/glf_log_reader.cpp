@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/logs/glf_recording.hpp"
+#include "server/logs/glf_log_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ bool makes_sense(const glf::ImageRecord& image) {
 
 }  // namespace
 
-GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file, archive_error_)) {
+GlfLogReader::GlfLogReader(const LogFile& file) : file_(file), view_(opened(file, archive_error_)) {
   const auto& records = view_.index().records;
   for (std::size_t place = 0; place < records.size(); ++place) {
     if (records[place].type != glf::RecordType::image) {
@@ -72,7 +72,7 @@ GlfRecording::GlfRecording(const LogFile& file) : file_(file), view_(opened(file
   sort_by_time();
 }
 
-std::vector<std::uint8_t> GlfRecording::samples(const LoggedPing& ping) const {
+std::vector<std::uint8_t> GlfLogReader::samples(const LoggedPing& ping) const {
   auto record = view_.image(view_.index().records.at(ping.place));
   if (!record) {
     throw file_.error(to_string(record.error()));
@@ -80,7 +80,7 @@ std::vector<std::uint8_t> GlfRecording::samples(const LoggedPing& ping) const {
   return std::move(record->pixels);
 }
 
-std::vector<std::string> GlfRecording::problems() const {
+std::vector<std::string> GlfLogReader::problems() const {
   const glf::DatIndex& index = view_.index();
   std::vector<std::string> problems;
   if (archive_error_) {

@@ -27,7 +27,7 @@ struct LoggedPing {
   double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
   std::vector<std::uint8_t> wire;  ///< the message without samples; empty: not in the log
-  std::size_t place = 0;           ///< index in the Recording
+  std::size_t place = 0;           ///< index in the LogReader
 };
 
 /// A head of a log.
@@ -42,12 +42,12 @@ struct LoggedHead {
 };
 
 /// Reads on demand from the mapped file; any thread.
-class Recording {
+class LogReader {
  public:
-  Recording() = default;
-  virtual ~Recording() = default;
-  Recording(const Recording&) = delete;
-  Recording& operator=(const Recording&) = delete;
+  LogReader() = default;
+  virtual ~LogReader() = default;
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
 
   /// In the order of their first pings.
   const std::vector<LoggedHead>& heads() const { return heads_; }
@@ -70,6 +70,6 @@ class Recording {
 
 /// @throws LogError if `file` is broken at its start or its kind holds no images (.pcapng). Undecodable pings
 /// are left out. `file` must outlive the recording.
-std::unique_ptr<Recording> open_recording(const LogFile& file);
+std::unique_ptr<LogReader> open_log(const LogFile& file);
 
 }  // namespace sonard::server

@@ -8,14 +8,14 @@
 
 #include "protocol/mcap/writer.hpp"
 #include "server/picture/ping_picture.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace sonard::server {
 
 /// Records everything: images, lines, poses, and the bytes of both directions. A chunk is limited in bytes
 /// and time. Its data is written to the file with every image and line, and after `longest_wait` at the
 /// latest. A killed process thus loses no image taken from the queue, and at most `longest_wait` of bytes.
-class McapLog final : public Log {
+class McapLogWriter final : public LogWriter {
  public:
   static constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
   static constexpr std::chrono::seconds longest_chunk{1};
@@ -23,7 +23,7 @@ class McapLog final : public Log {
   /// Interval between pictures of a scanning head, because each line changes only a small part.
   static constexpr std::chrono::seconds sweep_picture_interval{1};
 
-  explicit McapLog(const LogSetting& setting);
+  explicit McapLogWriter(const LogSetting& setting);
 
   void write(const RecordingEvent& event) override;
   void flush(TimePoint now) override;

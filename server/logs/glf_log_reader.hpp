@@ -7,15 +7,15 @@
 
 #include "protocol/common/damage.hpp"
 #include "protocol/glf/log_view.hpp"
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 namespace sonard::server {
 
-class GlfRecording final : public Recording {
+class GlfLogReader final : public LogReader {
  public:
   /// Unpacks each image once: a damaged image is not a ping, but a problem().
   /// @throws LogError
-  explicit GlfRecording(const LogFile& file);
+  explicit GlfLogReader(const LogFile& file);
 
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;
   std::vector<std::string> problems() const override;

@@ -8,7 +8,7 @@
 #include "protocol/micron/recorded_form.hpp"
 #include "server/devices/types/types.hpp"
 #include "server/logs/log_summary.hpp"
-#include "server/logs/mcap_recording.hpp"
+#include "server/logs/mcap_log_reader.hpp"
 #include "tests/unit/server/logs/temporary_log.hpp"
 
 namespace sonard::server {
@@ -83,11 +83,11 @@ std::vector<std::uint8_t> bytes_of(McapLog& log) {
   return log.writer.take().append;
 }
 
-TEST(McapRecording, HasEveryImageInTheOrderOfTime) {
+TEST(McapLogReader, HasEveryImageInTheOrderOfTime) {
   McapLog log = small_log();
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   ASSERT_EQ(recording.heads().size(), 2U) << "and one of lines";
   const LoggedHead& head = recording.heads()[0];
   EXPECT_EQ(head.name, "bow");
@@ -109,19 +109,19 @@ TEST(McapRecording, HasEveryImageInTheOrderOfTime) {
   EXPECT_TRUE(recording.problems().empty());
 }
 
-TEST(McapRecording, ImagesThatMakeNoSenseAreLeftOutAndTold) {
+TEST(McapLogReader, ImagesThatMakeNoSenseAreLeftOutAndTold) {
   McapLog log = small_log();
   log::SonarImage wrong = image(9);
   wrong.set_range_lines(4);  // 6 pixels instead of 8
   log.add(log.images, start_ns, wrong);
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   EXPECT_EQ(recording.heads().at(0).pings.size(), 5U);
   EXPECT_EQ(recording.problems(), (std::vector<std::string>{"1 images cannot be decoded and are left out"}));
 }
 
-TEST(McapRecording, SummaryCountsAllKinds) {
+TEST(McapLogReader, SummaryCountsAllKinds) {
   McapLog log = small_log();
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
@@ -141,7 +141,7 @@ TEST(McapRecording, SummaryCountsAllKinds) {
   EXPECT_EQ(summary.span_ns, (std::pair{start_ns, start_ns + 900'000'000}));
 }
 
-TEST(McapRecording, HasEveryScanLineAndHowItTravelled) {
+TEST(McapLogReader, HasEveryScanLineAndHowItTravelled) {
   McapLog log;
   micron::HeadData travelled;
   travelled.control = 0x2304;
@@ -162,7 +162,7 @@ TEST(McapRecording, HasEveryScanLineAndHowItTravelled) {
   log.add(log.lines, start_ns, wrong);
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   ASSERT_EQ(recording.heads().size(), 1U);
   const LoggedHead& scan = recording.heads()[0];
   EXPECT_EQ(scan.name, "mast");
@@ -187,7 +187,7 @@ TEST(McapRecording, HasEveryScanLineAndHowItTravelled) {
             (std::vector<std::string>{"1 scan lines cannot be decoded and are left out"}));
 }
 
-TEST(McapRecording, SaysWhichDevicesItsHeadsWere) {
+TEST(McapLogReader, SaysWhichDevicesItsHeadsWere) {
   McapLog log;
   log::SonarImage said = image(0);
   said.set_device("gemini_720i");
@@ -206,7 +206,7 @@ TEST(McapRecording, SaysWhichDevicesItsHeadsWere) {
   log.add(log.lines, start_ns, scanned);
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   std::vector<std::pair<std::string, std::string>> devices;
   for (const LoggedHead& head : recording.heads()) {
     devices.emplace_back(head.name, head.type);
@@ -222,7 +222,7 @@ TEST(McapRecording, SaysWhichDevicesItsHeadsWere) {
 }
 
 // Names are unique within one daemon, but logs of other programs may hold duplicates.
-TEST(McapRecording, KeepsAFanAndALineOfOneNameAndIdApart) {
+TEST(McapLogReader, KeepsAFanAndALineOfOneNameAndIdApart) {
   McapLog log;
   log::SonarImage fan = image(0);
   fan.set_head("mast");
@@ -231,7 +231,7 @@ TEST(McapRecording, KeepsAFanAndALineOfOneNameAndIdApart) {
   log.add(log.lines, start_ns, line(0));
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());
-  const McapRecording recording(file);
+  const McapLogReader recording(file);
   ASSERT_EQ(recording.heads().size(), 2U);
   EXPECT_FALSE(recording.heads()[0].scanning);
   EXPECT_TRUE(recording.heads()[1].scanning);
@@ -240,7 +240,7 @@ TEST(McapRecording, KeepsAFanAndALineOfOneNameAndIdApart) {
   EXPECT_EQ(summarise(file, &ping_in).heads.size(), 2U);
 }
 
-TEST(McapRecording, AnUnfinishedOneHasItsWholeChunks) {
+TEST(McapLogReader, AnUnfinishedOneHasItsWholeChunks) {
   McapLog log = small_log();
   log.writer.end_chunk();
   std::vector<std::uint8_t> bytes = log.writer.take().append;

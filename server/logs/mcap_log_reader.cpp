@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/logs/mcap_recording.hpp"
+#include "server/logs/mcap_log_reader.hpp"
 
 #include <cmath>
 #include <limits>
@@ -70,13 +70,13 @@ std::vector<std::uint8_t> bytes_of(const std::string& text) {
 
 }  // namespace
 
-McapRecording::McapRecording(const LogFile& file) : file_(file), reader_(opened(file)) {
+McapLogReader::McapLogReader(const LogFile& file) : file_(file), reader_(opened(file)) {
   damaged_ = reader_.damaged();
   read_pings();
   sort_by_time();
 }
 
-void McapRecording::read_pings() {
+void McapLogReader::read_pings() {
   const std::set<std::uint16_t> lines = channels_of("sonard.log.ScanLine");
   ping_channels_ = channels_of("sonard.log.SonarImage");
   ping_channels_.insert(lines.begin(), lines.end());
@@ -94,7 +94,7 @@ void McapRecording::read_pings() {
   damaged_.insert(damaged_.end(), cursor.damaged().begin(), cursor.damaged().end());
 }
 
-bool McapRecording::add_image(std::span<const std::uint8_t> bytes) {
+bool McapLogReader::add_image(std::span<const std::uint8_t> bytes) {
   const auto image = log::decode<log::SonarImage>(bytes);
   if (!image || !makes_sense(*image)) {
     ++bad_images_;
@@ -112,7 +112,7 @@ bool McapRecording::add_image(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-bool McapRecording::add_line(std::span<const std::uint8_t> bytes) {
+bool McapLogReader::add_line(std::span<const std::uint8_t> bytes) {
   const auto line = log::decode<log::ScanLine>(bytes);
   if (!line || !makes_sense(*line)) {
     ++bad_lines_;
@@ -131,7 +131,7 @@ bool McapRecording::add_line(std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
+std::vector<std::uint8_t> McapLogReader::samples(const LoggedPing& ping) const {
   const Message& message = messages_.at(ping.place);
   const std::optional<mcap::Bytes> unpacked =
       message.place ? reader_.data_at(*message.place) : std::optional(mcap::Bytes());
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> McapRecording::samples(const LoggedPing& ping) const {
   throw file_.error("a ping cannot be read");  // it was readable when the log was opened
 }
 
-std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {
+std::string McapLogReader::lost_pings(const mcap::DamagedChunk& part) const {
   if (part.holds == mcap::Holds::no_message) {
     return "no ping is lost";
   }
@@ -163,7 +163,7 @@ std::string McapRecording::lost_pings(const mcap::DamagedChunk& part) const {
   return pings == 0 ? "no ping is lost" : fmt::format("{} ping{} lost", pings, pings == 1 ? " is" : "s are");
 }
 
-std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) const {
+std::set<std::uint16_t> McapLogReader::channels_of(std::string_view schema) const {
   std::set<std::uint16_t> ids;
   for (const mcap::Channel& channel : reader_.summary().channels) {
     const mcap::Schema* const found = reader_.summary().schema(channel.schema_id);
@@ -174,7 +174,7 @@ std::set<std::uint16_t> McapRecording::channels_of(std::string_view schema) cons
   return ids;
 }
 
-std::vector<std::string> McapRecording::problems() const {
+std::vector<std::string> McapLogReader::problems() const {
   std::vector<std::string> problems;
   if (!reader_.finished()) {
     problems.emplace_back("not closed: cut, still being written, or the writing program ended early");

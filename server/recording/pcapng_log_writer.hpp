@@ -7,14 +7,14 @@
 
 #include "protocol/pcapng/blocks.hpp"
 #include "protocol/pcapng/packets.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace sonard::server {
 
 /// One interface per head. A stream that continues from an earlier file starts a new connection in this file.
-class PcapngLog final : public Log {
+class PcapngLogWriter final : public LogWriter {
  public:
-  explicit PcapngLog(const LogSetting& setting);
+  explicit PcapngLogWriter(const LogSetting& setting);
 
   void write(const RecordingEvent& event) override;
   void flush(TimePoint now) override;

@@ -3,16 +3,16 @@
 #pragma once
 
 #include "server/recording/glf_records.hpp"
-#include "server/recording/log.hpp"
+#include "server/recording/log_writer.hpp"
 
 namespace sonard::server {
 
 /// Starts with the first ping; earlier statuses are omitted. A .dat is a valid log after every record.
 /// GlfPacking makes a .glf from it.
-class GlfLog final : public Log {
+class GlfLogWriter final : public LogWriter {
  public:
   /// @param head index in LogSetting::heads; the head has a glf_number
-  GlfLog(const LogSetting& setting, int head) : Log(setting), head_(head) {}
+  GlfLogWriter(const LogSetting& setting, int head) : LogWriter(setting), head_(head) {}
 
   void write(const RecordingEvent& event) override;
   void flush(TimePoint) override {}  // every record is written at once

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "protocol/mcap/reader.hpp"
-#include "server/logs/recording.hpp"
+#include "server/logs/log_reader.hpp"
 
 namespace sonard::server {
 
-class McapRecording final : public Recording {
+class McapLogReader final : public LogReader {
  public:
   /// @throws LogError
-  explicit McapRecording(const LogFile& file);
+  explicit McapLogReader(const LogFile& file);
 
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;
   std::vector<std::string> problems() const override;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/recording/pcapng_log.hpp"
+#include "server/recording/pcapng_log_writer.hpp"
 
 #include <variant>
 
@@ -18,13 +18,14 @@ pcapng::ByteView view(const SharedBytes& bytes) {
 
 }  // namespace
 
-PcapngLog::PcapngLog(const LogSetting& setting) : Log(setting), writer_("sonard " SONARD_VERSION) {
+PcapngLogWriter::PcapngLogWriter(const LogSetting& setting)
+    : LogWriter(setting), writer_("sonard " SONARD_VERSION) {
   for (const HeadToRecord& head : setting.heads) {
     writer_.add_interface(head.name);  // interface numbers are head indices
   }
 }
 
-void PcapngLog::write(const RecordingEvent& event) {
+void PcapngLogWriter::write(const RecordingEvent& event) {
   if (file().failed()) {
     return;
   }
@@ -38,7 +39,7 @@ void PcapngLog::write(const RecordingEvent& event) {
   }
 }
 
-void PcapngLog::write_datagrams(const RecordingEvent& event, const WirePassed& wire) {
+void PcapngLogWriter::write_datagrams(const RecordingEvent& event, const WirePassed& wire) {
   for (const WirePiece& piece : wire.pieces) {
     const pcapng::Endpoint client = end_of(piece.client);
     const pcapng::Endpoint head = end_of(piece.head);
@@ -47,7 +48,7 @@ void PcapngLog::write_datagrams(const RecordingEvent& event, const WirePassed& w
   }
 }
 
-void PcapngLog::write_stream(const RecordingEvent& event, const WirePassed& wire) {
+void PcapngLogWriter::write_stream(const RecordingEvent& event, const WirePassed& wire) {
   const bool pty = wire.transport == WireTransport::pty;
   for (const WirePiece& piece : wire.pieces) {
     const StreamKey key{event.head, piece.client.address, piece.client.port, wire.pty};
@@ -64,7 +65,7 @@ void PcapngLog::write_stream(const RecordingEvent& event, const WirePassed& wire
   }
 }
 
-void PcapngLog::end_stream(const RecordingEvent& event, const WireEnds& ends) {
+void PcapngLogWriter::end_stream(const RecordingEvent& event, const WireEnds& ends) {
   const auto stream = streams_.find({event.head, ends.client.address, ends.client.port, ends.pty});
   if (stream != streams_.end()) {
     add(event, stream->second.close());
@@ -72,20 +73,20 @@ void PcapngLog::end_stream(const RecordingEvent& event, const WireEnds& ends) {
   }
 }
 
-void PcapngLog::add(const RecordingEvent& event, const std::vector<pcapng::Bytes>& packets) {
+void PcapngLogWriter::add(const RecordingEvent& event, const std::vector<pcapng::Bytes>& packets) {
   for (const pcapng::Bytes& packet : packets) {
     writer_.add_packet(static_cast<std::uint32_t>(event.head),
                        static_cast<std::uint64_t>(setting().unix_ns(event.time)), packet);
   }
 }
 
-void PcapngLog::flush(TimePoint) {
+void PcapngLogWriter::flush(TimePoint) {
   if (file().begun()) {  // the writer's first data is the start of the file and waits for begin()
     file().append(writer_.take());
   }
 }
 
-void PcapngLog::close() {
+void PcapngLogWriter::close() {
   flush({});
   file().end();
 }

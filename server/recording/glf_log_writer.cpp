@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/recording/glf_log.hpp"
+#include "server/recording/glf_log_writer.hpp"
 
 #include <variant>
 
@@ -8,7 +8,7 @@
 
 namespace sonard::server {
 
-void GlfLog::write(const RecordingEvent& event) {
+void GlfLogWriter::write(const RecordingEvent& event) {
   if (event.head != head_ || file().failed()) {
     return;
   }
@@ -19,11 +19,11 @@ void GlfLog::write(const RecordingEvent& event) {
   }
 }
 
-GlfLogOrigin GlfLog::origin() const {
+GlfLogOrigin GlfLogWriter::origin() const {
   return {setting().utc_offset_s, head().glf_number.value_or(0), head().device_id};
 }
 
-void GlfLog::write(const PingSent& sent) {
+void GlfLogWriter::write(const PingSent& sent) {
   const glf::ImageRecord image = glf_image(sent.ping, setting().unix_ns(sent.ping.transmit_time), origin());
   if (!file().begun()) {
     const std::filesystem::path& directory = setting().config.directory;
@@ -32,7 +32,7 @@ void GlfLog::write(const PingSent& sent) {
   file().append(glf::encode(image));
 }
 
-void GlfLog::write(const StatusSent& status, TimePoint time) {
+void GlfLogWriter::write(const StatusSent& status, TimePoint time) {
   if (!file().begun()) {
     return;
   }
