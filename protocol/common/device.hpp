@@ -61,7 +61,7 @@ struct SensorsRead {
 /// Feeds a device that plays back: the ping to send at a client's next request. It replaces the ping fed
 /// before. One job consumes it; without a fed ping, no ping begins.
 struct PingFed {
-  std::optional<RecordedPing> ping;
+  std::optional<ReplayedPing> ping;
 };
 /// In simulated time: the poses of Actions::next_ping have arrived, so it begins with this step. It is never
 /// sent before NextPing::from.

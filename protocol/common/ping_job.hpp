@@ -59,7 +59,7 @@ struct PingJob {
   double gain_db = 0.0;        ///< on the scale of the device
   double gain_percent = 50.0;  ///< as set by the client, 0..100; for logs
 
-  /// RecordedPing::record of the ping that answers this job whatever its settings; nullopt: render the job.
+  /// ReplayedPing::record of the ping that answers this job whatever its settings; nullopt: render the job.
   std::optional<std::uint64_t> record;
   std::vector<Difference> differences;  ///< between this job and that recorded ping
   std::vector<Setting> settings;        ///< as set by the client, for the log

@@ -43,7 +43,7 @@ struct PingRecord {
 };
 
 /// A recorded ping to send again unchanged. A head that plays back ignores a client's settings and sends it.
-struct RecordedPing {
+struct ReplayedPing {
   std::uint64_t record = 0;  ///< PingJob::record
   RecordedSettings settings;
   double bearing_rad = 0.0;        ///< of a scanning head's beam, see PingRecord::bearings_rad

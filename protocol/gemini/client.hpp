@@ -51,7 +51,7 @@ struct RetryCounters {
 struct ReceivedPing {
   std::uint64_t number = 0;  ///< 0, 1, 2, ... in the order of delivery
   PingHead head;
-  PingSamples samples;
+  ReceivedSamples samples;
   int lines = 0;           ///< announced by the head
   int lines_lost = 0;      ///< never arrived; zero in `samples`
   int lines_repaired = 0;  ///< arrived only when resent

@@ -78,7 +78,7 @@ std::vector<LineRange> PingAssembly::missing(int from, int to) const {
   return ranges;
 }
 
-PingSamples PingAssembly::take_samples() {
+ReceivedSamples PingAssembly::take_samples() {
   return std::move(samples_);
 }
 

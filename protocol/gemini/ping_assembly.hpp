@@ -22,7 +22,7 @@ struct LineRange {
 
 /// Samples of a ping, line after line, port to starboard; near lines first. Exactly one vector is filled.
 /// Samples of lost lines are zero.
-struct PingSamples {
+struct ReceivedSamples {
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
 };
@@ -64,7 +64,7 @@ class PingAssembly {
   std::vector<LineRange> missing(int from, int to) const;
 
   /// Moves the samples out; the assembly cannot be used afterwards. Empty if there is no head.
-  PingSamples take_samples();
+  ReceivedSamples take_samples();
 
  private:
   struct Waiting {
@@ -78,7 +78,7 @@ class PingAssembly {
 
   std::uint8_t id_;
   std::optional<PingHead> head_;
-  PingSamples samples_;
+  ReceivedSamples samples_;
   std::vector<bool> received_;
   int lines_received_ = 0;
   std::vector<Waiting> waiting_;

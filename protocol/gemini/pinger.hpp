@@ -38,7 +38,7 @@ class Pinger {
   void on_image_failed(std::uint64_t number);
   void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
   void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
-  void feed(const std::optional<RecordedPing>& ping) { fed_ = ping; }
+  void feed(const std::optional<ReplayedPing>& ping) { fed_ = ping; }
   /// See Actions::next_ping.
   std::optional<NextPing> next_ping() const;
   void next_ping_due() { due_ = true; }
@@ -113,7 +113,7 @@ class Pinger {
   bool suspended_ = false;
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< from the newest configuration
-  std::optional<RecordedPing> fed_;
+  std::optional<ReplayedPing> fed_;
   bool due_ = false;
 
   // Acquired.

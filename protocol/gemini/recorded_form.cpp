@@ -79,7 +79,7 @@ std::optional<RecordedForm> recorded_form(const RecordedSettings& settings) {
                       std::abs(lines_per_line / (1 << compression_log2) - 1.0) < step_tolerance};
 }
 
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device) {
+PingPlan held_to(const ReplayedPing& recorded, const PingPlan& asked, const DeviceConfig& device) {
   const RecordedSettings& settings = recorded.settings;
   const RecordedForm form = recorded_form(settings).value();
   PingPlan plan = asked;

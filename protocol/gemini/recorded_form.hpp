@@ -29,7 +29,7 @@ std::optional<RecordedForm> recorded_form(const RecordedSettings& settings);
 
 /// Changes the plan `asked` so that it sends this recorded ping. A ping with its own due time ignores the
 /// requested interval. Requires a recorded_form().
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked, const DeviceConfig& device);
+PingPlan held_to(const ReplayedPing& recorded, const PingPlan& asked, const DeviceConfig& device);
 
 /// Differences between `asked` and the ping that is sent instead, except rounding on the wire and in logs.
 std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,

@@ -38,7 +38,7 @@ PingJob make_line_job(const HeadCommand& parameters, const DeviceConfig& config,
   return job;
 }
 
-PingJob make_line_job(const RecordedPing& recorded, const HeadData& line) {
+PingJob make_line_job(const ReplayedPing& recorded, const HeadData& line) {
   PingJob job;
   job.bearing_rad = recorded.bearing_rad;
   set_bins(job, recorded.settings.bins, std::max<int>(line.ad_interval, 1),

@@ -14,6 +14,6 @@ namespace sonard::micron {
 PingJob make_line_job(const HeadCommand& parameters, const DeviceConfig& config, int bearing);
 
 /// The job of a recorded line with the header `line`. The caller sets number and transmit time.
-PingJob make_line_job(const RecordedPing& recorded, const HeadData& line);
+PingJob make_line_job(const ReplayedPing& recorded, const HeadData& line);
 
 }  // namespace sonard::micron

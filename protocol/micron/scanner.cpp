@@ -101,7 +101,7 @@ void Scanner::take_up_position(TimePoint begin) {
 
 // ---- Pings
 
-void Scanner::feed(const std::optional<RecordedPing>& ping) {
+void Scanner::feed(const std::optional<ReplayedPing>& ping) {
   const auto line = ping ? recorded_line(ping->wire) : std::nullopt;
   fed_ = line ? std::optional(FedPing{*ping, *line}) : std::nullopt;
 }

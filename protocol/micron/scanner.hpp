@@ -42,7 +42,7 @@ class Scanner {
   std::optional<NextPing> next_ping() const;
   void next_ping_due() { due_ = true; }
   /// Sets the next recorded ping; a ping without a line in its `wire` counts as nullopt.
-  void feed(const std::optional<RecordedPing>& ping);
+  void feed(const std::optional<ReplayedPing>& ping);
 
   /// Appends the frames due at `now` to `out`.
   void advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out);
@@ -62,7 +62,7 @@ class Scanner {
  private:
   std::chrono::nanoseconds wanted_period() const;
   struct FedPing {
-    RecordedPing ping;
+    ReplayedPing ping;
     HeadData line;
   };
   struct Ping {

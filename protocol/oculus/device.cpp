@@ -110,7 +110,7 @@ class Device::Impl {
   TimePoint newest_command_{};  ///< time of the client's last command, or of its connection
   CommandBuffer input_;
   std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: no fire, or standby
-  std::optional<RecordedPing> fed_;
+  std::optional<ReplayedPing> fed_;
   bool due_ = false;
   std::optional<Ping> ping_;                ///< in progress
   std::optional<std::uint64_t> cancelled_;  ///< number of a cancelled job that is not answered yet
@@ -291,7 +291,7 @@ void Device::Impl::begin_ping(TimePoint now) {
     return;
   }
   due_ = false;
-  const std::optional<RecordedPing> fed = std::exchange(fed_, std::nullopt);
+  const std::optional<ReplayedPing> fed = std::exchange(fed_, std::nullopt);
   ping_ = Ping{next_number_++,
                fed ? held_to(*fed, *plan_) : *plan_,
                now,

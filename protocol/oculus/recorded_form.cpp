@@ -53,7 +53,7 @@ std::optional<PingResult> recorded_form(std::span<const std::uint8_t> wire) {
   return *ping;
 }
 
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked) {
+PingPlan held_to(const ReplayedPing& recorded, const PingPlan& asked) {
   const PingResult sent = recorded_form(recorded.wire).value();
   PingPlan plan = asked;
   PingResult& ping = plan.result;

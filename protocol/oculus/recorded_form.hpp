@@ -23,7 +23,7 @@ std::optional<PingResult> recorded_form(std::span<const std::uint8_t> wire);
 /// Changes the plan `asked` so that it sends this recorded ping, with the recorded rows, beams, bearings and
 /// frequency. Samples have the requested width, but only 8 significant bits. The client's settings are
 /// returned unchanged except the flag of the beams. Requires a recorded_form().
-PingPlan held_to(const RecordedPing& recorded, const PingPlan& asked);
+PingPlan held_to(const ReplayedPing& recorded, const PingPlan& asked);
 
 /// Differences between `asked` and the ping that is sent instead. Rounding is ignored.
 std::vector<Difference> differences(const PingPlan& asked, const PingPlan& sent,

@@ -12,6 +12,6 @@ namespace sonard::ping360 {
 PingJob make_job(const PingForm& form, const DeviceConfig& config);
 
 /// The job of a recorded ping with this form. The caller sets number and transmit time.
-PingJob make_job(const RecordedPing& recorded, const PingForm& form, const DeviceConfig& config);
+PingJob make_job(const ReplayedPing& recorded, const PingForm& form, const DeviceConfig& config);
 
 }  // namespace sonard::ping360

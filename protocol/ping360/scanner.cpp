@@ -102,7 +102,7 @@ void Scanner::forget(TimePoint now, const Peer& client) {
   }
 }
 
-void Scanner::feed(const std::optional<RecordedPing>& ping) {
+void Scanner::feed(const std::optional<ReplayedPing>& ping) {
   const auto form = ping ? recorded_form(ping->wire) : std::nullopt;
   fed_ = form ? std::optional(FedPing{*ping, *form}) : std::nullopt;
 }

@@ -52,7 +52,7 @@ class Scanner {
   std::optional<NextPing> next_ping() const;
   void next_ping_due() { due_ = true; }
   /// Sets the next recorded ping; a ping without a valid `wire` counts as nullopt.
-  void feed(const std::optional<RecordedPing>& ping);
+  void feed(const std::optional<ReplayedPing>& ping);
 
   /// Appends the messages due at `now` to `out`, from the device `id`.
   void advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out);
@@ -102,7 +102,7 @@ class Scanner {
     std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
   };
   struct FedPing {
-    RecordedPing ping;
+    ReplayedPing ping;
     PingForm form;
   };
 

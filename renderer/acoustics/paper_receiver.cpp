@@ -31,7 +31,7 @@ void clamp_row(float gain, float codes, int beams, float* __restrict value) {
 /// Makes range bins one by one; one object per thread.
 class PaperBins {
  public:
-  PaperBins(const PaperPing& ping, const EchoBlock& block)
+  PaperBins(const PaperReceiverInput& ping, const EchoBlock& block)
       : ping_(ping),
         block_(block),
         beams_(block.beams()),
@@ -62,7 +62,7 @@ class PaperBins {
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
-  const PaperPing& ping_;
+  const PaperReceiverInput& ping_;
   const EchoBlock& block_;
   int beams_;
   ComplexRow random_;
@@ -72,8 +72,8 @@ class PaperBins {
 
 }  // namespace
 
-PingSamples receive_paper(const EchoImage& echo, const PaperPing& ping, const SonarSettings& settings,
-                          WorkerPool& workers, SkipCounts& skipped) {
+PingSamples receive_paper(const EchoImage& echo, const PaperReceiverInput& ping,
+                          const SonarSettings& settings, WorkerPool& workers, SkipCounts& skipped) {
   return receive_bins<PaperBins>(echo, ping, settings, workers,
                                  [&](const PaperBins& bins) { skipped += bins.skipped(); });
 }

@@ -10,7 +10,7 @@
 
 namespace sonard::render {
 
-struct PaperPing {
+struct PaperReceiverInput {
   PaperModel model;
   RandomKey key;
   float codes = 0;  ///< per amplitude
@@ -18,7 +18,7 @@ struct PaperPing {
 };
 
 /// @param skipped the work left out is added to it
-PingSamples receive_paper(const EchoImage& echo, const PaperPing& ping, const SonarSettings& settings,
-                          WorkerPool& workers, SkipCounts& skipped);
+PingSamples receive_paper(const EchoImage& echo, const PaperReceiverInput& ping,
+                          const SonarSettings& settings, WorkerPool& workers, SkipCounts& skipped);
 
 }  // namespace sonard::render

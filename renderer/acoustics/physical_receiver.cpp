@@ -43,7 +43,7 @@ void noise_envelope_row(float noise, const float* __restrict profile, const floa
 /// Makes range bins one by one; one object per thread.
 class PhysicalBins {
  public:
-  PhysicalBins(const PhysicalPing& ping, const EchoBlock& block)
+  PhysicalBins(const PhysicalReceiverInput& ping, const EchoBlock& block)
       : ping_(ping),
         block_(block),
         beams_(ping.tables.filter.beams()),
@@ -204,7 +204,7 @@ class PhysicalBins {
     return textured_.data();
   }
 
-  const PhysicalPing& ping_;
+  const PhysicalReceiverInput& ping_;
   const EchoBlock& block_;
   int beams_;
   // Of the current line:
@@ -224,7 +224,7 @@ class PhysicalBins {
 };
 
 /// Runs before any line is read, because another thread may own the neighbours of a line.
-void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, WorkerPool& workers,
+void evolve_whole(const RandomFieldOfPing& field, const PhysicalReceiverInput& ping, WorkerPool& workers,
                   SkipCounts& skipped) {
   const int reach = ping.tables.pulse_correlation.reach();
   if (field.kept == nullptr || reach == 0) {
@@ -247,13 +247,14 @@ void evolve_whole(const RandomFieldOfPing& field, const PhysicalPing& ping, Work
 
 }  // namespace
 
-void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped) {
+void evolve_fields(const PhysicalReceiverInput& ping, WorkerPool& workers, SkipCounts& skipped) {
   evolve_whole(ping.speckle, ping, workers, skipped);
   evolve_whole(ping.texture, ping, workers, skipped);
 }
 
-PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
-                             WorkerPool& workers, SkipCounts& skipped, double& echo_over_floor) {
+PingSamples receive_physical(const EchoImage& echo, const PhysicalReceiverInput& ping,
+                             const SonarSettings& settings, WorkerPool& workers, SkipCounts& skipped,
+                             double& echo_over_floor) {
   evolve_fields(ping, workers, skipped);
   echo_over_floor = 0.0;
   return receive_bins<PhysicalBins>(echo, ping, settings, workers, [&](const PhysicalBins& bins) {

@@ -13,7 +13,7 @@
 namespace sonard::render {
 
 /// Input of the receiver for one ping, beside its echo.
-struct PhysicalPing {
+struct PhysicalReceiverInput {
   const ReceiverTables& tables;
   RandomFieldOfPing speckle, texture, noise;
   InterferenceBurst interference;
@@ -24,11 +24,12 @@ struct PhysicalPing {
 
 /// Brings all lines of the kept fields up to date if lines share a pulse, because a line then needs its
 /// neighbours. Otherwise each line is brought up to date when it is read.
-void evolve_fields(const PhysicalPing& ping, WorkerPool& workers, SkipCounts& skipped);
+void evolve_fields(const PhysicalReceiverInput& ping, WorkerPool& workers, SkipCounts& skipped);
 
 /// @param echo mean echo, behind the array. @param skipped the work left out is added to it.
 /// @param echo_over_floor gets PingStatistics::echo_over_floor
-PingSamples receive_physical(const EchoImage& echo, const PhysicalPing& ping, const SonarSettings& settings,
-                             WorkerPool& workers, SkipCounts& skipped, double& echo_over_floor);
+PingSamples receive_physical(const EchoImage& echo, const PhysicalReceiverInput& ping,
+                             const SonarSettings& settings, WorkerPool& workers, SkipCounts& skipped,
+                             double& echo_over_floor);
 
 }  // namespace sonard::render

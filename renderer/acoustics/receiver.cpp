@@ -71,13 +71,13 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
     return make_random_key(request.seed, head, field, request.ping_number);
   };
   if (settings.model == Model::paper) {
-    const PaperPing ping{settings.paper, key(RandomField::paper_speckle), codes_per_amplitude(settings),
-                         skip_};
+    const PaperReceiverInput ping{settings.paper, key(RandomField::paper_speckle),
+                                  codes_per_amplitude(settings), skip_};
     return receive_paper(echo, ping, settings, workers, skipped_);
   }
   HeadState& state = state_of(settings, head);
   state.fields.advance(request, state.tables);
-  const PhysicalPing ping{
+  const PhysicalReceiverInput ping{
       state.tables,
       speckle_of(state, request, head),
       texture_of(state, request, head),
@@ -101,7 +101,7 @@ bool Receiver::pass(const PingRequest& request, int head, WorkerPool& workers) {
     return false;
   }
   state.fields.advance(request, state.tables);
-  const PhysicalPing ping{
+  const PhysicalReceiverInput ping{
       state.tables, speckle_of(state, request, head), texture_of(state, request, head), {}, {}, {}, {},
       skip_};
   evolve_fields(ping, workers, skipped_);

@@ -15,8 +15,8 @@
 namespace sonard::render {
 
 /// Renders pings of one world. All calls, including construction and destruction, must come from one thread,
-/// which owns the GL context if there is one. Several sonars may share one renderer; each uses its own
-/// `head` number, which separates their speckle.
+/// which owns the GL context if there is one. Several heads may share one renderer; each has its own
+/// index, which separates their speckle.
 class SonarRenderer {
  public:
   /// @throws RendererError if `gpu` is requested but unavailable.

@@ -82,7 +82,7 @@ class DeviceType : public HeadType {
     return std::nullopt;
   }
   /// The start of a ping in a datagram; nullopt for other datagrams and resent pings.
-  virtual std::optional<PingSeen> ping_in(std::span<const std::uint8_t> /*datagram*/) const {
+  virtual std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> /*datagram*/) const {
     return std::nullopt;
   }
 

@@ -68,7 +68,7 @@ class Head {
 
   /// Called when PoseHistory has a new pose: in simulated time a ping may have waited for it.
   void poses_changed();
-  /// See PingTimes::lead().
+  /// See SimulatedPingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
   /// Follows the address of its interface, and logs if an address is gone.

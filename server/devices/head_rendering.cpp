@@ -99,7 +99,7 @@ std::vector<PosedBody> HeadRendering::bodies_at(TimePoint time) const {
   return bodies;
 }
 
-void HeadRendering::submit(HeadPing ping, RenderService::Done done) {
+void HeadRendering::submit(PingToRender ping, RenderService::Done done) {
   submitted_ = true;
   RenderJob job;
   job.head = index_;

@@ -16,8 +16,8 @@
 #include "server/config/config.hpp"
 #include "server/devices/head.hpp"
 #include "server/devices/render_load.hpp"
-#include "server/pose/ping_times.hpp"
 #include "server/pose/posed_body.hpp"
+#include "server/pose/simulated_ping_times.hpp"
 #include "server/program_log/peer_log.hpp"
 #include "server/recording/events.hpp"
 #include "server/rendering/render_service.hpp"
@@ -41,7 +41,7 @@ struct RenderCounters {
 };
 
 /// One ping of a head for the render thread.
-struct HeadPing {
+struct PingToRender {
   std::uint64_t number = 0;
   TimePoint pose_time{};              ///< of the transmission, on the clock of PoseHistory
   std::uint64_t transmit_us = 0;      ///< on the head's clock
@@ -57,7 +57,7 @@ class HeadRendering {
   HeadRendering(const HeadConfig& config, int index, const HeadServices& services);
 
   /// Time of the poses, on the clock of PoseHistory, of a ping transmitted at this time of the head: the time
-  /// that PingTimes returned, or else the same time.
+  /// that SimulatedPingTimes returned, or else the same time.
   TimePoint pose_time(TimePoint transmit_time) const { return ping_time_.value_or(transmit_time); }
 
   /// In simulated time: begins `next` if its poses have arrived. Returns true if it did.
@@ -67,7 +67,7 @@ class HeadRendering {
   /// Longest time between two requests of a client that requests single pings. After that, the head counts as
   /// idle.
   static constexpr std::chrono::seconds longest_pause{3};
-  /// See PingTimes::lead().
+  /// See SimulatedPingTimes::lead().
   std::optional<std::chrono::nanoseconds> pose_lead() const;
 
   /// Pose of the head's mount in the world; for a future time, extrapolated by the twist of the newest pose.
@@ -80,7 +80,7 @@ class HeadRendering {
   /// All poses that a log stores for a ping transmitted at `transmit_time`; null if no pose is known.
   std::shared_ptr<const PosesUsed> poses_used(TimePoint transmit_time) const;
 
-  void submit(HeadPing ping, RenderService::Done done);
+  void submit(PingToRender ping, RenderService::Done done);
   /// Counts an answer and logs its error, once per error. @return true if there are samples
   bool take(const RenderResult& result);
   /// SkipRule::nobody_listening: withdraws a ping that waits behind pings of other heads.
@@ -97,10 +97,10 @@ class HeadRendering {
   const HeadConfig& config_;
   int index_;
   HeadServices services_;
-  std::optional<PingTimes> ping_times_;  ///< in simulated time
-  std::optional<TimePoint> ping_time_;   ///< on that clock, of the ping that began last
-  TimePoint last_wanted_{};              ///< on the clock of this process
-  bool submitted_ = false;               ///< and not yet answered
+  std::optional<SimulatedPingTimes> ping_times_;  ///< in simulated time
+  std::optional<TimePoint> ping_time_;            ///< on that clock, of the ping that began last
+  TimePoint last_wanted_{};                       ///< on the clock of this process
+  bool submitted_ = false;                        ///< and not yet answered
   RenderLoad load_;
   RenderCounters counters_;
   render::PingStatistics newest_;

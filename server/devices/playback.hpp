@@ -8,14 +8,14 @@
 
 namespace sonard::server {
 
-/// A recording that heads play back to clients. `head` is the index of a head. Belongs
-/// to the I/O thread.
+/// A recording that heads play back to clients. `head` is the index of a head. Belongs to the
+/// I/O thread.
 class Playback {
  public:
   virtual ~Playback() = default;
 
   /// The next ping of a head at `now`; nullopt: there are no more.
-  virtual std::optional<RecordedPing> next_ping(int head, TimePoint now) = 0;
+  virtual std::optional<ReplayedPing> next_ping(int head, TimePoint now) = 0;
   /// Called when a ping of next_ping() begins: `job.record`.
   virtual void started(int head, const PingJob& job) = 0;
   /// Called with the progress of a head, whenever it changes.

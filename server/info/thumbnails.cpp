@@ -55,7 +55,7 @@ void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   }
 }
 
-std::uint64_t write_fans(const LogReader& recording, const LoggedHead& head, const LogFile& file,
+std::uint64_t write_fans(const LogReader& reader, const LoggedHead& head, const LogFile& file,
                          const std::filesystem::path& folder, std::uint64_t every) {
   std::optional<picture::FanImage> fan;
   std::uint64_t written = 0;
@@ -69,7 +69,7 @@ std::uint64_t write_fans(const LogReader& recording, const LoggedHead& head, con
     if (!fan || fan->geometry().shape() != shape) {
       fan.emplace(shape, thumbnail_style);
     }
-    std::vector<std::uint8_t> pixels = recording.samples(image);
+    std::vector<std::uint8_t> pixels = reader.samples(image);
     make_linear(pixels, image.settings.amplitude_exponent);
     const cv::Mat polar(image.settings.bins, image.settings.beams, CV_8UC1, pixels.data());
     write_picture(folder / file_name(head, ping),
@@ -78,8 +78,8 @@ std::uint64_t write_fans(const LogReader& recording, const LoggedHead& head, con
   return written;
 }
 
-picture::SweepLine drawn_line(const LogReader& recording, const LoggedPing& line) {
-  picture::SweepLine drawn{picture_bearing(line), recording.samples(line)};
+picture::SweepLine drawn_line(const LogReader& reader, const LoggedPing& line) {
+  picture::SweepLine drawn{picture_bearing(line), reader.samples(line)};
   if (line.bits_per_bin == 4) {
     constexpr int to_full_scale = 17;
     std::ranges::transform(drawn.samples, drawn.samples.begin(), [](std::uint8_t bin) {
@@ -89,7 +89,7 @@ picture::SweepLine drawn_line(const LogReader& recording, const LoggedPing& line
   return drawn;
 }
 
-std::uint64_t write_sweeps(const LogReader& recording, const LoggedHead& scan,
+std::uint64_t write_sweeps(const LogReader& reader, const LoggedHead& scan,
                            const std::filesystem::path& folder, std::uint64_t every) {
   const std::vector<RecordedSweep> sweeps = sweeps_of(scan);
   std::uint64_t written = 0;
@@ -97,7 +97,7 @@ std::uint64_t write_sweeps(const LogReader& recording, const LoggedHead& scan,
     const RecordedSweep& sweep = sweeps[number];
     std::vector<picture::SweepLine> lines;
     for (std::size_t place = sweep.begin; place < sweep.end; ++place) {
-      lines.push_back(drawn_line(recording, scan.pings[place]));
+      lines.push_back(drawn_line(reader, scan.pings[place]));
     }
     const picture::SweepImage image(sweep.shape, thumbnail_style);
     write_picture(
@@ -109,7 +109,7 @@ std::uint64_t write_sweeps(const LogReader& recording, const LoggedHead& scan,
 
 }  // namespace
 
-std::uint64_t write_thumbnails(const LogReader& recording, const LogFile& file,
+std::uint64_t write_thumbnails(const LogReader& reader, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -117,9 +117,9 @@ std::uint64_t write_thumbnails(const LogReader& recording, const LogFile& file,
     throw LogError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   }
   std::uint64_t written = 0;
-  for (const LoggedHead& head : recording.heads()) {
-    written += head.scanning ? write_sweeps(recording, head, folder, every)
-                             : write_fans(recording, head, file, folder, every);
+  for (const LoggedHead& head : reader.heads()) {
+    written += head.scanning ? write_sweeps(reader, head, folder, every)
+                             : write_fans(reader, head, file, folder, every);
   }
   return written;
 }

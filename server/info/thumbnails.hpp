@@ -14,7 +14,7 @@ namespace sonard::server {
 /// Creates the folder; overwrites files.
 /// @return number of files. @throws LogError naming the file that cannot be written or the head that cannot
 /// be drawn
-std::uint64_t write_thumbnails(const LogReader& recording, const LogFile& file,
+std::uint64_t write_thumbnails(const LogReader& reader, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every);
 
 }  // namespace sonard::server

@@ -46,7 +46,7 @@ void add_packet(LogSummary& log, const pcapng::Packet& packet, const PingFinder&
   count(log, payload.transport == udp   ? "UDP packets"
              : payload.transport == tcp ? "TCP packets"
                                         : "other packets");
-  const std::optional<PingSeen> ping = ping_in(payload.bytes);
+  const std::optional<CapturedPing> ping = ping_in(payload.bytes);
   if (ping && plausible_time(time_ns)) {
     add_ping(head_of(log, {}, ping->type, ping->device_id, ping->settings.beams == 1), time_ns,
              ping->settings);

@@ -27,7 +27,7 @@ struct LoggedPing {
   double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
   std::vector<std::uint8_t> wire;  ///< the message without samples; empty: not in the log
-  std::size_t place = 0;           ///< index in the LogReader
+  std::size_t place = 0;           ///< index in the reader
 };
 
 /// A head of a log.

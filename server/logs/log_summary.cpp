@@ -13,29 +13,29 @@
 namespace sonard::server {
 namespace {
 
-void add_pings(LogSummary& log, const LogReader& recording) {
-  for (const LoggedHead& logged : recording.heads()) {
+void add_pings(LogSummary& log, const LogReader& reader) {
+  for (const LoggedHead& logged : reader.heads()) {
     HeadSummary& head = head_of(log, logged.name, logged.type, logged.device_id, logged.scanning);
     for (const LoggedPing& ping : logged.pings) {
       add_ping(head, ping.time_ns, ping.settings);
       include(log, ping.time_ns);
     }
   }
-  log.problems = recording.problems();
-  log.closed = recording.closed();
+  log.problems = reader.problems();
+  log.closed = reader.closed();
 }
 
 void summarise_glf(LogSummary& log, const LogFile& file) {
-  const GlfLogReader recording(file);
+  const GlfLogReader reader(file);
   log.local_time = true;
-  add_pings(log, recording);
-  if (log.problems.empty() && !recording.view().matches_checksum()) {
+  add_pings(log, reader);
+  if (log.problems.empty() && !reader.view().matches_checksum()) {
     log.problems.emplace_back(
         "damaged: the checksum of the archive does not match; bytes of images without a checksum of their "
         "own, or "
         "of statuses, are wrong");
   }
-  const glf::DatIndex& index = recording.view().index();
+  const glf::DatIndex& index = reader.view().index();
   for (const glf::RecordEntry& entry : index.records) {
     if (entry.type == glf::RecordType::status) {
       count(log, "statuses");
@@ -50,9 +50,9 @@ void summarise_glf(LogSummary& log, const LogFile& file) {
 }
 
 void summarise_mcap(LogSummary& log, const LogFile& file) {
-  const McapLogReader recording(file);
-  add_pings(log, recording);
-  const mcap::Summary& summary = recording.reader().summary();
+  const McapLogReader reader(file);
+  add_pings(log, reader);
+  const mcap::Summary& summary = reader.reader().summary();
   if (summary.message_count() > 0) {
     include(log, static_cast<std::int64_t>(summary.start_time_ns()));
     include(log, static_cast<std::int64_t>(summary.end_time_ns()));

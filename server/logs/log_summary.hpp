@@ -57,12 +57,12 @@ struct LogSummary {
 };
 
 /// A ping found in a datagram by a type of device.
-struct PingSeen {
+struct CapturedPing {
   std::string type;
   std::uint16_t device_id = 0;
   RecordedSettings settings;
 };
-using PingFinder = std::function<std::optional<PingSeen>(std::span<const std::uint8_t> datagram)>;
+using PingFinder = std::function<std::optional<CapturedPing>(std::span<const std::uint8_t> datagram)>;
 
 /// @param ping_in finds the pings of a .pcapng
 /// @throws LogError if the log is broken at its start

@@ -21,8 +21,8 @@ std::vector<std::vector<std::int64_t>> times_of(const std::vector<PlayedHead>& h
 
 class LogRenderer final : public PingRenderer {
  public:
-  LogRenderer(const LogReader& recording, std::vector<PlayedHead> heads)
-      : recording_(recording), heads_(std::move(heads)) {}
+  LogRenderer(const LogReader& reader, std::vector<PlayedHead> heads)
+      : reader_(reader), heads_(std::move(heads)) {}
 
   std::string description() const override { return "recording"; }
   bool set_body_pose(const std::string&, const render::Pose&) override { return true; }
@@ -41,11 +41,11 @@ class LogRenderer final : public PingRenderer {
     render::PingSamples samples;
     samples.beams = ping.settings.beams;
     samples.lines = ping.settings.bins;
-    samples.u8 = recording_.samples(ping);
+    samples.u8 = reader_.samples(ping);
     return samples;
   }
 
-  const LogReader& recording_;
+  const LogReader& reader_;
   std::vector<PlayedHead> heads_;
 };
 
@@ -64,13 +64,13 @@ LogPlayback::LogPlayback(std::vector<PlayedHead> heads, const ReplayTiming& timi
   }
 }
 
-std::optional<RecordedPing> LogPlayback::next_ping(int index, TimePoint now) {
+std::optional<ReplayedPing> LogPlayback::next_ping(int index, TimePoint now) {
   const std::optional<ReplaySchedule::Ping> next = schedule_.next(static_cast<std::size_t>(index), now);
   if (!next) {
     return std::nullopt;
   }
   const LoggedPing& ping = head(index).played.logged->pings.at(next->image);
-  return RecordedPing{.record = next->image,
+  return ReplayedPing{.record = next->image,
                       .settings = ping.settings,
                       .bearing_rad = -ping.bearing_rad,  // devices count bearings to starboard
                       .bits_per_bin = ping.bits_per_bin,
@@ -130,8 +130,8 @@ void LogPlayback::log_totals() const {
   }
 }
 
-RendererFactory make_log_renderer(const LogReader& recording, std::vector<PlayedHead> heads) {
-  return [&recording, heads = std::move(heads)] { return std::make_unique<LogRenderer>(recording, heads); };
+RendererFactory make_log_renderer(const LogReader& reader, std::vector<PlayedHead> heads) {
+  return [&reader, heads = std::move(heads)] { return std::make_unique<LogRenderer>(reader, heads); };
 }
 
 }  // namespace sonard::server

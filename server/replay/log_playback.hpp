@@ -30,7 +30,7 @@ class LogPlayback final : public Playback {
 
   LogPlayback(std::vector<PlayedHead> heads, const ReplayTiming& timing, TimePoint now);
 
-  std::optional<RecordedPing> next_ping(int index, TimePoint now) override;
+  std::optional<ReplayedPing> next_ping(int index, TimePoint now) override;
   void started(int index, const PingJob& job) override;
   void progress(int index, TimePoint now, const PingProgress& done) override;
   bool finished(TimePoint now) const override;
@@ -57,6 +57,6 @@ class LogPlayback final : public Playback {
 };
 
 /// Replaces the renderer: returns the samples of the record with the ping's number. Render thread.
-RendererFactory make_log_renderer(const LogReader& recording, std::vector<PlayedHead> heads);
+RendererFactory make_log_renderer(const LogReader& reader, std::vector<PlayedHead> heads);
 
 }  // namespace sonard::server

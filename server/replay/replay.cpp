@@ -12,12 +12,12 @@ namespace sonard::server {
 
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing) {
   const LogFile file(log);
-  const std::unique_ptr<LogReader> recording = open_log(file);
-  for (const std::string& problem : recording->problems()) {
+  const std::unique_ptr<LogReader> reader = open_log(file);
+  for (const std::string& problem : reader->problems()) {
     spdlog::warn("{}: {}", log.string(), problem);
   }
   const ReplayConfig replayed = replay_config(
-      config ? std::move(*config) : loopback_config(recording->heads(), file), recording->heads(), file);
+      config ? std::move(*config) : loopback_config(reader->heads(), file), reader->heads(), file);
   for (const PlayedHead& head : replayed.played) {
     const std::vector<std::int64_t> times_ns = head.times_ns();
     spdlog::info("head={}: replays sonar {}: {} pings of {:.1f} s", head.name, head.logged->device_id,
@@ -26,7 +26,7 @@ int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config,
   render::World world;
   world.name = log.filename().string();
   LogPlayback playback(replayed.played, timing, SteadyClock().now());
-  const int code = serve(replayed.daemon, world, make_log_renderer(*recording, replayed.played), &playback);
+  const int code = serve(replayed.daemon, world, make_log_renderer(*reader, replayed.played), &playback);
   playback.log_totals();
   return code;
 }

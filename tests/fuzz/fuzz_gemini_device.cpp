@@ -59,12 +59,12 @@ DeviceConfig config_of(unsigned flags) {
 
 /// A ping of a log: lines, 256 beams or one, line length, sound speed and gain, as far as there are bytes.
 /// nullopt if a replay would not begin with it (server/logs, DeviceType::why_not_played()).
-std::optional<sonard::RecordedPing> recorded(std::span<const std::uint8_t> bytes, TimePoint now) {
+std::optional<sonard::ReplayedPing> recorded(std::span<const std::uint8_t> bytes, TimePoint now) {
   sonard::ByteReader reader(bytes);
   const auto number = [&](double fallback) {
     return reader.remaining() < 8 ? fallback : std::bit_cast<double>(reader.u64le("number"));
   };
-  sonard::RecordedPing ping;
+  sonard::ReplayedPing ping;
   const int flags = reader.remaining() > 0 ? reader.u8("flags") : 0;
   ping.settings.bins = reader.remaining() < 2 ? 40 : reader.u16le("lines");
   ping.settings.beams = (flags & 1) != 0 ? 1 : beam_count;

@@ -91,7 +91,7 @@ class Bench {
  private:
   /// Feeds a line, unless a replay would not begin with it (DeviceType::why_not_played()).
   void feed_line(const Event& event) {
-    sonard::RecordedPing ping;
+    sonard::ReplayedPing ping;
     ping.wire = event.datagram;
     if (!event.as_is) {
       ping.wire = recorded_wire(HeadData{}, default_head_node);

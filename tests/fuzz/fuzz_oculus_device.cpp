@@ -59,7 +59,7 @@ DeviceConfig config_of(unsigned flags) {
 }
 
 /// A ping as a recording holds it.
-sonard::RecordedPing recorded() {
+sonard::ReplayedPing recorded() {
   SimpleFire fire;
   PlanConfig config;
   config.most_ranges = 2;
@@ -68,7 +68,7 @@ sonard::RecordedPing recorded() {
   ping.image = pixels;
   const std::vector<std::uint8_t> message = encode(ping, {7892, 1032});
   const sonard::PingRecord record = record_of(decode_ping_result(message).value(), message);
-  sonard::RecordedPing played;
+  sonard::ReplayedPing played;
   played.settings = record.settings;
   played.wire = record.wire;
   return played;

@@ -86,8 +86,8 @@ class Bench {
   }
 
  private:
-  static sonard::RecordedPing recorded() {
-    sonard::RecordedPing ping;
+  static sonard::ReplayedPing recorded() {
+    sonard::ReplayedPing ping;
     ping.settings = {.bins = 20, .beams = 1, .bin_m = 0.01, .sound_speed_mps = 1500.0};
     ping.wire = recorded_wire(form_of(Transducer{.angle = 50, .number_of_samples = 20}), 2);
     return ping;

@@ -8,7 +8,7 @@
 
 namespace sonard::client {
 
-std::uint32_t samples_crc32(const gemini::PingSamples& samples) {
+std::uint32_t samples_crc32(const gemini::ReceivedSamples& samples) {
   boost::crc_32_type crc;
   crc.process_bytes(samples.u8.data(), samples.u8.size());
   for (const std::uint16_t sample : samples.u16) {
@@ -30,14 +30,14 @@ std::string ping_line(const gemini::ReceivedPing& ping, std::uint16_t sonar_id) 
       sonar_id);
 }
 
-void PingRate::add(TimePoint finished) {
+void PingRateMeter::add(TimePoint finished) {
   if (pings_++ == 0) {
     first_ = finished;
   }
   last_ = finished;
 }
 
-double PingRate::hz() const {
+double PingRateMeter::hz() const {
   const double span_s = std::chrono::duration<double>(last_ - first_).count();
   return span_s > 0.0 ? static_cast<double>(pings_ - 1) / span_s : 0.0;
 }

@@ -13,14 +13,14 @@ namespace sonard::client {
 
 /// CRC-32 (zlib's polynomial) of the samples, line after line, port to starboard; 16-bit samples are
 /// big-endian.
-std::uint32_t samples_crc32(const gemini::PingSamples& samples);
+std::uint32_t samples_crc32(const gemini::ReceivedSamples& samples);
 
 /// "ping number=0 id=7 transmit_us=... lines=... beams=... lines_lost=... lines_repaired=... retries=...
 /// crc32=... sonar_id=...".
 std::string ping_line(const gemini::ReceivedPing& ping, std::uint16_t sonar_id);
 
 /// Pings per second, from the end of the first ping to the end of the newest.
-class PingRate {
+class PingRateMeter {
  public:
   void add(TimePoint finished);
   /// 0 if there are fewer than two pings.

@@ -13,9 +13,9 @@
 #include "clients/sonarview/common/exit_status.hpp"
 #include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/gemini/datagram_dropper.hpp"
+#include "clients/sonarview/gemini/gemini_pictures.hpp"
 #include "clients/sonarview/gemini/options.hpp"
 #include "clients/sonarview/gemini/ping_log.hpp"
-#include "clients/sonarview/gemini/ping_pictures.hpp"
 #include "protocol/gemini/client.hpp"
 
 namespace sonard::client {
@@ -69,10 +69,10 @@ class WatchedHead {
   TimePoint last_ping_at_{};
   TimePoint progress_due_{};
   std::uint64_t pings_at_progress_ = 0;
-  PingRate rate_;
+  PingRateMeter rate_;
   std::optional<gemini::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
   bool last_ping_shown_ = true;                    ///< its picture is drawn or queued
-  PingPictures pictures_;
+  GeminiPictures pictures_;
   std::optional<ImageWriter> writer_;
   std::optional<ExitStatus> failure_;
   bool ended_ = false;

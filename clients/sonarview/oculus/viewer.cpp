@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "clients/sonarview/common/line_viewer.hpp"
-#include "clients/sonarview/oculus/ping_pictures.hpp"
+#include "clients/sonarview/oculus/oculus_pictures.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
 #include "common/text/printable.hpp"
 #include "protocol/oculus/client.hpp"

@@ -132,14 +132,14 @@ class GeminiType final : public DeviceType {
     return status != nullptr ? std::optional(gemini::glf_status(*status)) : std::nullopt;
   }
 
-  std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) const override {
+  std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram) const override {
     constexpr std::uint16_t resent_head_bit = 0x0100;  // of PingHead::ping_id
     const auto report = gemini::decode_report(datagram);
     const auto* const head = report ? std::get_if<gemini::PingHead>(&*report) : nullptr;
     if (head == nullptr || (head->ping_id & resent_head_bit) != 0) {
       return std::nullopt;
     }
-    PingSeen seen{std::string(name()), head->header.sonar_id, gemini::settings_of(*head)};
+    CapturedPing seen{std::string(name()), head->header.sonar_id, gemini::settings_of(*head)};
     seen.settings.frequency_hz = 0.0;  // not on the wire
     return seen;
   }

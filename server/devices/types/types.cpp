@@ -30,9 +30,9 @@ const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind l
   return found == types.end() ? nullptr : *found;
 }
 
-std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram) {
+std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram) {
   for (const DeviceType* type : device_types()) {
-    if (const std::optional<PingSeen> seen = type->ping_in(datagram)) {
+    if (const std::optional<CapturedPing> seen = type->ping_in(datagram)) {
       return seen;
     }
   }

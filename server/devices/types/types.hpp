@@ -22,6 +22,6 @@ const DeviceType* type_named(std::string_view name);
 const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind log);
 
 /// The first ping in a datagram of any type of device.
-std::optional<PingSeen> ping_in(std::span<const std::uint8_t> datagram);
+std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram);
 
 }  // namespace sonard::server

@@ -262,7 +262,7 @@ TEST_F(DaemonTest, EndsCleanlyInTheMiddleOfPings) {
 /// An endless recording without pings, and an I/O thread that is busy when the signal to end comes.
 class BusyPlayback final : public Playback {
  public:
-  std::optional<RecordedPing> next_ping(int, TimePoint now) override {
+  std::optional<ReplayedPing> next_ping(int, TimePoint now) override {
     first_ = std::min(first_, now);
     if (!ended_ && now - first_ > std::chrono::milliseconds{500}) {
       ended_ = true;

@@ -432,8 +432,8 @@ Bytes capture(std::string_view application) {
 LogSummary summary_of_capture(const Bytes& bytes) {
   const test::TemporaryLog temporary(".pcapng", bytes);
   return summarise(LogFile(temporary.path()),
-                   [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
-                     return datagram.size() == 20 ? std::optional(PingSeen{"fan", 7, {}}) : std::nullopt;
+                   [](std::span<const std::uint8_t> datagram) -> std::optional<CapturedPing> {
+                     return datagram.size() == 20 ? std::optional(CapturedPing{"fan", 7, {}}) : std::nullopt;
                    });
 }
 

@@ -150,11 +150,11 @@ std::vector<std::uint8_t> capture_of(const std::vector<std::vector<std::uint8_t>
 
 TEST(Capture, HasThePingsThatAKindOfDeviceFinds) {
   // One byte is a ping of a multibeam head with this ID. Two bytes are a line. Other lengths are no pings.
-  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
+  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<CapturedPing> {
     if (datagram.empty() || datagram.size() > 2) {
       return std::nullopt;
     }
-    PingSeen seen{datagram.size() == 1 ? "fan" : "line", datagram[0], {}};
+    CapturedPing seen{datagram.size() == 1 ? "fan" : "line", datagram[0], {}};
     seen.settings.bins = 10;
     seen.settings.beams = datagram.size() == 1 ? 64 : 1;
     return seen;
@@ -177,8 +177,8 @@ TEST(Capture, HasThePingsThatAKindOfDeviceFinds) {
 }
 
 TEST(Capture, KeepsDevicesOfOneIdApart) {
-  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<PingSeen> {
-    PingSeen seen{datagram[0] == 1 ? "one" : "other", 7, {}};
+  const auto find = [](std::span<const std::uint8_t> datagram) -> std::optional<CapturedPing> {
+    CapturedPing seen{datagram[0] == 1 ? "one" : "other", 7, {}};
     seen.settings.beams = 64;
     return seen;
   };

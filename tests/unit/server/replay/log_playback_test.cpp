@@ -59,7 +59,7 @@ LoggedHead scan() {
 }
 
 /// The job that a device makes of a fed ping.
-PingJob answering(const RecordedPing& ping, TimePoint transmit_time) {
+PingJob answering(const ReplayedPing& ping, TimePoint transmit_time) {
   PingJob job;
   job.number = 77;
   job.transmit_time = transmit_time;

@@ -15,8 +15,8 @@ DeviceConfig player() {
 }
 
 /// A recorded ping of 40 lines, each 4 native lines long, at 1480.5 m/s.
-RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
-  RecordedPing ping;
+ReplayedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
+  ReplayedPing ping;
   ping.record = record;
   ping.settings = {.bins = 40,
                    .beams = beam_count,
@@ -174,7 +174,7 @@ TEST_F(Playback, OutOfTheWaterAPingIsKept) {
 }
 
 TEST_F(Playback, ARecordingWithoutAGainLeavesThatOfTheClient) {
-  RecordedPing ping = recorded(7);
+  ReplayedPing ping = recorded(7);
   ping.settings.gain_percent = -1.0;
   bench.step(PingFed{ping});
   PingConfig asked = ping_of(64);

@@ -56,8 +56,8 @@ TEST(RecordedForm, OtherBeamsOrTooManyLinesCannotBeSent) {
   EXPECT_FALSE(recorded_form(other)) << "65536 native lines";
 }
 
-RecordedPing recorded(const RecordedSettings& settings) {
-  RecordedPing ping;
+ReplayedPing recorded(const RecordedSettings& settings) {
+  ReplayedPing ping;
   ping.settings = settings;
   return ping;
 }
@@ -68,7 +68,7 @@ TEST(HeldTo, OfTheConfigurationOnlyItsPlaceInTimeIsLeft) {
   config.rle_threshold = 9;
   config.sound_speed = 14'000;
   const PingPlan asked = plan_ping(config, example_config()).value();
-  RecordedPing ping = recorded(settings(4 * 1500.0 / (2 * 90422.0)));
+  ReplayedPing ping = recorded(settings(4 * 1500.0 / (2 * 90422.0)));
   ping.settings.sound_speed_from_config = false;
   const PingPlan sent = held_to(ping, asked, example_config());
   EXPECT_EQ(sent.mode, RunMode::continuous);

@@ -29,9 +29,9 @@ HeadData recorded_head_data() {
 }
 
 /// A recorded line of 30 bins. It listens for 30 * 100 * 640 ns = 1.92 ms.
-RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt,
+ReplayedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt,
                       const HeadData& line = recorded_head_data()) {
-  RecordedPing ping;
+  ReplayedPing ping;
   ping.record = record;
   ping.settings = {.bins = 30, .beams = 1, .bin_m = 100 * 640e-9 * 1480.0 / 2.0, .sound_speed_mps = 1480.0};
   ping.bearing_rad = 2.16;  // mounted boot down, so the bearing is mirrored
@@ -107,7 +107,7 @@ TEST_F(MicronPlayback, TheJobSaysHowItDiffersFromWhatIsAskedFor) {
 }
 
 TEST_F(MicronPlayback, APingThatDoesNotSayHowItTravelledIsNone) {
-  RecordedPing ping = recorded(5);
+  ReplayedPing ping = recorded(5);
   ping.wire.clear();
   bench.step(PingFed{ping});
   bench.command(SendData{});
@@ -131,7 +131,7 @@ TEST_F(MicronPlayback, BinsOf4BitsTravelAsTheyDid) {
   HeadData line = recorded_head_data();
   line.control = 0x2300;
   line.status = 0;
-  RecordedPing ping = recorded(0, std::nullopt, line);
+  ReplayedPing ping = recorded(0, std::nullopt, line);
   ping.settings.bins = 5;
   ping.bits_per_bin = 4;
   bench.render = [](const PingJob& job) { return PingImage{job.number, {15, 0, 7, 8, 1}, {}}; };

@@ -61,7 +61,7 @@ TEST(RecordedLine, OfAWholeLineLeavesItsDataOut) {
 }
 
 TEST(LineDifferences, TheSameIsNoDifferenceAndEachKindIsTold) {
-  RecordedPing recorded;
+  ReplayedPing recorded;
   recorded.settings.bins = 400;
   recorded.settings.sound_speed_mps = 1500.0;
   HeadData line;

@@ -375,7 +375,7 @@ TEST(OculusAcceptance, InSimulatedTimeItWaitsForNextPingDue) {
 
 // ---- Playback
 
-RecordedPing fed(const PingRecord& record, std::uint64_t number) {
+ReplayedPing fed(const PingRecord& record, std::uint64_t number) {
   return {.record = number,
           .settings = record.settings,
           .bearing_rad = 0.0,
@@ -451,7 +451,7 @@ TEST(OculusPlayback, APingWithATimeOfItsOwnKeepsIt) {
   config.plays_back = true;
   Line player(config);
   player.receive(encode(fire_with(false, 8, false, 256, 1)));
-  RecordedPing ping = fed(live.records.at(0), 1);
+  ReplayedPing ping = fed(live.records.at(0), 1);
   ping.due = milliseconds{730};
   player.step(PingFed{ping});
   player.run_for(milliseconds{729});

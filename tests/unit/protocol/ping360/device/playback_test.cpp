@@ -16,8 +16,8 @@ PingForm recorded_form_of_scan() {
   return form_of(scan, 100);
 }
 
-RecordedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
-  RecordedPing ping;
+ReplayedPing recorded(std::uint64_t record, std::optional<TimePoint> due = std::nullopt) {
+  ReplayedPing ping;
   ping.record = record;
   ping.settings = {.bins = 30, .beams = 1, .bin_m = 10e-6 * 1480.0 / 2.0, .sound_speed_mps = 1480.0};
   ping.bearing_rad = 1.25;
@@ -119,7 +119,7 @@ TEST_F(Ping360Playback, WhatIsRecordedAgainIsWhatWasSent) {
 }
 
 TEST_F(Ping360Playback, APingThatDoesNotSayHowItTravelledIsNone) {
-  RecordedPing ping = recorded(5);
+  ReplayedPing ping = recorded(5);
   ping.wire.clear();
   bench.step(PingFed{ping});
   bench.command(ping_at(7));

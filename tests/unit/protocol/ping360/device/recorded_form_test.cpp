@@ -40,7 +40,7 @@ TEST(Ping360RecordedForm, OfAWholePingLeavesItsDataOut) {
 }
 
 TEST(Ping360Differences, TheSameIsNoDifferenceAndEachKindIsTold) {
-  RecordedPing recorded;
+  ReplayedPing recorded;
   recorded.settings.bins = 200;
   recorded.settings.sound_speed_mps = 1500.0;
   const PingForm form = form_of(ping_at(7));

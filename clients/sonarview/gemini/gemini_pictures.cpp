@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/gemini/ping_pictures.hpp"
+#include "clients/sonarview/gemini/gemini_pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ std::string caption_of(const gemini::ReceivedPing& ping, double range_m) {
 }  // namespace
 
 /// Used on the writer's thread only.
-class PingPictures::Painter {
+class GeminiPictures::Painter {
  public:
   Painter(const picture::FanStyle& style, double sound_speed_mps)
       : style_(style), sound_speed_mps_(sound_speed_mps) {}
@@ -42,7 +42,7 @@ class PingPictures::Painter {
   std::optional<picture::FanImage> fan_;  ///< for the geometry of the last ping
 };
 
-cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
+cv::Mat GeminiPictures::Painter::fan(const gemini::ReceivedPing& ping) {
   picture::FanShape shape;
   shape.bearings_rad = gemini::bearings_rad(ping.head.beams);
   shape.lines = ping.lines;
@@ -58,10 +58,10 @@ cv::Mat PingPictures::Painter::fan(const gemini::ReceivedPing& ping) {
   return fan_->draw(eight_bit, caption_of(ping, shape.range_m()));
 }
 
-PingPictures::PingPictures(const picture::FanStyle& style, double sound_speed_mps)
+GeminiPictures::GeminiPictures(const picture::FanStyle& style, double sound_speed_mps)
     : painter_(std::make_shared<Painter>(style, sound_speed_mps)) {}
 
-std::vector<Picture> PingPictures::of(gemini::ReceivedPing ping, const std::string& name) const {
+std::vector<Picture> GeminiPictures::of(gemini::ReceivedPing ping, const std::string& name) const {
   const auto shared = std::make_shared<const gemini::ReceivedPing>(std::move(ping));
   return {
       {fmt::format("fan-{}.png", name), [painter = painter_, shared] { return painter->fan(*shared); }},

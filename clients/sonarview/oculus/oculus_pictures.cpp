@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/oculus/ping_pictures.hpp"
+#include "clients/sonarview/oculus/oculus_pictures.hpp"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,7 @@
 namespace sonard::server {
 
 /// Counters; they only grow.
-struct PingTimesCounters {
+struct SimulatedPingTimesCounters {
   std::uint64_t left_out = 0;  ///< with PingClock::simulated: the head was too slow
   std::uint64_t unknown = 0;   ///< the source was silent for too long, or set its clock
   std::uint64_t lost = 0;      ///< in lock-step: the poses of that time were dropped
@@ -23,10 +23,10 @@ struct PingTimesCounters {
 /// no pose is extrapolated. The pings and their images depend only on the stamps.
 ///
 /// Belongs to the I/O thread; reads no clock.
-class PingTimes {
+class SimulatedPingTimes {
  public:
   /// `poses` must outlive this object; its PingClock is not PingClock::wall.
-  explicit PingTimes(const PoseHistory& poses) : poses_(poses) {}
+  explicit SimulatedPingTimes(const PoseHistory& poses) : poses_(poses) {}
 
   /// Begins a requested ping and returns its transmit time; nullopt: its poses have not arrived yet.
   /// `period` > 0, `listening` >= 0.
@@ -38,7 +38,7 @@ class PingTimes {
   /// Negative: it must wait for poses. nullopt: no pings are requested.
   std::optional<std::chrono::nanoseconds> lead() const;
 
-  const PingTimesCounters& counters() const { return counters_; }
+  const SimulatedPingTimesCounters& counters() const { return counters_; }
 
  private:
   void follow_restart();
@@ -51,7 +51,7 @@ class PingTimes {
   std::optional<TimePoint> last_;                    ///< of the last ping begun
   std::optional<TimePoint> next_;                    ///< of the awaited ping
   std::chrono::nanoseconds period_{}, listening_{};  ///< of the last request
-  PingTimesCounters counters_;
+  SimulatedPingTimesCounters counters_;
 };
 
 }  // namespace sonard::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Times of pings by the clock of a source, calculated by hand from the stamps.
-#include "server/pose/ping_times.hpp"
+#include "server/pose/simulated_ping_times.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,13 +25,13 @@ PoseConfig by(PingClock clock) {
   return config;
 }
 
-struct PingTimesTest : testing::Test {
+struct SimulatedPingTimesTest : testing::Test {
   PoseHistory poses{by(PingClock::simulated_lock_step)};
-  PingTimes times{poses};
+  SimulatedPingTimes times{poses};
   TimePoint arrival{};
 
-  PingTimesTest() { spdlog::set_level(spdlog::level::off); }
-  ~PingTimesTest() override { spdlog::set_level(spdlog::level::info); }
+  SimulatedPingTimesTest() { spdlog::set_level(spdlog::level::off); }
+  ~SimulatedPingTimesTest() override { spdlog::set_level(spdlog::level::info); }
 
   /// Inserts a pose. Arrival times must not matter, so poses arrive one minute apart.
   void pose(std::int64_t time_ms, double x_m = 0.0) {
@@ -55,11 +55,11 @@ struct PingTimesTest : testing::Test {
   }
 };
 
-TEST_F(PingTimesTest, NothingBeginsWithoutAPose) {
+TEST_F(SimulatedPingTimesTest, NothingBeginsWithoutAPose) {
   EXPECT_THAT(begun(), IsEmpty());
 }
 
-TEST_F(PingTimesTest, TheFirstIsAtAWholeNumberOfPeriods) {
+TEST_F(SimulatedPingTimesTest, TheFirstIsAtAWholeNumberOfPeriods) {
   pose(1234);
   EXPECT_THAT(begun(), IsEmpty());
   poses_every(10, 1240, 1310);
@@ -70,14 +70,14 @@ TEST_F(PingTimesTest, TheFirstIsAtAWholeNumberOfPeriods) {
   EXPECT_THAT(begun(), ElementsAre(1300));
 }
 
-TEST_F(PingTimesTest, StampsMayBeBeforeZero) {
+TEST_F(SimulatedPingTimesTest, StampsMayBeBeforeZero) {
   poses_every(10, -250, 40);
   EXPECT_THAT(begun(), IsEmpty()) << "who asks now wants what comes from now on";
   poses_every(10, 50, 240);
   EXPECT_THAT(begun(), ElementsAre(100, 200));
 }
 
-TEST_F(PingTimesTest, LockStepMakesUpForAll) {
+TEST_F(SimulatedPingTimesTest, LockStepMakesUpForAll) {
   pose(1000);
   EXPECT_THAT(begun(), IsEmpty());
   poses_every(10, 1010, 2000);
@@ -85,7 +85,7 @@ TEST_F(PingTimesTest, LockStepMakesUpForAll) {
   EXPECT_EQ(times.counters().left_out, 0U);
 }
 
-TEST_F(PingTimesTest, WithoutLockStepWhatIsLateIsLeftOut) {
+TEST_F(SimulatedPingTimesTest, WithoutLockStepWhatIsLateIsLeftOut) {
   poses = PoseHistory{by(PingClock::simulated)};
   pose(1000);
   EXPECT_THAT(begun(), IsEmpty());
@@ -96,7 +96,7 @@ TEST_F(PingTimesTest, WithoutLockStepWhatIsLateIsLeftOut) {
   EXPECT_THAT(begun(), ElementsAre(2000));
 }
 
-TEST_F(PingTimesTest, APausedSourceHasNoPings) {
+TEST_F(SimulatedPingTimesTest, APausedSourceHasNoPings) {
   pose(1000);
   begun();
   poses_every(10, 1010, 1050);
@@ -109,7 +109,7 @@ TEST_F(PingTimesTest, APausedSourceHasNoPings) {
   EXPECT_THAT(begun(), ElementsAre(1100)) << "as if there had been no pause";
 }
 
-TEST_F(PingTimesTest, AResetBeginsAnew) {
+TEST_F(SimulatedPingTimesTest, AResetBeginsAnew) {
   pose(5000);
   begun();
   poses_every(10, 5010, 5150);
@@ -120,7 +120,7 @@ TEST_F(PingTimesTest, AResetBeginsAnew) {
   EXPECT_THAT(begun(), ElementsAre(100, 200));
 }
 
-TEST_F(PingTimesTest, TheFirstOfANewLifeIsThatOfItsFirstStampHoweverLateItIsAskedFor) {
+TEST_F(SimulatedPingTimesTest, TheFirstOfANewLifeIsThatOfItsFirstStampHoweverLateItIsAskedFor) {
   pose(0);
   EXPECT_THAT(begun(), IsEmpty());
   poses_every(10, 10, 340);
@@ -130,7 +130,7 @@ TEST_F(PingTimesTest, TheFirstOfANewLifeIsThatOfItsFirstStampHoweverLateItIsAske
   EXPECT_THAT(begun(), ElementsAre(100, 200, 300, 400, 500));
 }
 
-TEST_F(PingTimesTest, NoPingIsInAGapOfTheSource) {
+TEST_F(SimulatedPingTimesTest, NoPingIsInAGapOfTheSource) {
   pose(1000);
   begun();
   poses_every(10, 1010, 1150);
@@ -141,7 +141,7 @@ TEST_F(PingTimesTest, NoPingIsInAGapOfTheSource) {
   EXPECT_EQ(times.counters().unknown, 989U);
 }
 
-TEST_F(PingTimesTest, WhoRestsAndWantsAgainBeginsNow) {
+TEST_F(SimulatedPingTimesTest, WhoRestsAndWantsAgainBeginsNow) {
   pose(1000);
   begun();
   poses_every(10, 1010, 1150);
@@ -153,7 +153,7 @@ TEST_F(PingTimesTest, WhoRestsAndWantsAgainBeginsNow) {
   EXPECT_THAT(begun(), ElementsAre(3100));
 }
 
-TEST_F(PingTimesTest, TellsWhatPosesThereAreToSpare) {
+TEST_F(SimulatedPingTimesTest, TellsWhatPosesThereAreToSpare) {
   EXPECT_FALSE(times.lead());
   pose(1000);
   EXPECT_FALSE(times.lead()) << "nobody has asked";
@@ -170,7 +170,7 @@ TEST_F(PingTimesTest, TellsWhatPosesThereAreToSpare) {
   EXPECT_FALSE(times.lead());
 }
 
-TEST_F(PingTimesTest, PosesThatAreNoLongerKeptAreSaid) {
+TEST_F(SimulatedPingTimesTest, PosesThatAreNoLongerKeptAreSaid) {
   pose(0);
   begun();
   poses_every(1, 1, 10'000);
@@ -181,7 +181,7 @@ TEST_F(PingTimesTest, PosesThatAreNoLongerKeptAreSaid) {
   EXPECT_EQ(times.counters().lost, 60U);
 }
 
-TEST_F(PingTimesTest, ThePoseOfAPingIsThatOfItsStampWheneverItCame) {
+TEST_F(SimulatedPingTimesTest, ThePoseOfAPingIsThatOfItsStampWheneverItCame) {
   pose(1000, 10.0);
   begun();
   pose(1090, 19.0);

@@ -14,10 +14,10 @@ namespace sonard::client {
 
 /// Makes the pictures for one ImageWriter, whose thread draws them. Pings mostly have the same geometry, so
 /// the map from pixel to sample is reused.
-class PingPictures {
+class GeminiPictures {
  public:
   /// @param sound_speed_mps sound speed of the ranges that the user set
-  PingPictures(const picture::FanStyle& style, double sound_speed_mps);
+  GeminiPictures(const picture::FanStyle& style, double sound_speed_mps);
 
   /// The files fan-<name>.png and polar-<name>.png.
   std::vector<Picture> of(gemini::ReceivedPing ping, const std::string& name) const;

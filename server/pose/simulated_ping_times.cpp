@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/pose/ping_times.hpp"
+#include "server/pose/simulated_ping_times.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -28,7 +28,7 @@ nanoseconds whole_periods(nanoseconds way, nanoseconds period) {
 
 }  // namespace
 
-std::optional<TimePoint> PingTimes::begin(nanoseconds period, nanoseconds listening) {
+std::optional<TimePoint> SimulatedPingTimes::begin(nanoseconds period, nanoseconds listening) {
   follow_restart();
   period_ = period;
   listening_ = listening;
@@ -50,7 +50,7 @@ std::optional<TimePoint> PingTimes::begin(nanoseconds period, nanoseconds listen
   return last_;
 }
 
-void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
+void SimulatedPingTimes::leave_out(nanoseconds period, nanoseconds listening) {
   const auto skip_to = [&](TimePoint time) {
     const nanoseconds way = whole_periods(time - *next_, period);
     *next_ += way;
@@ -73,7 +73,7 @@ void PingTimes::leave_out(nanoseconds period, nanoseconds listening) {
   }
 }
 
-void PingTimes::follow_restart() {
+void SimulatedPingTimes::follow_restart() {
   if (restarts_ != poses_.counters().clock_restarts) {
     const std::optional<TimePoint> first = first_of_new_life();
     restarts_ = poses_.counters().clock_restarts;
@@ -83,7 +83,7 @@ void PingTimes::follow_restart() {
 }
 
 // In lock-step this depends only on the stamps, not on how long the head is busy with its last ping.
-std::optional<TimePoint> PingTimes::first_of_new_life() const {
+std::optional<TimePoint> SimulatedPingTimes::first_of_new_life() const {
   const auto oldest = poses_.oldest();
   const bool wanted = next_ || last_;
   if (!wanted || !oldest || poses_.ping_clock() != PingClock::simulated_lock_step) {
@@ -92,12 +92,12 @@ std::optional<TimePoint> PingTimes::first_of_new_life() const {
   return whole_periods(*oldest, period_);
 }
 
-void PingTimes::rest() {
+void SimulatedPingTimes::rest() {
   last_.reset();
   next_.reset();
 }
 
-std::optional<nanoseconds> PingTimes::lead() const {
+std::optional<nanoseconds> SimulatedPingTimes::lead() const {
   const auto newest = poses_.newest();
   const bool of_this_clock = restarts_ == poses_.counters().clock_restarts;
   const auto next = !of_this_clock ? first_of_new_life() : last_ ? std::optional{*last_ + period_} : next_;
