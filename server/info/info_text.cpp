@@ -38,7 +38,7 @@ std::string title_of(const HeadSummary& head, LogKind log) {
 
 std::string settings_text(const RecordedSettings& settings, bool scanning) {
   std::string text = scanning ? fmt::format("{} bins", settings.bins)
-                              : fmt::format("{} lines of {} beams", settings.bins, settings.beams);
+                              : fmt::format("{} range bins of {} beams", settings.bins, settings.beams);
   text +=
       fmt::format(", range {:.2f} m, sound speed {:.1f} m/s", settings.range_m(), settings.sound_speed_mps);
   if (settings.gain_percent >= 0.0) {
@@ -103,9 +103,9 @@ Json json_known(bool known, double value) {
 Json json_settings(const SettingsCount& count) {
   const RecordedSettings& settings = count.settings;
   return {{"pings", count.pings},
-          {"lines", settings.bins},
+          {"bins", settings.bins},
           {"beams", settings.beams},
-          {"metres_per_line", settings.bin_m},
+          {"bin_m", settings.bin_m},
           {"range_m", settings.range_m()},
           {"sound_speed_mps", settings.sound_speed_mps},
           {"gain_percent", json_known(settings.gain_percent >= 0.0, settings.gain_percent)},

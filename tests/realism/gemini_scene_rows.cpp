@@ -384,7 +384,7 @@ std::vector<Row> gemini_scene_rows() {
        "dB", leakage_db},
       {"Gemini", "the same: variation along the row", "patchy", 0.3, 1.5, "", leakage_variation},
       {"Gemini", "a point: width at -3 dB", "3.5", 2.4, 3.6, "beams", [] { return point_width(true); }},
-      {"Gemini", "a point: length at -3 dB", "2.1, of averages of two", 3, 5, "lines",
+      {"Gemini", "a point: length at -3 dB", "2.1, of averages of two", 3, 5, "bins",
        [] { return point_width(false); }},
       {"Gemini", "a point: its bearing from draw to draw", "0", 0, 0.1, "degrees", point_bearing_jitter},
       {"Gemini", "two balls of 1 m and a detector with thresholds 120 and 60: regions", "2", 2, 2, "",

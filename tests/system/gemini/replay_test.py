@@ -161,7 +161,7 @@ class Logs(ReplayTest):
         missing = os.path.join(self.folder, "missing.glf")
         self.assertEqual(self.refused(missing), f"{missing}: cannot be opened: No such file or directory")
         wide = self.log(3, beams=512)
-        self.assertIn("an image of 482 lines of 512 beams, which a Gemini 720i cannot send", self.refused(wide))
+        self.assertIn("an image of 482 range bins of 512 beams, which a Gemini 720i cannot send", self.refused(wide))
 
 
 def main():

@@ -79,7 +79,7 @@ class Recording(HeadCase):
     def test_info_says_what_the_head_said(self):
         text = self.info(self.mcap)
         self.assertIn("head     Oculus 7892 'bow': ", text)
-        self.assertIn("x 874 lines of 512 beams, range 5.00 m, sound speed 1500.0 m/s, gain 50 %, 750 kHz\n", text)
+        self.assertIn("x 874 range bins of 512 beams, range 5.00 m, sound speed 1500.0 m/s, gain 50 %, 750 kHz\n", text)
         said = json.loads(self.info(self.mcap, "--json"))
         head, = said["heads"]
         self.assertEqual((head["type"], head["name"], head["id"], head["scanning"]), ("oculus", "bow", 7892, False))

@@ -71,7 +71,7 @@ class Info(unittest.TestCase):
                 self.assertEqual(bow["gaps"], 1)
                 self.assertAlmostEqual(bow["longest_gap_s"], 2.5, places=5)
                 self.assertEqual((stern["gaps"], stern["longest_gap_s"]), (0, 0))
-                self.assertEqual([(s["pings"], s["lines"], s["beams"], s["gain_percent"]) for s in bow["settings"]],
+                self.assertEqual([(s["pings"], s["bins"], s["beams"], s["gain_percent"]) for s in bow["settings"]],
                                  [(9, 100, 256, 50), (1, 100, 256, 80)])
                 # 50 lines of 1480.5 / 2 / 45211 m each.
                 self.assertAlmostEqual(stern["settings"][0]["range_m"], 50 * 1480.5 / 2 / 45211, places=6)
@@ -93,7 +93,7 @@ class Info(unittest.TestCase):
 
     def test_text_for_people(self):
         text = self.run_info(self.write("log.glf")).stdout
-        for part in ("closed", "Gemini 720i 600: 10 pings", "Gemini 720i 601: 4 pings", "9x 100 lines of 256 beams",
+        for part in ("closed", "Gemini 720i 600: 10 pings", "Gemini 720i 601: 4 pings", "9x 100 range bins of 256 beams",
                      "gain 80 %", "1 gaps of more than twice that, the longest 2.500 s", "3 statuses",
                      "2026-11-20T14:22:33.250 to 2026-11-20T14:22:39.750 as written"):
             self.assertIn(part, text)

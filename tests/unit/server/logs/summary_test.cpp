@@ -69,7 +69,7 @@ Said said_of(LogKind kind, const std::string& name, const std::string& device, s
 TEST(InfoText, HeadsHaveTheTitleOfTheirKind) {
   const Said bow = said_of(LogKind::mcap, "bow", "gemini_720i", 513, false);
   EXPECT_THAT(bow.text, HasSubstr("\nhead     Gemini 720i 513 'bow': 1 pings\n"));
-  EXPECT_THAT(bow.text, HasSubstr(" 1x 400 lines of 256 beams, range 10.00 m"));
+  EXPECT_THAT(bow.text, HasSubstr(" 1x 400 range bins of 256 beams, range 10.00 m"));
   EXPECT_THAT(bow.json, HasSubstr(R"([{"type":"gemini_720i","scanning":false,"name":"bow","id":513,)"));
   const Said stern = said_of(LogKind::mcap, "stern", "micron", 2, true);
   EXPECT_THAT(stern.text, HasSubstr("\nhead     Micron 2 'stern': 1 lines\n"));

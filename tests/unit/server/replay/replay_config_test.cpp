@@ -157,7 +157,7 @@ TEST_F(ReplayConfigTest, ImagesOfOtherHeadsAreAnErrorThatSaysSo) {
   std::vector<LoggedHead> logged{fan(513)};
   logged[0].pings[0].settings.beams = 512;
   const std::string why =
-      "sonar 513 has an image of 482 lines of 512 beams, which a Gemini 720i cannot send (expected 256 "
+      "sonar 513 has an image of 482 range bins of 512 beams, which a Gemini 720i cannot send (expected 256 "
       "beams)";
   EXPECT_EQ(complaint(logged), "head 'gemini-513' cannot play it: " + why);
   config.heads = {gemini("a", 513)};
