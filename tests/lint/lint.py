@@ -17,16 +17,10 @@ import links
 import message_keys
 import spdx
 import tools
-import words
 from tree import Tree
 
 HERE = pathlib.Path(__file__).resolve().parent
 LINES_SHOWN = 60
-WORDS = "tests/lint/words.yaml"
-
-
-def own(name):
-    return (HERE / name).read_text(encoding="utf-8")
 
 
 def make_checks(tree, base):
@@ -41,7 +35,6 @@ def make_checks(tree, base):
         "cycles": lambda: includes.cycle_complaints(includes.arrows(tree)),
         "libraries": lambda: includes.library_complaints(tree),
         "layers": lambda: includes.layer_complaints(tree),
-        "words": lambda: words.word_complaints(tree, words.read_rows(own("words.yaml")), WORDS),
         "spdx": lambda: spdx.spdx_complaints(tree),
         "links": lambda: links.link_complaints(tree),
         "site": lambda: tools.site_complaints(tree),
@@ -75,7 +68,7 @@ def main():
                              "commits count from the last tag")
     parser.add_argument("--without", metavar="CHECK", action="append", default=[], help="leave this one out")
     parser.add_argument("--message", metavar="FILE", help="only check the subject of the commit message in this file")
-    parser.add_argument("--fix", action="store_true", help="mend what can be mended first: add the lines that spdx wants, lower the numbers in words.yaml")
+    parser.add_argument("--fix", action="store_true", help="first add the lines that spdx wants")
     parser.add_argument("checks", nargs="*", metavar="CHECK")
     arguments = parser.parse_args()
 
@@ -95,9 +88,6 @@ def main():
     if arguments.fix:
         if "spdx" in wanted:
             print(*(f"added to {path}\n" for path in spdx.add_lines(tree)), sep="", end="")
-        if "words" in wanted:
-            rows = words.read_rows(own("words.yaml"))
-            print(*(f"lowered {word}\n" for word in words.lower_counts(tree, rows, WORDS)), sep="", end="")
         checks = make_checks(Tree(tree.root), arguments.base)
     sys.exit(0 if run_checks({name: checks[name] for name in wanted}) else 1)
 

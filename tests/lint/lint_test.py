@@ -17,7 +17,6 @@ import links  # noqa: E402
 import message_keys  # noqa: E402
 import spdx  # noqa: E402
 import tools  # noqa: E402
-import words  # noqa: E402
 from tree import Tree  # noqa: E402
 
 IDENTITY = ("-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "core.hooksPath=/dev/null")
@@ -139,46 +138,6 @@ class Layers(LintTest):
                                        ("renderer/a.cpp", "<osg/Node>"),
                                        ("server/c/a.cpp", "<boost/asio.hpp>"),
                                        ("tests/a.cpp", '"server/clock.hpp"')]), [])
-
-
-class Words(LintTest):
-    ROWS = "- word: '[Gg]izmo'\n  use: trajectory\n"
-
-    def complaints(self, tree, rows):
-        return list(words.word_complaints(tree, words.read_rows(rows), "words.yaml"))
-
-    def test_a_word_that_is_gone_is_found_in_text_and_paths(self):
-        tree = self.write({"docs/a.md": "One\nlong Gizmo\n", "server/gizmo.cpp": "\n", "CHANGELOG.md": "gizmo"})
-        complaints = self.complaints(tree, self.ROWS)
-        self.assertEqual([complaint.splitlines()[0] for complaint in complaints],
-                         ["docs/a.md:2: long Gizmo", "server/gizmo.cpp: its name"])
-        self.assertIn("trajectory", complaints[0])
-
-    def test_where_it_is_a_term_of_the_wire_it_passes(self):
-        tree = self.write({"protocol/x/a.cpp": "gizmo\n"})
-        self.assertEqual(self.complaints(tree, self.ROWS + "  allowed: [protocol/x/*]\n"), [])
-
-    def test_where_it_is_plain_english_it_passes(self):
-        tree = self.write({"docs/a.md": "gizmo\n", "renderer/a.cpp": "gizmo\n"})
-        complaints = self.complaints(tree, self.ROWS + "  within: [renderer/*]\n")
-        self.assertEqual([complaint.splitlines()[0] for complaint in complaints], ["renderer/a.cpp:1: gizmo"])
-
-    def test_what_is_left_may_become_less_only_if_it_is_said(self):
-        tree = self.write({"docs/a.md": "gizmo\ngizmo\n"})
-        self.assertEqual(self.complaints(tree, self.ROWS + "  left: 2\n"), [])
-        self.assertIn("1 were left", self.complaints(tree, self.ROWS + "  left: 1\n")[0])
-        self.assertIn("says 3", self.complaints(tree, self.ROWS + "  left: 3\n")[0])
-
-    def test_fix_writes_down_what_is_left(self):
-        rows = '- word: "one"\n  use: 1\n  left: 9\n- word: "two"\n  use: 2\n  left: 9\n- word: "six"\n  use: 6\n  left: 1\n'
-        tree = self.write({"words.yaml": rows, "docs/a.md": "one\nsix\nsix\n"})
-        list(words.lower_counts(tree, words.read_rows(rows), "words.yaml"))
-        self.assertEqual((self.root / "words.yaml").read_text(),
-                         '- word: "one"\n  use: 1\n  left: 1\n- word: "two"\n  use: 2\n- word: "six"\n  use: 6\n  left: 1\n')
-
-    def test_a_row_with_an_unknown_key_is_refused(self):
-        with self.assertRaises(ValueError):
-            words.read_rows("- {word: a, use: b, laft: 1}")
 
 
 class Spdx(LintTest):
