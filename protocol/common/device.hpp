@@ -18,7 +18,7 @@ namespace sonard {
 
 /// The other end of a message. Default-constructed on a line that all clients share, such as a serial line.
 struct Peer {
-  int channel = 0;  ///< number of the device's socket or line; each device kind has its own numbering
+  int channel = 0;  ///< number of the device's socket or line; each device type has its own numbering
   Endpoint remote;  ///< the sender or the receiver
   Ipv4 local = 0;   ///< our address that received the message or must send it; 0: any
 

@@ -45,16 +45,16 @@ struct PingJob {
   double native_bin_m = 0.0;  ///< range extent of a native bin: bin k covers [k, k + 1) times this
   int compression_log2 = 0;   ///< 2^n native bins are averaged into one bin of the image; 0..4
   bool sixteen_bit = false;   ///< requested width of the samples; false: 8 bits
-  int mode = 0;               ///< ping mode, for heads with several; each device kind has its own numbering
-  int beams = 0;  ///< for heads whose number of beams a client can choose; 0: set by the device kind
+  int mode = 0;               ///< ping mode, for heads with several; each device type has its own numbering
+  int beams = 0;  ///< for heads whose number of beams a client can choose; 0: set by the device type
   /// A sample is proportional to the amplitude to this power; > 0. A client may choose it.
   double amplitude_exponent = 1.0;
 
   double sound_speed_mps = 0.0;  ///< true speed in the water
   /// The speed that the head assumes in its beamforming; 0: the head forms no beams.
   double assumed_sound_speed_mps = 0.0;
-  double pulse_s = 0.0;        ///< duration of a tone; 0: not a tone, or set by the device kind
-  double frequency_hz = 0.0;   ///< frequency of a tone, if a client can choose it; 0: set by the device kind
+  double pulse_s = 0.0;        ///< duration of a tone; 0: not a tone, or set by the device type
+  double frequency_hz = 0.0;   ///< frequency of a tone, if a client can choose it; 0: set by the device type
   bool transmit = true;        ///< false: the head only listens; the image holds noise but no echoes
   double gain_db = 0.0;        ///< on the scale of the device
   double gain_percent = 50.0;  ///< as set by the client, 0..100; for logs

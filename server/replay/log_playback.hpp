@@ -17,7 +17,7 @@ namespace sonard::server {
 /// A head of a recording that a head of the configuration plays.
 struct PlayedHead {
   std::string name;
-  const LoggedHead* logged = nullptr;  ///< outlives the playback; its kind of device can send all of it
+  const LoggedHead* logged = nullptr;  ///< outlives the playback; its type of device can send all of it
 
   std::vector<std::int64_t> times_ns() const;
 };

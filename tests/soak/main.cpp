@@ -20,7 +20,7 @@ namespace {
 
 using namespace sonard::soak;
 
-const std::map<std::string, std::function<std::unique_ptr<HeadUnderSoak>()>> kinds{
+const std::map<std::string, std::function<std::unique_ptr<HeadUnderSoak>()>> types{
     {"gemini", gemini_under_soak},
     {"micron", micron_under_soak},
     {"oculus", oculus_under_soak},
@@ -67,16 +67,16 @@ bool run(HeadUnderSoak& head, std::uint64_t pings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto kind = argc == 3 ? kinds.find(argv[1]) : kinds.end();
+  const auto type = argc == 3 ? types.find(argv[1]) : types.end();
   const std::uint64_t pings = argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 0;
-  if (kind == kinds.end() || pings == 0) {
+  if (type == types.end() || pings == 0) {
     fmt::print(stderr, "Usage: sonard_soak gemini|micron|oculus|ping360 PINGS\n");
     return 64;
   }
   try {
-    return run(*kind->second(), pings) ? 0 : 1;
+    return run(*type->second(), pings) ? 0 : 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", kind->first, error.what());
+    fmt::print(stderr, "{}: {}\n", type->first, error.what());
     return 1;
   }
 }

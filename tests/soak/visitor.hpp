@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client that comes to a head, takes some pings, and leaves. Each kind of head has one, which uses our
+// A client that comes to a head, takes some pings, and leaves. Each type of head has one, which uses our
 // client code.
 #pragma once
 
@@ -26,7 +26,7 @@ struct SeenPing {
     std::int64_t resolution_ns = 1;  ///< smaller parts are cut off or rounded
     std::int64_t modulus_ns = 0;     ///< 0: does not wrap
   };
-  std::optional<Stamp> stamp;  ///< nullopt: this kind of head sends no stamps
+  std::optional<Stamp> stamp;  ///< nullopt: this type of head sends no stamps
 };
 
 /// One visit. Its time is the argument of its methods, which never decreases.
@@ -46,12 +46,12 @@ class Visitor {
   virtual std::optional<TimePoint> next_deadline() const = 0;
   /// The pings received since the last call.
   virtual std::vector<SeenPing> take_pings() = 0;
-  /// Events at the head when the visitor leaves: half a command, and for some kinds the end of the
+  /// Events at the head when the visitor leaves: half a command, and for some types the end of the
   /// connection.
   virtual std::vector<Event> leave() = 0;
 };
 
-/// A kind of head and its visitors.
+/// A type of head and its visitors.
 class HeadUnderSoak {
  public:
   HeadUnderSoak() = default;

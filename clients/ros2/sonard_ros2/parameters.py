@@ -46,7 +46,7 @@ POSE_BRIDGE = (
 )
 
 SONAR_BRIDGE = (
-    Parameter("device", "gemini", "the kind of head", choices=("gemini", "micron")),
+    Parameter("device", "gemini", "the type of head", choices=("gemini", "micron")),
     Parameter("frame_id", "sonar", "the head's frame: x ahead, y to port, z up"),
     Parameter("range_m", 20.0, "range of the pings in metres", 1.0, 150.0),
     Parameter("gain_percent", 50.0, "gain of the head in percent", 0.0, 100.0),

@@ -30,7 +30,7 @@ double seconds(nanoseconds time) {
 
 std::string foreign_bytes_text(std::uint64_t bytes, std::string_view head) {
   return fmt::format(
-      "{} bytes arrived that are not of {} (is another kind of device there? Check address, port and baud "
+      "{} bytes arrived that are not of {} (is another type of device there? Check address, port and baud "
       "rate)",
       bytes, head);
 }

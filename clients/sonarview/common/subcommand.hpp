@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A subcommand of sonarview: the viewer of one kind of device, or the comparison of images.
+// A subcommand of sonarview: the viewer of one type of device, or the comparison of images.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ struct Subcommand {
   Prepare (*declare)(CLI::App& app);
 };
 
-/// One per kind of device, in the order of cmake/devices.cmake; the build generates this function from it.
+/// One per type of device, in the order of cmake/devices.cmake; the build generates this function from it.
 /// sonarview without a subcommand runs the first.
 std::span<const Subcommand> device_subcommands();
 

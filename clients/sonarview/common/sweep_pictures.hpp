@@ -26,7 +26,7 @@ Sweep with_lines_before(Sweep sweep, const std::optional<Sweep>& before);
 
 /// Values that all sweeps of a scan share.
 struct SweepForm {
-  std::string title;  ///< the kind of head
+  std::string title;  ///< the type of head
   std::string lines;  ///< the head's word for its lines, "lines"
   picture::SweepShape shape;
   bool sector = false;

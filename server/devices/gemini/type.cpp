@@ -150,8 +150,8 @@ class GeminiType final : public DeviceType {
     for (const LoggedPing& ping : logged.pings) {
       if (!gemini::recorded_form(ping.settings)) {
         return fmt::format(
-            "sonar {} has an image of {} range bins of {} beams, which a Gemini 720i cannot send (expected {} "
-            "beams)",
+            "sonar {} has an image of {} range bins of {} beams, which a Gemini 720i cannot send "
+            "(expected {} beams)",
             logged.device_id, ping.settings.bins, ping.settings.beams, gemini::beam_count);
       }
     }

@@ -280,7 +280,7 @@ class Files(Case):
             self.assertEqual(seen, expected)
 
     def test_clean_pictures_have_the_bearing_and_range_that_the_json_says(self):
-        """The sphere at (3, 2, 0) in the fan and its mask, by apex and scale alone, for both kinds of head."""
+        """The sphere at (3, 2, 0) in the fan and its mask, by apex and scale alone, for both types of head."""
         for head, stem, more in (("bow", "ping_000000", []), ("mast", "scan_000000", ["--rate", "300", "--bins", "200"])):
             out = self.path(head)
             render(self.config(), "--trajectory", self.way(1.0), "--out", out, "--head", head, "--range", "6", "--truth",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""sonarview at a port where another kind of device sends.
+"""sonarview at a port where another type of device sends.
 
     other_device_test.py --programs DIR [TestCase.test_name ...]
 """
