@@ -94,7 +94,7 @@ class PosePublisher:
 
     host, port  address of sonard: `poses.udp.bind` of its configuration, or `poses.tcp.bind`
     tcp         connect by TCP. No pose is lost then, and in lock-step (`poses.clock: simulated_lock_step`)
-                sonard still renders the pings of earlier poses
+                send() waits while sonard still renders the pings of earlier poses
 
     Raises OSError if nothing listens (TCP).
     """
