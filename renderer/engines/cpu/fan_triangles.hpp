@@ -12,21 +12,13 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "renderer/engines/cpu/fan.hpp"
-#include "renderer/engines/cpu/mesh_clusters.hpp"
+#include "renderer/engines/slices/fan.hpp"
+#include "renderer/engines/slices/mesh_clusters.hpp"
 #include "renderer/scene/refraction.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
-
-/// The pose of one part of a body in this ping: p_sonar = rotation * p_part + translation, computed in
-/// doubles.
-struct PlacedPart {
-  std::shared_ptr<const MeshClusters> clusters;
-  glm::mat3 R_sonar_part{1.0F};
-  glm::vec3 t_sonar_part_m{0.0F};
-};
 
 /// A triangle that may be in the fan, in the sonar frame.
 struct FanTriangle {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/cpu/fan.hpp"
+#include "renderer/engines/slices/fan.hpp"
 
 #include <algorithm>
 #include <cmath>

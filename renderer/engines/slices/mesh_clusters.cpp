@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/cpu/mesh_clusters.hpp"
+#include "renderer/engines/slices/mesh_clusters.hpp"
 
 #include <algorithm>
 #include <cmath>

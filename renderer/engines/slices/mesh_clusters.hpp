@@ -5,11 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "renderer/engines/cpu/shells.hpp"
+#include "renderer/engines/slices/shells.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -42,6 +44,14 @@ struct MeshClusters {
   void add_cluster(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, std::size_t& next,
                    std::vector<std::int32_t>& local_of_vertex);
   void close_cluster(Cluster& cluster) const;
+};
+
+/// The pose of one part of a body in this ping: p_sonar = rotation * p_part + translation, computed in
+/// doubles.
+struct PlacedPart {
+  std::shared_ptr<const MeshClusters> clusters;
+  glm::mat3 R_sonar_part{1.0F};
+  glm::vec3 t_sonar_part_m{0.0F};
 };
 
 }  // namespace sonard::render

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/cpu/shells.hpp"
+#include "renderer/engines/slices/shells.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which surfaces of a mesh hide their inner side, by surfaces whose answer is evident.
-#include "renderer/engines/cpu/shells.hpp"
+#include "renderer/engines/slices/shells.hpp"
 
 #include <cmath>
 #include <cstdint>
