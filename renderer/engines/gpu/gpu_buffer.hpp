@@ -66,6 +66,7 @@ class GpuBuffer {
     select();
     clear_with(bytes, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
   }
+  GLuint name() const { return name_; }
   void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
 
  private:

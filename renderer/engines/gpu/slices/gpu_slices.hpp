@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Visibility in azimuth slices by compute shaders: the stages of SliceSampler, on the GPU.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "renderer/engines/slices/fan.hpp"
+#include "renderer/engines/slices/mesh_clusters.hpp"
+#include "renderer/scene/refraction.hpp"
+#include "renderer/skip_ledger.hpp"
+
+namespace sonard::render {
+
+class EglContext;
+
+/// The triangles of a world on the GPU, and what slices of a fan see of them. Its context must be current in
+/// every call.
+class GpuSlices {
+ public:
+  struct Options {
+    int group = 0;  ///< invocations of a group, each with a piece of the sweep; 0: as many as suit the device
+    int segments = 960;  ///< of a slice that are seen at a time; 960 fit in 32 KiB, which every OpenGL has
+  };
+  /// @throws RendererError if a shader does not build
+  explicit GpuSlices(EglContext& context);
+  GpuSlices(EglContext& context, const Options& options);
+  ~GpuSlices();
+  GpuSlices(const GpuSlices&) = delete;
+  GpuSlices& operator=(const GpuSlices&) = delete;
+
+  /// Uploads the clusters of all parts.
+  void set_parts(const std::vector<PlacedPart>& parts);
+
+  struct PingSetting {
+    const Fan& fan;
+    Refraction bend;
+    bool two_sided = true;  ///< false: triangles seen from behind are invisible
+    float line_m = 0.01F;
+    SkipSwitches skip{};
+  };
+  /// Begins a ping: places the parts (the same as of set_parts(), elsewhere) and lists their triangles for
+  /// each beam.
+  void find(const std::vector<PlacedPart>& parts, const PingSetting& setting);
+
+  /// A slice; see SliceCutter.
+  struct Slice {
+    float cosine = 1.0F, sine = 0.0F, width_rad = 0.0F;
+    std::int32_t beam = 0;
+    std::uint32_t first_visible = 0, visible_count = 0;            ///< result, in visible()
+    float ensonified = 0.0F, one_sided = 0.0F, range_bins = 0.0F;  ///< result
+  };
+  /// Sees slices.
+  /// @return the slices with their results; empty if a buffer was too small: repeat the ping
+  std::vector<Slice> see(const std::vector<Slice>& slices);
+
+  // The state of a ping for tests. Each waits for the GPU.
+  struct Triangle {
+    float corners[9];
+    float low_azimuth_rad, high_azimuth_rad;
+    std::uint32_t flags, mesh_triangle, number, first_beam, last_beam;
+  };
+  struct Visible {
+    float low, high, w_at_0, w_slope;
+    float low_slope, low_reach, high_slope, high_reach;
+    float normal_h, normal_s, normal_z;
+    std::uint32_t triangle;  ///< in triangles()
+  };
+  struct Counts {
+    std::uint32_t triangles, entries, visible, scratch;
+    std::uint32_t culled_clusters, hidden_faces;
+    std::uint32_t overflows, longest_slice;
+  };
+  Counts counts();
+  std::vector<Triangle> triangles();
+  std::vector<Visible> visible();
+  std::vector<float> sides();  ///< [slice][port, starboard][probe]
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sonard::render

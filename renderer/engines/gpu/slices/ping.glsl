@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The buffers of a ping. Each shader declares those it uses; records are as in gpu_slices.cpp.
+
+layout(std140, binding = 0) uniform Ping {
+  float tan_limit, sin_limit, cos_limit, max_range_m;              // of the fan's elevation, and its range
+  float port_x, port_y, starboard_x, starboard_y;                  // unit normals of its sides, outwards
+  float port_rad, starboard_rad, upright_rad, widest_slice_rad;    // see Fan
+  float up_x, up_y, up_z, bend_per_m;                              // see Refraction
+  float line_m;
+  int beams, clusters;
+  int is_convex;                                                   // the fan is narrower than half a turn
+  int two_sided, cull;                                             // 0: back faces are not seen; no cluster is culled
+  int most_triangles, most_entries, most_visible, most_scratch;    // room in the buffers
+} ping;
+
+// A triangle in the fan, in the sonar frame.
+struct FanTriangle {
+  float x0, y0, z0, x1, y1, z1, x2, y2, z2;
+  float low_azimuth, high_azimuth;
+  uint flags;  // is_... below, and the part in the bits above them
+  uint mesh_triangle;
+  uint number;  // unique, in the order of the world: of surfaces in one place, the first is visible
+  uint first_beam, last_beam;
+};
+const uint is_thin = 1u, is_small = 2u, is_of_low_cluster = 4u, has_upright_edge = 8u, is_back_face = 16u;
+const uint part_shift = 5u;
+
+struct BeamList {
+  float port_rad;  // edge of the beam; one more record has the edge of the last beam
+  uint count, begin, filled;
+};
+
+// Counts of a ping. More than there is room for: the ping must be repeated with more room.
+struct PingCounts {
+  uint triangles, entries, visible, scratch;
+  uint culled_clusters, hidden_faces;
+  uint overflows;  // of the lists of a slice, which no room helps
+  uint longest_slice;
+};
+
+uint group_number() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }

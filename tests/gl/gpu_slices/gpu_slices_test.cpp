@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stages of slices on the GPU against those of the CPU engine, on all slices of real pings.
+#include "renderer/engines/gpu/slices/gpu_slices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "renderer/engines/cpu/slice_sampler.hpp"
+#include "renderer/engines/gpu/egl_context.hpp"
+#include "tests/scenes/scenes.hpp"
+#include "tests/support/engine_test.hpp"
+
+namespace sonard::render {
+namespace {
+
+/// What identifies a triangle on both sides.
+using TriangleKey = std::pair<std::uint32_t, std::uint32_t>;  // part, number in its mesh
+
+std::vector<PlacedPart> placed(const World& world, const Pose& T_world_sonar) {
+  std::vector<PlacedPart> parts;
+  std::map<const TriangleMesh*, std::shared_ptr<const MeshClusters>> clusters;
+  for (const Body& body : world.bodies) {
+    for (const BodyPart& part : body.parts) {
+      auto& mesh = clusters[part.mesh.get()];
+      if (!mesh) {
+        mesh = std::make_shared<const MeshClusters>(*part.mesh, true);
+      }
+      const Pose T_sonar_part = relative(T_world_sonar, body.T_world_body) * part.T_body_part;
+      parts.push_back(
+          {mesh, glm::mat3(glm::mat3_cast(T_sonar_part.orientation)), glm::vec3(T_sonar_part.position_m)});
+    }
+  }
+  return parts;
+}
+
+/// Share of the elevations at which two lists show other triangles.
+double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector<GpuSlices::Visible>& gpu,
+                       const std::vector<GpuSlices::Triangle>& triangles, float tan_limit) {
+  std::vector<float> borders;
+  for (const auto& segment : cpu) {
+    borders.insert(borders.end(), {segment.low, segment.high});
+  }
+  for (const auto& segment : gpu) {
+    borders.insert(borders.end(), {segment.low, segment.high});
+  }
+  std::sort(borders.begin(), borders.end());
+  double differing = 0;
+  std::size_t a = 0, b = 0;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
+    const float from = borders[i], to = borders[i + 1];
+    while (a < cpu.size() && cpu[a].high <= from) {
+      ++a;
+    }
+    while (b < gpu.size() && gpu[b].high <= from) {
+      ++b;
+    }
+    TriangleKey on_cpu{~0U, 0}, on_gpu{~0U, 0};
+    if (a < cpu.size() && cpu[a].low <= from) {
+      on_cpu = {cpu[a].triangle->part, cpu[a].triangle->mesh_triangle};
+    }
+    if (b < gpu.size() && gpu[b].low <= from) {
+      const GpuSlices::Triangle& t = triangles[gpu[b].triangle];
+      on_gpu = {t.flags >> 5U, t.mesh_triangle};
+    }
+    differing += on_cpu != on_gpu ? static_cast<double>(to - from) : 0.0;
+  }
+  return differing / (2.0 * static_cast<double>(tan_limit));
+}
+
+/// How the slices of the GPU differ from those of the CPU.
+struct Comparison {
+  GpuSlices::Counts counts{};
+  std::size_t slices = 0, same_bits = 0;
+  double differing = 0;  ///< share of all elevations at which another triangle is seen
+  double off_sides = 0;  ///< share of the probes with another distance
+};
+
+class GpuSlicesTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    test::require_gl();
+    if (IsSkipped() || HasFatalFailure()) {
+      return;
+    }
+    context_ = new EglContext("");
+    context_->realize();
+    context_->make_current_or_throw();
+  }
+
+  /// Sees all slices of a ping of the CPU engine, preset `default`, with both.
+  Comparison compare(const std::string& scene_name, const GpuSlices::Options& options);
+
+  osg::ref_ptr<EglContext> context_;
+};
+
+bool has_same_bits(const VisibleSegment& cpu, const GpuSlices::Visible& gpu) {
+  return cpu.low == gpu.low && cpu.high == gpu.high && cpu.w_at_0 == gpu.w_at_0 &&
+         cpu.w_slope == gpu.w_slope && cpu.low_run.slope == gpu.low_slope &&
+         cpu.low_run.reach == gpu.low_reach && cpu.high_run.slope == gpu.high_slope &&
+         cpu.high_run.reach == gpu.high_reach && cpu.normal_h == gpu.normal_h &&
+         cpu.normal_s == gpu.normal_s && cpu.normal_z == gpu.normal_z;
+}
+
+std::size_t count_off(const SideProfile& cpu, const float* gpu) {
+  std::size_t off = 0;
+  for (std::size_t k = 0; k < slices::side_probes; ++k) {
+    off += std::abs(cpu[k] - gpu[k]) > 1e-5F * cpu[k] ? 1 : 0;
+  }
+  return off;
+}
+
+Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices::Options& options) {
+  const test::Scene scene = test::make_scene(scene_name);
+  const SonarSettings& settings = scene.settings;
+  WorkerPool workers(2);
+  SkipSwitches skip;
+  skip.turn_off(SkipRule::coplanar_facets);  // the same triangles on both
+  SliceSampler sampler(scene.world, workers, skip);
+  const auto cells =
+      sampler.sample(scene.T_world_sonar, settings.aperture, settings.range, settings.range.sampled_range_m(),
+                     surface_model(settings, skip), slice_accuracy(settings.sampling, settings.model));
+  std::vector<GpuSlices::Slice> slices;
+  for (const SliceCell* cell : cells) {
+    slices.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
+  }
+  const std::vector<PlacedPart> parts = placed(scene.world, scene.T_world_sonar);
+  const Fan fan(settings.aperture, settings.range.sampled_range_m());
+  GpuSlices gpu(*context_, options);
+  gpu.set_parts(parts);
+  std::vector<GpuSlices::Slice> seen;
+  for (int tries = 0; tries < 5 && seen.empty(); ++tries) {  // until all buffers are large enough
+    gpu.find(parts, {fan, {}, true, static_cast<float>(settings.range.step_m), skip});
+    seen = gpu.see(slices);
+  }
+  Comparison result;
+  result.counts = gpu.counts();
+  result.slices = cells.size();
+  EXPECT_EQ(seen.size(), cells.size());
+  const auto triangles = gpu.triangles();
+  const auto visible = gpu.visible();
+  const auto sides = gpu.sides();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::vector<VisibleSegment>& of_cpu = cells[i]->visible;
+    const auto first = visible.begin() + seen[i].first_visible;
+    const std::vector<GpuSlices::Visible> of_gpu(first, first + seen[i].visible_count);
+    result.same_bits += std::ranges::equal(of_cpu, of_gpu, has_same_bits) ? 1 : 0;
+    result.differing += differing_share(of_cpu, of_gpu, triangles, fan.tan_limit());
+    const float* const of_sides = &sides[2 * i * slices::side_probes];
+    result.off_sides +=
+        static_cast<double>(count_off(cells[i]->sides.port, of_sides) +
+                            count_off(cells[i]->sides.starboard, of_sides + slices::side_probes));
+  }
+  result.differing /= static_cast<double>(cells.size());
+  result.off_sides /= static_cast<double>(cells.size() * 2 * slices::side_probes);
+  std::cout << scene_name << ": " << result.same_bits << " of " << result.slices
+            << " slices with the same bits, " << result.differing << " of the elevations differ, "
+            << result.off_sides << " of the probes\n";
+  return result;
+}
+
+/// Pieces that begin in the middle of surfaces which touch may see one or the other of them first.
+TEST_F(GpuSlicesTest, SeesWhatTheCpuSees) {
+  for (const char* scene : {"swell100k", "docking", "b4_manifold_1e5"}) {
+    SCOPED_TRACE(scene);
+    const Comparison found = compare(scene, {});
+    EXPECT_EQ(found.counts.overflows, 0U);
+    EXPECT_GT(found.slices, 1000U);
+    EXPECT_LE(found.differing, 1e-5);
+    EXPECT_LE(found.off_sides, 1e-4);
+  }
+}
+
+TEST_F(GpuSlicesTest, InOnePieceItSeesTheSameBits) {
+  const Comparison found = compare("swell100k", {.group = 1});
+  EXPECT_LE(found.differing, 1e-7);
+  if (context_->software()) {
+    EXPECT_EQ(found.same_bits, found.slices);
+  }
+}
+
+TEST_F(GpuSlicesTest, SlicesWithTooManySegmentsAreSeenInBands) {
+  const Comparison found = compare("swell100k", {.segments = 96});
+  EXPECT_EQ(found.counts.longest_slice, 97U) << "more than there was room for";
+  EXPECT_EQ(found.counts.overflows, 0U);
+  EXPECT_LE(found.differing, 1e-5);
+  EXPECT_LE(found.off_sides, 1e-3);
+}
+
+}  // namespace
+}  // namespace sonard::render
