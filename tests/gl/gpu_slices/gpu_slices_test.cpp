@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages of slices on the GPU against those of the CPU engine, on all slices of real pings.
-#include "renderer/engines/gpu/slices/gpu_slices.hpp"
+#include "renderer/engines/gpu/gpu_slices.hpp"
 
 #include <algorithm>
 #include <cmath>

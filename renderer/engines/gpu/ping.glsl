@@ -2,16 +2,17 @@
 // The buffers of a ping. Each shader declares those it uses; records are as in gpu_slices.cpp.
 
 layout(std140, binding = 0) uniform Ping {
-  float tan_limit, sin_limit, cos_limit, max_range_m;              // of the fan's elevation, and its range
-  float port_x, port_y, starboard_x, starboard_y;                  // unit normals of its sides, outwards
-  float port_rad, starboard_rad, upright_rad, widest_slice_rad;    // see Fan
-  float up_x, up_y, up_z, bend_per_m;                              // see Refraction
+  float tan_limit, sin_limit, cos_limit, max_range_m;            // of the fan's elevation, and its range
+  float port_x, port_y, starboard_x, starboard_y;                // unit normals of its sides, outwards
+  float port_rad, starboard_rad, upright_rad, widest_slice_rad;  // see Fan
+  float up_x, up_y, up_z, bend_per_m;                            // see Refraction
   float line_m;
   int beams, clusters;
-  int is_convex;                                                   // the fan is narrower than half a turn
-  int two_sided, cull;                                             // 0: back faces are not seen; no cluster is culled
-  int most_triangles, most_entries, most_visible, most_scratch;    // room in the buffers
-} ping;
+  int is_convex;        // the fan is narrower than half a turn
+  int two_sided, cull;  // 0: back faces are not seen; no cluster is culled
+  int most_triangles, most_entries, most_visible, most_scratch;  // room in the buffers
+}
+ping;
 
 // A triangle in the fan, in the sonar frame.
 struct FanTriangle {
@@ -38,4 +39,6 @@ struct PingCounts {
   uint longest_slice;
 };
 
-uint group_number() { return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x; }
+uint group_number() {
+  return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/gpu/slices/gpu_slices.hpp"
+#include "renderer/engines/gpu/gpu_slices.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 #include "renderer/engines/gpu/gl_errors.hpp"
 #include "renderer/engines/gpu/gpu_buffer.hpp"
 #include "renderer/engines/gpu/gpu_readback.hpp"
-#include "renderer/engines/gpu/slices/shaders.hpp"
+#include "renderer/engines/gpu/shaders.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/errors.hpp"
 
