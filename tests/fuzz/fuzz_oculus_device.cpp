@@ -82,8 +82,8 @@ class Bench {
     run_until(now_ + event.delay);
     switch (event.kind) {
       case come_or_go:
-        if (client_) {
-          const Peer gone = *std::exchange(client_, std::nullopt);
+        if (client_peer_) {
+          const Peer gone = *std::exchange(client_peer_, std::nullopt);
           step(sonard::ClientGone{gone});
         } else {
           takes_place(peer_of(0));
@@ -91,8 +91,8 @@ class Bench {
         }
         break;
       case other_comes:
-        if (client_) {
-          const Peer other = *client_ == peer_of(0) ? peer_of(1) : peer_of(0);
+        if (client_peer_) {
+          const Peer other = *client_peer_ == peer_of(0) ? peer_of(1) : peer_of(0);
           step(sonard::ClientCame{other});
           require(last_.disconnect.size() == 1, "of two clients one is sent away");
           step(sonard::ClientGone{last_.disconnect.front()});
@@ -119,7 +119,7 @@ class Bench {
 
  private:
   void takes_place(const Peer& client) {
-    client_ = client;
+    client_peer_ = client;
     came_ = now_;
     client_.connected();
   }
@@ -149,7 +149,7 @@ class Bench {
       require(decode_status(outgoing.bytes).has_value(), "a status is whole");
       return;
     }
-    require(client_ == outgoing.peer, "messages are for the client");
+    require(client_peer_ == outgoing.peer, "messages are for the client");
     const ClientStatistics before = client_.statistics();
     client_.receive(now_, outgoing.bytes);
     const ClientStatistics& after = client_.statistics();
@@ -160,7 +160,7 @@ class Bench {
 
   void check_job(const PingJob& job) const {
     require(!job_.has_value(), "one job at a time");
-    require(client_.has_value(), "nobody wants it");
+    require(client_peer_.has_value(), "nobody wants it");
     require(job.bins() >= 1 && job.bins() <= 3, "a job can be rendered");
     require(job.native_bin_m > 0.0 && job.native_bin_m < 1000.0, "its rows have a length");
     require(job.beams == 256 || job.beams == 512, "it has beams");
@@ -173,7 +173,7 @@ class Bench {
   void step(const sonard::Event& event) {
     last_ = device_.step(now_, event);
     const auto* other = std::get_if<sonard::ClientCame>(&event);
-    if (other != nullptr && client_ && std::ranges::count(last_.disconnect, *client_) > 0) {
+    if (other != nullptr && client_peer_ && std::ranges::count(last_.disconnect, *client_peer_) > 0) {
       require(now_ - came_ >= Device::most_silence, "a client that has just come stays");
       takes_place(other->who);
     }
@@ -218,7 +218,7 @@ class Bench {
   DeviceConfig config_;
   Device device_{config_, now_};
   Client client_;
-  std::optional<Peer> client_;
+  std::optional<Peer> client_peer_;
   TimePoint came_{};  ///< time at which the client came
   Actions last_;
   std::optional<PingJob> job_;
