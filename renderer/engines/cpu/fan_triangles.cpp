@@ -33,18 +33,12 @@ struct Corners {
   slices::Corner corner(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-slices::Placement placement_of(const PlacedPart& part) {
-  const glm::mat3& m = part.R_sonar_part;  // columns are the axes of the part
-  const glm::vec3& t = part.t_sonar_part_m;
-  return {m[0].x, m[1].x, m[2].x, t.x, m[0].y, m[1].y, m[2].y, t.y, m[0].z, m[1].z, m[2].z, t.z};
-}
-
 SONARD_SIMD_CLONES
 void transform(const PlacedPart& part, const MeshClusters::Cluster& cluster, Corners& out) {
   const float* x = &part.clusters->x[cluster.first_vertex];
   const float* y = &part.clusters->y[cluster.first_vertex];
   const float* z = &part.clusters->z[cluster.first_vertex];
-  const slices::Placement placement = placement_of(part);
+  const slices::Placement placement = part.placement();
   const auto count = static_cast<std::size_t>(cluster.vertex_count);
   for (std::size_t i = 0; i < count; ++i) {
     out.set(i, slices::place(placement, x[i], y[i], z[i]));
@@ -205,12 +199,8 @@ std::uint64_t FanTriangles::faces_hidden() const {
 void FanTriangles::find_hiding_shells(const std::vector<PlacedPart>& parts, bool may_hide) {
   hiding_.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::span<const Shell> shells = parts[i].clusters->shells.all();
-    const glm::vec3 sonar_m = glm::transpose(parts[i].R_sonar_part) * -parts[i].t_sonar_part_m;
-    hiding_[i].resize(shells.size());
-    std::ranges::transform(shells, hiding_[i].begin(), [&](const Shell& shell) {
-      return may_hide && shell.hides_inner_side(sonar_m) ? shell.outwards : 0.0F;
-    });
+    hiding_[i].clear();
+    parts[i].append_hiding(may_hide, hiding_[i]);
   }
 }
 

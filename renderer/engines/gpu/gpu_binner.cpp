@@ -45,7 +45,6 @@ constexpr double zone_rest = 0.5;     // largest error outside a zone, re the er
 // The shaders have the same values:
 constexpr std::uint32_t start_of_sum = 0x80000000;
 constexpr std::size_t group_size = 64;
-constexpr std::size_t most_groups = 65535;  // per row; every OpenGL allows as many
 // Texture units; OpenSceneGraph uses the lowest. The use of first_unit to fourth_unit depends on the shader.
 enum TextureUnit : unsigned {
   samples_unit = 7,

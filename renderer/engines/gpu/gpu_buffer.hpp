@@ -11,6 +11,9 @@
 
 namespace sonard::render {
 
+/// Groups of a compute shader in one row of a dispatch; every OpenGL allows as many.
+inline constexpr std::size_t most_groups = 65535;
+
 /// Its context must be current when it is made, used and deleted.
 class GpuBuffer {
  public:

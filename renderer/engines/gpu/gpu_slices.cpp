@@ -24,15 +24,13 @@ namespace sonard::render {
 
 namespace {
 
-// ---- records of the shaders, in the layouts std140 and std430: numbers of four bytes, one behind the other
-// ----
+// Records of the shaders. In the layouts std140 and std430, numbers of four bytes lie one behind the other.
 
 struct PingRecord {
   float tan_limit, sin_limit, cos_limit, max_range_m;
   float port_x, port_y, starboard_x, starboard_y;
   float port_rad, starboard_rad, upright_rad, widest_slice_rad;
   float up_x, up_y, up_z, bend_per_m;
-  float line_m;
   std::int32_t beams, clusters;
   std::int32_t is_convex;
   std::int32_t two_sided, cull;
@@ -49,7 +47,7 @@ struct ClusterRecord {
 };
 
 struct PartRecord {
-  float xx, xy, xz, xt, yx, yy, yz, yt, zx, zy, zz, zt;
+  slices::Placement placement;
   std::uint32_t first_hiding, is_tall;
 };
 
@@ -61,7 +59,6 @@ struct BeamRecord {
 // What see.comp keeps of a visible segment until the segments are in order.
 constexpr std::size_t bytes_of_scratch = 16;
 
-constexpr std::size_t most_groups_in_a_row = 65535;  // per row; every OpenGL allows as many
 constexpr int room_for_waiting = 64;
 
 enum Binding : unsigned {  // as in the shaders
@@ -82,25 +79,6 @@ enum Binding : unsigned {  // as in the shaders
 
 std::int32_t as_int(std::size_t number) {
   return static_cast<std::int32_t>(number);
-}
-
-PartRecord record_of(const PlacedPart& part, std::size_t first_hiding) {
-  const glm::mat3& m = part.R_sonar_part;  // columns are the axes of the part
-  const glm::vec3& t = part.t_sonar_part_m;
-  return {m[0].x,
-          m[1].x,
-          m[2].x,
-          t.x,
-          m[0].y,
-          m[1].y,
-          m[2].y,
-          t.y,
-          m[0].z,
-          m[1].z,
-          m[2].z,
-          t.z,
-          static_cast<std::uint32_t>(first_hiding),
-          0};
 }
 
 }  // namespace
@@ -165,7 +143,7 @@ struct GpuSlices::Impl {
   }
 
   void dispatch(std::size_t groups) {
-    const std::size_t rows = (groups + most_groups_in_a_row - 1) / most_groups_in_a_row;
+    const std::size_t rows = (groups + most_groups - 1) / most_groups;
     if (groups > 0) {
       gl.glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
     }
@@ -226,7 +204,6 @@ struct GpuSlices::Impl {
             setting.bend.up.y,
             setting.bend.up.z,
             setting.bend.per_m,
-            setting.line_m,
             fan_of_ping.beam_count(),
             as_int(cluster_count),
             narrow(port - starboard) < slices::half_turn ? 1 : 0,
@@ -250,11 +227,8 @@ struct GpuSlices::Impl {
     std::vector<PartRecord> records;
     std::vector<float> hides;
     for (const PlacedPart& part : placed) {
-      records.push_back(render::record_of(part, hides.size()));
-      const glm::vec3 sonar_m = glm::transpose(part.R_sonar_part) * -part.t_sonar_part_m;
-      for (const Shell& shell : part.clusters->shells.all()) {
-        hides.push_back(may_hide && shell.hides_inner_side(sonar_m) ? shell.outwards : 0.0F);
-      }
+      records.push_back({part.placement(), static_cast<std::uint32_t>(hides.size()), 0});
+      part.append_hiding(may_hide, hides);
     }
     hides.push_back(0.0F);  // a buffer must not be empty
     parts.fill(records, GL_STREAM_DRAW);

@@ -37,7 +37,6 @@ class GpuSlices {
     const Fan& fan;
     Refraction bend;
     bool two_sided = true;  ///< false: triangles seen from behind are invisible
-    float line_m = 0.01F;
     SkipSwitches skip{};
   };
   /// Begins a ping: places the parts (the same as of set_parts(), elsewhere) and lists their triangles for
@@ -48,8 +47,7 @@ class GpuSlices {
   struct Slice {
     float cosine = 1.0F, sine = 0.0F, width_rad = 0.0F;
     std::int32_t beam = 0;
-    std::uint32_t first_visible = 0, visible_count = 0;            ///< result, in visible()
-    float ensonified = 0.0F, one_sided = 0.0F, range_bins = 0.0F;  ///< result
+    std::uint32_t first_visible = 0, visible_count = 0;  ///< result, in visible()
   };
   /// Sees slices.
   /// @return the slices with their results; empty if a buffer was too small: repeat the ping

@@ -6,7 +6,6 @@ layout(std140, binding = 0) uniform Ping {
   float port_x, port_y, starboard_x, starboard_y;                // unit normals of its sides, outwards
   float port_rad, starboard_rad, upright_rad, widest_slice_rad;  // see Fan
   float up_x, up_y, up_z, bend_per_m;                            // see Refraction
-  float line_m;
   int beams, clusters;
   int is_convex;        // the fan is narrower than half a turn
   int two_sided, cull;  // 0: back faces are not seen; no cluster is culled

@@ -14,7 +14,7 @@ struct Cluster {
   uint part, first_vertex, vertex_count, first_triangle, triangle_count;
 };
 struct Part {
-  float xx, xy, xz, xt, yx, yy, yz, yt, zx, zy, zz, zt;  // Placement
+  Placement placement;
   uint first_hiding;
   uint is_tall;  // 1: some cluster in the fan is higher than the gap between two probes
 };
@@ -56,10 +56,6 @@ bool misses_fan(vec3 centre, float radius_m) {
   float port = centre.x * ping.port_x + centre.y * ping.port_y;
   float starboard = centre.x * ping.starboard_x + centre.y * ping.starboard_y;
   return (ping.is_convex != 0 ? max(port, starboard) : min(port, starboard)) > reach;
-}
-
-Placement placement_of(Part p) {
-  return Placement(p.xx, p.xy, p.xz, p.xt, p.yx, p.yy, p.yz, p.yt, p.zx, p.zy, p.zz, p.zt);
 }
 
 bool is_out(Cluster cluster, Placement placement) {
@@ -132,7 +128,7 @@ void main() {
   }
   uint lane = gl_LocalInvocationID.x;
   Cluster cluster = clusters[number];
-  Placement placement = placement_of(parts[cluster.part]);
+  Placement placement = parts[cluster.part].placement;
   bool out_of_fan = is_out(cluster, placement);
   if (out_of_fan && ping.cull != 0) {
     if (lane == 0u) {

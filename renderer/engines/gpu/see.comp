@@ -12,7 +12,6 @@ struct Slice {
   float cosine, sine, width_rad;
   int beam;
   uint first_visible, visible_count;
-  float ensonified, one_sided, range_bins;  // see SliceSides
 };
 struct Visible {
   float low, high, w_at_0, w_slope;
@@ -42,7 +41,6 @@ shared uint s_order[room], s_bucket[room];
 shared float s_block_high[room / block + 1u];  // largest high end of 16 segments
 shared uint s_count[GROUP];
 shared uint s_found, s_used, s_base, s_lost;
-shared int s_port, s_starboard, s_nearest, s_furthest;
 
 Slice slice;
 float band_low, band_high;  // elevations of the band, as tangents
@@ -603,7 +601,7 @@ bool try_band(out uint total) {
 // still in place the second time. A band with too many segments is halved. All invocations must call it.
 void see_bands() {
   const int most_tries = 64;
-  uint total = 0u, of_band = 0u;
+  uint of_band = 0u;
   int bands = 0;
   for (int writing = 0; writing < 2; ++writing) {
     uint written = 0u;
@@ -624,15 +622,14 @@ void see_bands() {
       band_high = ping.tan_limit;
     }
     if (writing == 0) {
-      total = written;
       if (lane == 0u) {
         atomicMax(counts.longest_slice, bands == 1 ? count : room + 1u);
         atomicAdd(counts.overflows, band_low < ping.tan_limit ? 1u : 0u);
-        s_found = atomicAdd(counts.visible, total);
+        s_found = atomicAdd(counts.visible, written);
       }
       barrier();
       slice.first_visible = s_found;
-      slice.visible_count = s_found + total <= uint(ping.most_visible) ? total : 0u;
+      slice.visible_count = s_found + written <= uint(ping.most_visible) ? written : 0u;
       barrier();
       if (slice.visible_count == 0u) {
         return;

@@ -7,6 +7,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace sonard::render {
 
@@ -118,6 +119,19 @@ void MeshClusters::close_cluster(Cluster& cluster) const {
   for (std::size_t i = begin; i < end; ++i) {
     cluster.radius_m =
         std::max(cluster.radius_m, glm::distance(cluster.centre_m, glm::vec3(x[i], y[i], z[i])));
+  }
+}
+
+slices::Placement PlacedPart::placement() const {
+  const glm::mat3& m = R_sonar_part;  // columns are the axes of the part
+  const glm::vec3& t = t_sonar_part_m;
+  return {m[0].x, m[1].x, m[2].x, t.x, m[0].y, m[1].y, m[2].y, t.y, m[0].z, m[1].z, m[2].z, t.z};
+}
+
+void PlacedPart::append_hiding(bool may_hide, std::vector<float>& outwards) const {
+  const glm::vec3 sonar_m = glm::transpose(R_sonar_part) * -t_sonar_part_m;
+  for (const Shell& shell : clusters->shells.all()) {
+    outwards.push_back(may_hide && shell.hides_inner_side(sonar_m) ? shell.outwards : 0.0F);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "renderer/engines/slices/shells.hpp"
+#include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -52,6 +53,11 @@ struct PlacedPart {
   std::shared_ptr<const MeshClusters> clusters;
   glm::mat3 R_sonar_part{1.0F};
   glm::vec3 t_sonar_part_m{0.0F};
+
+  slices::Placement placement() const;
+  /// Appends Shell::outwards of each shell whose inner side is hidden from the sonar; 0 if it may be seen.
+  /// @param may_hide false: no shell hides its inner side
+  void append_hiding(bool may_hide, std::vector<float>& outwards) const;
 };
 
 }  // namespace sonard::render

@@ -136,7 +136,7 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
   gpu.set_parts(parts);
   std::vector<GpuSlices::Slice> seen;
   for (int tries = 0; tries < 5 && seen.empty(); ++tries) {  // until all buffers are large enough
-    gpu.find(parts, {fan, {}, true, static_cast<float>(settings.range.step_m), skip});
+    gpu.find(parts, {fan, {}, true, skip});
     seen = gpu.see(slices);
   }
   Comparison result;
