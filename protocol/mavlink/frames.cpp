@@ -58,7 +58,7 @@ std::optional<Candidate> candidate_at_front(std::span<const std::uint8_t> bytes)
   }
   candidate.checked = bytes.subspan(1, checked_end - 1);
   candidate.size = reader.offset();
-  candidate.frame.kind = type_of(candidate.frame.message_id);
+  candidate.frame.kind = kind_of(candidate.frame.message_id);
   return candidate;
 }
 

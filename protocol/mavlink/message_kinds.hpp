@@ -34,7 +34,7 @@ inline constexpr std::array<MessageKind, 6> message_kinds{{
 }};
 
 /// The kind of a message id; nullptr if it is unknown.
-constexpr const MessageKind* type_of(std::uint32_t id) {
+constexpr const MessageKind* kind_of(std::uint32_t id) {
   for (const MessageKind& kind : message_kinds) {
     if (static_cast<std::uint32_t>(kind.id) == id) {
       return &kind;

@@ -87,7 +87,7 @@ template <class Content, MessageId id>
 Result<Message, WireError> read(const Frame& frame) {
   using Table = Layout<Content>;
   static_assert(layout_is_contiguous<Table>(0));
-  static_assert(type_of(static_cast<std::uint32_t>(id))->base_size == Table::size);
+  static_assert(kind_of(static_cast<std::uint32_t>(id))->base_size == Table::size);
   if (frame.version == 1 && frame.payload.size() < Table::size) {
     return WireError{WireErrorReason::bad_length, frame.payload.size(), "payload"};
   }

@@ -41,7 +41,7 @@ TEST(MavlinkChecksum, IsThatOfTheCatalogue) {
 }
 
 TEST(MavlinkFrames, SeedsFollowFromTheDefinitions) {
-  const auto seed = [](MessageId id) { return type_of(static_cast<std::uint32_t>(id))->seed; };
+  const auto seed = [](MessageId id) { return kind_of(static_cast<std::uint32_t>(id))->seed; };
   const std::string u8 = "uint8_t", u32 = "uint32_t", f = "float";
   EXPECT_EQ(seed(MessageId::heartbeat), test::mavlink_seed("HEARTBEAT", {{u32, "custom_mode"},
                                                                          {u8, "type"},
