@@ -154,11 +154,16 @@ class StaticTransformBroadcaster:
         self._publisher.publish(transform)
 
 
+def _init(args=None):
+    """As in rclpy, SIGINT and SIGTERM shut ROS down from here on, and SIGINT raises KeyboardInterrupt, too."""
+    def interrupt(number, frame):
+        ros.stopped.set()
+        signal.default_int_handler(number, frame)
+    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGTERM, lambda *_: ros.stopped.set())
+
+
 def _spin(node):
-    """As in rclpy, SIGINT and SIGTERM shut ROS down, which ends this."""
-    if threading.current_thread() is threading.main_thread():
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: ros.stopped.set())
     while not ros.stopped.wait(0.02):
         pass
     raise ExternalShutdownException
@@ -214,7 +219,7 @@ def _install(**modules):
 SENSOR_DATA = "best effort, depth 5"
 
 _install(
-    rclpy={"init": lambda args=None: None, "spin": _spin, "try_shutdown": ros.stopped.set},
+    rclpy={"init": _init, "spin": _spin, "try_shutdown": ros.stopped.set},
     rclpy__node={"Node": Node}, rclpy__time={"Time": Time},
     rclpy__executors={"ExternalShutdownException": ExternalShutdownException},
     rclpy__qos={"qos_profile_sensor_data": SENSOR_DATA},

@@ -30,7 +30,7 @@ from lab import OwnMachine, Program  # noqa: E402
 from ros2_messages import CLASSES  # noqa: E402
 from ros2_stand_ins import SENSOR_DATA, InvalidParameterTypeException, Time, ros  # noqa: E402
 from sonard_client import Ping  # noqa: E402
-from sonard_ros2 import messages, parameters  # noqa: E402
+from sonard_ros2 import messages, parameters, running  # noqa: E402
 from sonard_ros2.pose_bridge import PoseBridge  # noqa: E402
 from sonard_ros2.sonar_bridge import SonarBridge  # noqa: E402
 
@@ -458,6 +458,15 @@ class Ros2(OwnMachine):
                 else:
                     time.sleep(2)  # in the middle of its wait for a status
                 self.expect_end(program)
+
+    def test_end_while_the_node_is_made(self):
+        def make_node():
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(PATIENCE_S)
+        self.addCleanup(signal.signal, signal.SIGINT, signal.getsignal(signal.SIGINT))
+        self.addCleanup(signal.signal, signal.SIGTERM, signal.getsignal(signal.SIGTERM))
+        self.addCleanup(ros.reset)
+        self.assertEqual(running.run(make_node), 0)
 
     def test_end_while_it_pings_and_while_none_comes(self):
         self.start()
