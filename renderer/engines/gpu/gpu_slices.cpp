@@ -3,22 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <span>
 #include <string>
 
 #include <fmt/format.h>
-#include <osg/GLExtensions>
 #include <osg/Program>
-#include <osg/State>
 
 #include "renderer/engines/gpu/egl_context.hpp"
-#include "renderer/engines/gpu/gl_errors.hpp"
-#include "renderer/engines/gpu/gpu_buffer.hpp"
-#include "renderer/engines/gpu/gpu_readback.hpp"
 #include "renderer/engines/gpu/shaders.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
-#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -34,7 +26,7 @@ struct PingRecord {
   std::int32_t beams, clusters;
   std::int32_t is_convex;
   std::int32_t two_sided, cull;
-  std::int32_t most_triangles, most_entries, most_visible, most_scratch;
+  std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces;
 };
 
 struct TriangleRecord {
@@ -84,103 +76,26 @@ std::int32_t as_int(std::size_t number) {
 }  // namespace
 
 struct GpuSlices::Impl {
-  /// Room in the buffers of a ping, in records.
-  struct Room {
-    std::size_t triangles = 1U << 14, entries = 1U << 16, visible = 1U << 16, scratch = 1U << 18;
-  };
-
-  EglContext& context;
-  osg::GLExtensions& gl;
-  const int group;  ///< invocations of a group that sees a slice
+  Compute compute;
   osg::ref_ptr<osg::Program> place, scan, fill, see;
   // Of the world:
   GpuBuffer vertices, mesh_triangles, clusters;
   std::size_t cluster_count = 0;
-  // Of a ping:
-  GpuBuffer ping, parts, hiding, fan, counts, beams, lists, slices, visible, scratch, sides;
-  Room room;
+  PingBuffers of_ping;
   std::size_t slice_count = 0;
 
-  Impl(EglContext& made_current, const Options& options)
-      : context(made_current),
-        gl(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
-        group(options.group > 0    ? options.group
-              : context.software() ? 8
-                                   : 64),
-        vertices(gl),
-        mesh_triangles(gl),
-        clusters(gl),
-        ping(gl),
-        parts(gl),
-        hiding(gl),
-        fan(gl),
-        counts(gl),
-        beams(gl),
-        lists(gl),
-        slices(gl),
-        visible(gl),
-        scratch(gl),
-        sides(gl) {
-    place = build("place.comp", shaders::place_comp, "");
-    scan = build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
-    fill = build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
-    see = build("see.comp", shaders::see_comp,
-                fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
-  }
-
-  osg::ref_ptr<osg::Program> build(const std::string& name, const char* text, const std::string& defines) {
-    std::string source = fmt::format("#version 430\n#define GROUP {}u\n", group) + defines;
-    for (const char* common : {shaders::language_glsl, shaders::cut_glsl, shaders::place_glsl,
-                               shaders::sweep_glsl, shaders::sides_glsl, shaders::ping_glsl}) {
-      source += common;
-    }
-    return context.build_program({new osg::Shader(osg::Shader::COMPUTE, source + text)}, name);
-  }
-
-  void use(const osg::ref_ptr<osg::Program>& program) {
-    program->getPCP(*context.getState())->useProgram();
-    gl.glBindBufferBase(GL_UNIFORM_BUFFER, 0, ping.name());
-  }
-
-  void dispatch(std::size_t groups) {
-    const std::size_t rows = (groups + most_groups - 1) / most_groups;
-    if (groups > 0) {
-      gl.glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
-    }
-    gl.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  }
-
-  template <class T>
-  std::vector<T> read(const GpuBuffer& buffer, std::size_t count) {
-    gl.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    GpuReadback readback(gl);
-    readback.ask({{buffer, count * sizeof(T)}});
-    std::vector<T> values(count);
-    if (!readback.wait([&](std::span<const std::byte> bytes) {
-          std::memcpy(values.data(), bytes.data(), bytes.size());
-        })) {
-      throw RendererError("the OpenGL context is lost");
-    }
-    check_gl_errors("seeing slices");
-    return values;
-  }
-
-  /// Gives each buffer the room that the last ping needed.
-  void make_room(const Counts& needed) {
-    const auto grow = [](std::size_t& has, std::size_t needs) {
-      if (needs > has) {
-        has = needs + needs / 4;
-      }
-    };
-    grow(room.triangles, needed.triangles);
-    grow(room.entries, needed.entries);
-    grow(room.visible, needed.visible);
-    grow(room.scratch, needed.scratch);
-  }
-
-  bool had_room(const Counts& needed) const {
-    return needed.triangles <= room.triangles && needed.entries <= room.entries &&
-           needed.visible <= room.visible && needed.scratch <= room.scratch;
+  Impl(EglContext& context, const Options& options)
+      : compute(context, options.group),
+        vertices(compute.gl()),
+        mesh_triangles(compute.gl()),
+        clusters(compute.gl()),
+        of_ping(compute.gl()) {
+    place = compute.build("place.comp", shaders::place_comp);
+    scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
+    fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
+    see = compute.build(
+        "see.comp", shaders::see_comp,
+        fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
   }
 
   PingRecord record_of(const PingSetting& setting) const {
@@ -209,17 +124,20 @@ struct GpuSlices::Impl {
             narrow(port - starboard) < slices::half_turn ? 1 : 0,
             setting.two_sided ? 1 : 0,
             setting.skip.on(SkipRule::culled_clusters) ? 1 : 0,
-            as_int(room.triangles),
-            as_int(room.entries),
-            as_int(room.visible),
-            as_int(room.scratch)};
+            as_int(of_ping.room.triangles),
+            as_int(of_ping.room.entries),
+            as_int(of_ping.room.visible),
+            as_int(of_ping.room.scratch),
+            as_int(of_ping.room.slices),
+            as_int(of_ping.room.pieces)};
   }
 
   void hold_ping() {
-    fan.hold(room.triangles * sizeof(Triangle));
-    lists.hold(room.entries * sizeof(std::uint32_t));
-    visible.hold(room.visible * sizeof(Visible));
-    scratch.hold(room.scratch * bytes_of_scratch);
+    const PingBuffers::Room& room = of_ping.room;
+    of_ping.fan.hold(room.triangles * sizeof(GpuTriangle));
+    of_ping.lists.hold(room.entries * sizeof(std::uint32_t));
+    of_ping.visible.hold(room.visible * sizeof(GpuVisible));
+    of_ping.scratch.hold(room.scratch * bytes_of_scratch);
   }
 
   void upload_parts(const std::vector<PlacedPart>& placed, const PingSetting& setting) {
@@ -231,8 +149,8 @@ struct GpuSlices::Impl {
       part.append_hiding(may_hide, hides);
     }
     hides.push_back(0.0F);  // a buffer must not be empty
-    parts.fill(records, GL_STREAM_DRAW);
-    hiding.fill(hides, GL_STREAM_DRAW);
+    of_ping.parts.fill(records, GL_STREAM_DRAW);
+    of_ping.hiding.fill(hides, GL_STREAM_DRAW);
   }
 
   void upload_beams(const Fan& fan_of_ping) {
@@ -240,7 +158,7 @@ struct GpuSlices::Impl {
     for (int beam = 0; beam <= fan_of_ping.beam_count(); ++beam) {
       records.push_back({static_cast<float>(fan_of_ping.edge_rad(beam)), 0, 0, 0});
     }
-    beams.fill(records, GL_STREAM_DRAW);
+    of_ping.beams.fill(records, GL_STREAM_DRAW);
   }
 };
 
@@ -288,67 +206,81 @@ void GpuSlices::set_parts(const std::vector<PlacedPart>& parts) {
 
 void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& setting) {
   Impl& on = *impl_;
+  PingBuffers& ping = on.of_ping;
   on.hold_ping();
   on.upload_parts(parts, setting);
   on.upload_beams(setting.fan);
-  on.counts.fill(std::vector<Counts>(1), GL_STREAM_DRAW);
-  on.ping.fill(std::vector<PingRecord>{on.record_of(setting)}, GL_STREAM_DRAW);
-  on.use(on.place);
+  ping.counts.fill(std::vector<PingCounts>(1), GL_STREAM_DRAW);
+  ping.ping.fill(std::vector<PingRecord>{on.record_of(setting)}, GL_STREAM_DRAW);
+  on.compute.use(on.place, ping.ping);
   on.vertices.bind(vertices_at);
   on.mesh_triangles.bind(triangles_at);
   on.clusters.bind(clusters_at);
-  on.parts.bind(parts_at);
-  on.fan.bind(fan_at);
-  on.counts.bind(counts_at);
-  on.beams.bind(beams_at);
-  on.hiding.bind(hiding_at);
-  on.dispatch(on.cluster_count);
-  on.lists.bind(lists_at);
-  on.use(on.scan);
-  on.dispatch(1);
-  on.use(on.fill);
-  on.dispatch((on.room.triangles + static_cast<std::size_t>(on.group) - 1) /
-              static_cast<std::size_t>(on.group));
+  ping.parts.bind(parts_at);
+  ping.fan.bind(fan_at);
+  ping.counts.bind(counts_at);
+  ping.beams.bind(beams_at);
+  ping.hiding.bind(hiding_at);
+  on.compute.dispatch(on.cluster_count);
+  ping.lists.bind(lists_at);
+  on.compute.use(on.scan, ping.ping);
+  on.compute.dispatch(1);
+  on.compute.use(on.fill, ping.ping);
+  const auto group = static_cast<std::size_t>(on.compute.group());
+  on.compute.dispatch((ping.room.triangles + group - 1) / group);
 }
 
-std::vector<GpuSlices::Slice> GpuSlices::see(const std::vector<Slice>& slices) {
+std::vector<GpuSlice> GpuSlices::see(const std::vector<GpuSlice>& slices) {
   Impl& on = *impl_;
+  PingBuffers& ping = on.of_ping;
   on.slice_count = slices.size();
-  on.slices.fill(slices, GL_STREAM_DRAW);
-  on.sides.hold(slices.size() * 2 * slices::side_probes * sizeof(float));
-  on.use(on.see);
-  on.slices.bind(slices_at);
-  on.visible.bind(visible_at);
-  on.scratch.bind(scratch_at);
-  on.lists.bind(lists_at);
-  on.fan.bind(fan_at);
-  on.counts.bind(counts_at);
-  on.beams.bind(beams_at);
-  on.sides.bind(sides_at);
-  on.gl.glUniform1ui(0, static_cast<GLuint>(slices.size()));
-  on.dispatch(slices.size());
-  const Counts needed = counts();
-  if (!on.had_room(needed)) {
-    on.make_room(needed);
+  ping.slices.fill(slices, GL_STREAM_DRAW);
+  ping.sides.hold(slices.size() * 2 * slices::side_probes * sizeof(float));
+  on.compute.use(on.see, ping.ping);
+  ping.slices.bind(slices_at);
+  ping.visible.bind(visible_at);
+  ping.scratch.bind(scratch_at);
+  ping.lists.bind(lists_at);
+  ping.fan.bind(fan_at);
+  ping.counts.bind(counts_at);
+  ping.beams.bind(beams_at);
+  ping.sides.bind(sides_at);
+  on.compute.gl().glUniform1ui(0, static_cast<GLuint>(slices.size()));
+  on.compute.dispatch(slices.size());
+  const PingCounts needed = counts();
+  if (!ping.room.fits(needed)) {
+    ping.room.grow(needed);
     return {};
   }
-  return on.read<Slice>(on.slices, slices.size());
+  return on.compute.read<GpuSlice>(ping.slices, slices.size());
 }
 
-GpuSlices::Counts GpuSlices::counts() {
-  return impl_->read<Counts>(impl_->counts, 1)[0];
+PingBuffers& GpuSlices::buffers() {
+  return impl_->of_ping;
 }
 
-std::vector<GpuSlices::Triangle> GpuSlices::triangles() {
-  return impl_->read<Triangle>(impl_->fan, std::min<std::size_t>(counts().triangles, impl_->room.triangles));
+const Compute& GpuSlices::compute() const {
+  return impl_->compute;
 }
 
-std::vector<GpuSlices::Visible> GpuSlices::visible() {
-  return impl_->read<Visible>(impl_->visible, std::min<std::size_t>(counts().visible, impl_->room.visible));
+PingCounts GpuSlices::counts() {
+  return impl_->compute.read<PingCounts>(impl_->of_ping.counts, 1)[0];
+}
+
+std::vector<GpuTriangle> GpuSlices::triangles() {
+  const PingBuffers& ping = impl_->of_ping;
+  return impl_->compute.read<GpuTriangle>(ping.fan,
+                                          std::min<std::size_t>(counts().triangles, ping.room.triangles));
+}
+
+std::vector<GpuVisible> GpuSlices::visible() {
+  const PingBuffers& ping = impl_->of_ping;
+  return impl_->compute.read<GpuVisible>(ping.visible,
+                                         std::min<std::size_t>(counts().visible, ping.room.visible));
 }
 
 std::vector<float> GpuSlices::sides() {
-  return impl_->read<float>(impl_->sides, impl_->slice_count * 2 * slices::side_probes);
+  return impl_->compute.read<float>(impl_->of_ping.sides, impl_->slice_count * 2 * slices::side_probes);
 }
 
 }  // namespace sonard::render

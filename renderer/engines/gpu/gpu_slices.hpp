@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/engines/gpu/compute.hpp"
+#include "renderer/engines/gpu/ping_buffers.hpp"
 #include "renderer/engines/slices/fan.hpp"
 #include "renderer/engines/slices/mesh_clusters.hpp"
 #include "renderer/scene/refraction.hpp"
@@ -43,36 +45,18 @@ class GpuSlices {
   /// each beam.
   void find(const std::vector<PlacedPart>& parts, const PingSetting& setting);
 
-  /// A slice; see SliceCutter.
-  struct Slice {
-    float cosine = 1.0F, sine = 0.0F, width_rad = 0.0F;
-    std::int32_t beam = 0;
-    std::uint32_t first_visible = 0, visible_count = 0;  ///< result, in visible()
-  };
   /// Sees slices.
   /// @return the slices with their results; empty if a buffer was too small: repeat the ping
-  std::vector<Slice> see(const std::vector<Slice>& slices);
+  std::vector<GpuSlice> see(const std::vector<GpuSlice>& slices);
+
+  /// What the later stages of the ping use.
+  PingBuffers& buffers();
+  const Compute& compute() const;
 
   // The state of a ping for tests. Each waits for the GPU.
-  struct Triangle {
-    float corners[9];
-    float low_azimuth_rad, high_azimuth_rad;
-    std::uint32_t flags, mesh_triangle, number, first_beam, last_beam;
-  };
-  struct Visible {
-    float low, high, w_at_0, w_slope;
-    float low_slope, low_reach, high_slope, high_reach;
-    float normal_h, normal_s, normal_z;
-    std::uint32_t triangle;  ///< in triangles()
-  };
-  struct Counts {
-    std::uint32_t triangles, entries, visible, scratch;
-    std::uint32_t culled_clusters, hidden_faces;
-    std::uint32_t overflows, longest_slice;
-  };
-  Counts counts();
-  std::vector<Triangle> triangles();
-  std::vector<Visible> visible();
+  PingCounts counts();
+  std::vector<GpuTriangle> triangles();
+  std::vector<GpuVisible> visible();
   std::vector<float> sides();  ///< [slice][port, starboard][probe]
 
  private:

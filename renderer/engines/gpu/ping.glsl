@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The buffers of a ping. Each shader declares those it uses; records are as in gpu_slices.cpp.
+// The buffers of a ping. Each shader declares those it uses; records are as in ping_buffers.hpp.
 
 layout(std140, binding = 0) uniform Ping {
   float tan_limit, sin_limit, cos_limit, max_range_m;            // of the fan's elevation, and its range
@@ -9,9 +9,33 @@ layout(std140, binding = 0) uniform Ping {
   int beams, clusters;
   int is_convex;        // the fan is narrower than half a turn
   int two_sided, cull;  // 0: back faces are not seen; no cluster is culled
-  int most_triangles, most_entries, most_visible, most_scratch;  // room in the buffers
+  int most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces;  // room in the buffers
 }
 ping;
+
+// A slice, and the thin wedge around it that it represents.
+struct Slice {
+  float cosine, sine, width_rad;
+  int beam;
+  uint first_visible, visible_count;
+  uint state;        // is_... below
+  float offset_rad;  // azimuth, from the middle of its beam
+  // Of its sides, weighted by the elevation pattern; see SliceSides:
+  float ensonified, one_sided, lines;
+  float missed_share;                      // of the fan's height, by thin things
+  float mismatch, curvature, shift_lines;  // on the border to the next slice; see SliceBorder
+  uint edge;                               // upright edge on that border, or no_edge
+};
+const uint is_seen = 1u, is_divided = 2u;  // is_divided: its parts replace it
+const uint no_edge = 0xffffffffu;
+
+// A visible part of a triangle in a slice, between two elevations.
+struct Visible {
+  float low, high, w_at_0, w_slope;
+  float low_slope, low_reach, high_slope, high_reach;
+  float normal_h, normal_s, normal_z;
+  uint triangle;  // in `fan`
+};
 
 // A triangle in the fan, in the sonar frame.
 struct FanTriangle {
@@ -32,7 +56,7 @@ struct BeamList {
 
 // Counts of a ping. More than there is room for: the ping must be repeated with more room.
 struct PingCounts {
-  uint triangles, entries, visible, scratch;
+  uint triangles, entries, visible, scratch, slices, pieces;
   uint culled_clusters, hidden_faces;
   uint overflows;  // of the lists of a slice, which no room helps
   uint longest_slice;

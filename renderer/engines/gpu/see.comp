@@ -8,17 +8,6 @@
 // than there is room for is seen in bands of elevation, one after the other.
 layout(local_size_x = GROUP) in;
 
-struct Slice {
-  float cosine, sine, width_rad;
-  int beam;
-  uint first_visible, visible_count;
-};
-struct Visible {
-  float low, high, w_at_0, w_slope;
-  float low_slope, low_reach, high_slope, high_reach;
-  float normal_h, normal_s, normal_z;
-  uint triangle;  // in `fan`
-};
 struct Seen {  // by one piece
   float low, high;
   uint segment, place;  // place: piece and number within it

@@ -41,8 +41,8 @@ std::vector<PlacedPart> placed(const World& world, const Pose& T_world_sonar) {
 }
 
 /// Share of the elevations at which two lists show other triangles.
-double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector<GpuSlices::Visible>& gpu,
-                       const std::vector<GpuSlices::Triangle>& triangles, float tan_limit) {
+double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector<GpuVisible>& gpu,
+                       const std::vector<GpuTriangle>& triangles, float tan_limit) {
   std::vector<float> borders;
   for (const auto& segment : cpu) {
     borders.insert(borders.end(), {segment.low, segment.high});
@@ -66,7 +66,7 @@ double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector
       on_cpu = {cpu[a].triangle->part, cpu[a].triangle->mesh_triangle};
     }
     if (b < gpu.size() && gpu[b].low <= from) {
-      const GpuSlices::Triangle& t = triangles[gpu[b].triangle];
+      const GpuTriangle& t = triangles[gpu[b].triangle];
       on_gpu = {t.flags >> 5U, t.mesh_triangle};
     }
     differing += on_cpu != on_gpu ? static_cast<double>(to - from) : 0.0;
@@ -76,7 +76,7 @@ double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector
 
 /// How the slices of the GPU differ from those of the CPU.
 struct Comparison {
-  GpuSlices::Counts counts{};
+  PingCounts counts{};
   std::size_t slices = 0, same_bits = 0;
   double differing = 0;  ///< share of all elevations at which another triangle is seen
   double off_sides = 0;  ///< share of the probes with another distance
@@ -100,7 +100,7 @@ class GpuSlicesTest : public ::testing::Test {
   osg::ref_ptr<EglContext> context_;
 };
 
-bool has_same_bits(const VisibleSegment& cpu, const GpuSlices::Visible& gpu) {
+bool has_same_bits(const VisibleSegment& cpu, const GpuVisible& gpu) {
   return cpu.low == gpu.low && cpu.high == gpu.high && cpu.w_at_0 == gpu.w_at_0 &&
          cpu.w_slope == gpu.w_slope && cpu.low_run.slope == gpu.low_slope &&
          cpu.low_run.reach == gpu.low_reach && cpu.high_run.slope == gpu.high_slope &&
@@ -126,7 +126,7 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
   const auto cells =
       sampler.sample(scene.T_world_sonar, settings.aperture, settings.range, settings.range.sampled_range_m(),
                      surface_model(settings, skip), slice_accuracy(settings.sampling, settings.model));
-  std::vector<GpuSlices::Slice> slices;
+  std::vector<GpuSlice> slices;
   for (const SliceCell* cell : cells) {
     slices.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
   }
@@ -134,7 +134,7 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
   const Fan fan(settings.aperture, settings.range.sampled_range_m());
   GpuSlices gpu(*context_, options);
   gpu.set_parts(parts);
-  std::vector<GpuSlices::Slice> seen;
+  std::vector<GpuSlice> seen;
   for (int tries = 0; tries < 5 && seen.empty(); ++tries) {  // until all buffers are large enough
     gpu.find(parts, {fan, {}, true, skip});
     seen = gpu.see(slices);
@@ -149,7 +149,7 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const std::vector<VisibleSegment>& of_cpu = cells[i]->visible;
     const auto first = visible.begin() + seen[i].first_visible;
-    const std::vector<GpuSlices::Visible> of_gpu(first, first + seen[i].visible_count);
+    const std::vector<GpuVisible> of_gpu(first, first + seen[i].visible_count);
     result.same_bits += std::ranges::equal(of_cpu, of_gpu, has_same_bits) ? 1 : 0;
     result.differing += differing_share(of_cpu, of_gpu, triangles, fan.tan_limit());
     const float* const of_sides = &sides[2 * i * slices::side_probes];
