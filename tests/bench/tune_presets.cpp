@@ -22,9 +22,9 @@
 
 #include "renderer/binning/binning.hpp"
 #include "renderer/engine.hpp"
-#include "renderer/engines/cpu/slice_accuracy.hpp"
 #include "renderer/engines/cpu/slice_binner.hpp"
 #include "renderer/engines/cpu/slice_sampler.hpp"
+#include "renderer/engines/slices/slice_accuracy.hpp"
 #include "renderer/surface/surface_model.hpp"
 #include "renderer/worker_pool.hpp"
 #include "tests/bench/image_error.hpp"

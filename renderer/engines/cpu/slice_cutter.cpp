@@ -12,6 +12,7 @@ namespace sonard::render {
 
 namespace {
 
+using slices::least_missed;
 using slices::nearest_m;
 using slices::shortest_rad;
 

@@ -72,10 +72,9 @@ class SliceCutter {
   void cut(const Slice& slice, float tan_limit, Segments& segments);
 
   /// Height of the tallest thin thing (the leg of a frame, a pole, a stone) that reaches into the wedge of a
-  /// slice but not to its middle, so that the slice misses it; in t. At least least_missed if there is one,
-  /// or if a low thing (a cable) ends well inside the wedge; 0 if nothing is missed.
+  /// slice but not to its middle, so that the slice misses it; in t. At least slices::least_missed if there
+  /// is one, or if a low thing (a cable) ends well inside the wedge; 0 if nothing is missed.
   float missed_height(const Slice& slice) const;
-  static constexpr float least_missed = 1e-6F;
 
   /// Finds the upright edges and ends of low things well inside the wedge, from port to starboard; the
   /// highest ones if there are many.

@@ -221,7 +221,6 @@ void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::
     parts = static_cast<int>(whole.edges.size()) + 1;
   }
   double from = port_rad;
-  ProbeSet edge = whole.edge_at_port;
   for (int k = 0; k < parts; ++k) {
     const bool last = k + 1 == parts;
     const auto next = static_cast<std::size_t>(k);
@@ -229,9 +228,9 @@ void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::
     fresh.push_back(new_cell({0.5 * (from + to), static_cast<float>(from - to)}, whole.beam));
     order.push_back(fresh.back());
     SliceCell& part = *cells_[fresh.back()];
-    part.edge_at_port = edge;
-    edge = last ? whole.edge_at_starboard : at_edges ? whole.edges[next].probes : ProbeSet();
-    part.edge_at_starboard = edge;
+    part.edge_at_starboard = last       ? whole.edge_at_starboard
+                             : at_edges ? whole.edges[next].probes
+                                        : ProbeSet();
     if (!at_edges && 2 * k + 1 == parts) {
       part.visible.swap(cells_[whole_number]->visible);
       part.seen = true;

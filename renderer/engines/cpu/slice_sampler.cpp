@@ -7,26 +7,10 @@
 
 #include "renderer/engines/cpu/slice_sampler_impl.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
+#include "renderer/engines/slices/first_slices.hpp"
 #include "renderer/scene/coplanar_facets.hpp"
 
 namespace sonard::render {
-
-namespace {
-
-constexpr double most_sag_lines = 0.06;  // at `change` 1 %
-
-/// Largest width of a first slice at an azimuth. Along a wall across the axis the range is d / cos psi, and
-/// the echo is proportional to cos^3 psi. Within a slice, the change of the echo and the deviation of the
-/// range from a straight line must stay within the accuracy.
-double widest_first_slice(double azimuth_rad, double line_m, double max_range_m, double change) {
-  const double tangent = std::abs(std::tan(std::min(std::abs(azimuth_rad), 1.4)));
-  const double for_echo = change * std::sqrt(12.0) / (3 * tangent + 1e-9);
-  const double sag_m = most_sag_lines * line_m * (change / 0.01);
-  const double for_range = std::sqrt(8 * sag_m / (max_range_m * (1 + 2 * tangent * tangent)));
-  return std::min({static_cast<double>(Fan::widest_slice), for_echo, std::max(for_range, for_echo / 4)});
-}
-
-}  // namespace
 
 /// Meshes and normal maps that parts share; each is prepared once.
 struct SliceSampler::Prepared {
@@ -158,7 +142,6 @@ std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
   cell.seen = false;
   cell.fresh = true;
   cell.to_starboard = {};
-  cell.edge_at_port.reset();
   cell.edge_at_starboard.reset();
   return cells_used_++;
 }
@@ -166,17 +149,9 @@ std::size_t SliceSampler::new_cell(const Slice& slice, int beam) {
 void SliceSampler::lay_first_slices(const Setting& setting) {
   cells_used_ = 0;
   order_.clear();
-  for (int beam = 0; beam < setting.fan.beam_count(); ++beam) {
-    const double port = setting.fan.edge_rad(beam);
-    const double width = port - setting.fan.edge_rad(beam + 1);
-    const double widest = widest_first_slice(port - width / 2, static_cast<double>(setting.line_m),
-                                             static_cast<double>(setting.fan.max_range_m()),
-                                             static_cast<double>(setting.accuracy.change));
-    const int count =
-        std::max(setting.accuracy.slices_per_beam, static_cast<int>(std::ceil(width / widest - 1e-9)));
-    for (int k = 0; k < count; ++k) {
-      order_.push_back(new_cell({port - width * (k + 0.5) / count, static_cast<float>(width / count)}, beam));
-    }
+  for (const FirstSlice& first :
+       first_slices(setting.fan, static_cast<double>(setting.line_m), setting.accuracy)) {
+    order_.push_back(new_cell({first.azimuth_rad, static_cast<float>(first.width_rad)}, first.beam));
   }
 }
 

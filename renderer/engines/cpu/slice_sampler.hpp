@@ -10,9 +10,9 @@
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/engines/cpu/fan_triangles.hpp"
-#include "renderer/engines/cpu/slice_accuracy.hpp"
 #include "renderer/engines/cpu/slice_patches.hpp"
 #include "renderer/engines/cpu/slice_sides.hpp"
+#include "renderer/engines/slices/slice_accuracy.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
@@ -36,12 +36,12 @@ struct SliceCell {
   int beam = 0;
   std::vector<VisibleSegment> visible;  ///< at its azimuth, independent of its width
   SliceSides sides;
-  SliceBorder to_starboard;                  ///< between this slice and the next one
-  float missed_share = 0.0F;                 ///< of the fan's height: SliceCutter::missed_height()
-  bool seen = false;                         ///< `visible` is filled
-  bool fresh = true;                         ///< not yet compared with its neighbours
-  std::vector<UprightEdge> edges;            ///< within the wedge, from port to starboard
-  ProbeSet edge_at_port, edge_at_starboard;  ///< of the upright edge at which the slice was cut
+  SliceBorder to_starboard;        ///< between this slice and the next one
+  float missed_share = 0.0F;       ///< of the fan's height: SliceCutter::missed_height()
+  bool seen = false;               ///< `visible` is filled
+  bool fresh = true;               ///< not yet compared with its neighbours
+  std::vector<UprightEdge> edges;  ///< within the wedge, from port to starboard
+  ProbeSet edge_at_starboard;      ///< of the upright edge at which its whole was divided
 };
 
 /// Samples azimuths only: in each slice visibility and range limits are exact. Errors come from the width of

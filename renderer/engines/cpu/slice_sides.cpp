@@ -50,22 +50,6 @@ void summarise(const SideView& view, SliceSides& sides) {
 
 }  // namespace
 
-ProbeWeights probe_weights(const Aperture& aperture, float tan_limit) {
-  std::array<double, side_probes> pattern{};
-  double sum = 0.0;
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    const float t = probe_at(tan_limit, static_cast<int>(i));
-    pattern[i] = aperture.elevation_weight(std::atan(static_cast<double>(t)));
-    sum += pattern[i];
-  }
-  ProbeWeights weights{};
-  for (std::size_t i = 0; i < side_probes; ++i) {
-    const double share = side_probes * pattern[i] / sum;
-    weights[i] = static_cast<std::int32_t>(std::lround(static_cast<double>(probe_weight_unit) * share));
-  }
-  return weights;
-}
-
 SideView::SideView(const ProbeWeights& weight_, float tan_limit_, float max_range_m_, float line_m_)
     : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight(weight_) {
   for (std::size_t i = 0; i < side_probes; ++i) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/engines/cpu/visible_arrays.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/engines/slices/first_slices.hpp"
 
 namespace sonard::render {
 
@@ -23,12 +23,6 @@ struct SliceSides {
   float one_sided = 0.0F;   ///< at which only one side expects a surface
   float lines = 0.0F;       ///< range lines over which the expected ranges spread
 };
-
-/// The elevation pattern at the probes, divided by its mean: errors in a side lobe count little. In whole
-/// numbers of 1 / probe_weight_unit, because sums of floats do not vectorise.
-using ProbeWeights = std::array<std::int32_t, side_probes>;
-inline constexpr float probe_weight_unit = 1024.0F;
-ProbeWeights probe_weights(const Aperture& aperture, float tan_limit);
 
 /// The elevations and the range for the comparison of sides, for one ping.
 struct SideView {

@@ -59,7 +59,8 @@ CONSTANT float three_helps_by = 9.0F;    // the error falls with the width, and 
 CONSTANT float curves_per_edge = 10.0F;  // a sagitta displaces echoes only a little, an edge hides them
 CONSTANT float ends_per_edge = 1.0F;     // at the end of the range, smears are right in first order
 CONSTANT float lone_share = 0.6F;        // of the elevations with an echo, at which neighbours disagree
-CONSTANT float tall_share = 0.05F;  // of the height of the fan: what is thin and as tall must not be missed
+CONSTANT float tall_share = 0.05F;    // of the height of the fan: what is thin and as tall must not be missed
+CONSTANT float least_missed = 1e-6F;  // in t, counts for the height of whatever is missed
 CONSTANT float least_ensonified = 0.5F / float(side_probes);
 
 // Constants of a ping, from its preset.

@@ -6,6 +6,9 @@
 CONSTANT int side_probes = 256;
 CONSTANT float probe_reach = 0.999F;  // of the tangent of the limit
 
+// Unit of the probes' weights (ProbeWeights), which are whole numbers.
+CONSTANT float probe_weight_unit = 1024.0F;
+
 SHARED float first_probe(float tan_limit) {
   return -probe_reach * tan_limit;
 }

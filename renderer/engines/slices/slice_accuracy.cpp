@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/engines/cpu/slice_accuracy.hpp"
+#include "renderer/engines/slices/slice_accuracy.hpp"
 
 namespace sonard::render {
 
