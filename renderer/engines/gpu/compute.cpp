@@ -14,7 +14,9 @@ namespace sonard::render {
 Compute::Compute(EglContext& context, int group)
     : context_(context),
       gl_(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
-      group_(group > 0 ? group : context.software() ? 8 : 64) {}
+      group_(group > 0            ? group
+             : context.software() ? 8
+                                  : 64) {}
 
 osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* text,
                                           const std::string& defines) const {
@@ -24,7 +26,8 @@ osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* t
         shaders::sides_glsl, shaders::refine_glsl, shaders::ping_glsl}) {
     source += common;
   }
-  return context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source + text)}, name);
+  return context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source + text)}, name,
+                                {"Ping", "Shading", "Refinement"});
 }
 
 void Compute::use(const osg::ref_ptr<osg::Program>& program, const GpuBuffer& ping) const {

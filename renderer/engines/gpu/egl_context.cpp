@@ -40,8 +40,12 @@ EglContext::~EglContext() {
 }
 
 osg::ref_ptr<osg::Program> EglContext::build_program(const std::vector<osg::ref_ptr<osg::Shader>>& shaders,
-                                                     const std::string& what) {
+                                                     const std::string& what,
+                                                     const std::vector<std::string>& blocks) {
   osg::ref_ptr<osg::Program> program = new osg::Program;
+  for (unsigned i = 0; i < blocks.size(); ++i) {
+    program->addBindUniformBlock(blocks[i], i);  // without it, OpenSceneGraph complains
+  }
   for (const osg::ref_ptr<osg::Shader>& shader : shaders) {
     program->addShader(shader);
   }

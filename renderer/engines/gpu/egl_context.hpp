@@ -36,9 +36,11 @@ class EglContext : public osg::GraphicsContext {
 
   /// Builds a program for this context, which must be current.
   /// @param what name in the error message: "the surface shader"
+  /// @param blocks its uniform blocks, in the order of their bindings
   /// @throws RendererError if it does not build
   osg::ref_ptr<osg::Program> build_program(const std::vector<osg::ref_ptr<osg::Shader>>& shaders,
-                                           const std::string& what);
+                                           const std::string& what,
+                                           const std::vector<std::string>& blocks = {});
 
   bool valid() const override { return context_ != nullptr; }
   bool realizeImplementation() override;

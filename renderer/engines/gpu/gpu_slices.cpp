@@ -26,7 +26,8 @@ struct PingRecord {
   std::int32_t beams, clusters;
   std::int32_t is_convex;
   std::int32_t two_sided, cull;
-  std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces;
+  std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces,
+      most_things, most_edges;
 };
 
 struct TriangleRecord {
@@ -44,8 +45,47 @@ struct PartRecord {
 };
 
 struct BeamRecord {
-  float port_rad;
-  std::uint32_t count, begin, filled;
+  float port_rad = 0.0F;
+  std::uint32_t count = 0, begin = 0, filled = 0;
+  float middle_rad = 0.0F, width_rad = 0.0F;
+  float cosine = 1.0F, sine = 0.0F;
+  std::uint32_t first_thing = 0, things = 0, ends = 0, first_edge = 0, edges = 0;
+  std::uint32_t first_slice = 0, slices = 0;
+  float port_mismatch = 0.0F, port_curvature = 0.0F, port_shift_lines = 0.0F;
+};
+
+struct ThingRecord {
+  float low_azimuth, high_azimuth, low_t, high_t;
+  std::uint32_t key;
+};
+
+struct EndRecord {
+  float azimuth;
+  std::uint32_t key, is_high;
+};
+
+struct EdgeRecord {
+  float offset_rad;
+  std::uint32_t count;
+  std::uint32_t probes[slices::side_probes / 32];
+};
+
+struct RoundRecord {
+  std::uint32_t groups = 0, one = 1, also_one = 1;
+  std::uint32_t first_slice = 0, slices = 0;
+};
+constexpr std::size_t most_slices_of_beam = 1023;
+
+struct CountsRecord {
+  PingCounts counts{};
+  RoundRecord rounds[GpuSlices::most_rounds];
+};
+
+struct RefinementRecord {
+  std::int32_t slices_per_beam, most_divisions, most_divisions_of_lone_echoes, first_in_five;
+  float disagreement, shift_lines, padding[2];  // std140: structures are padded to 16 bytes
+  float line_m, max_range_m, sagitta_lines, more_padding;
+  ProbeWeights weights;
 };
 
 // What see.comp keeps of a visible segment until the segments are in order.
@@ -67,6 +107,14 @@ enum Binding : unsigned {  // as in the shaders
   scratch_at = 2,
   lists_at = 3,
   sides_at = 7,
+  things_at = 1,
+  edges_at = 2,
+  ends_at = 7,
+  order_at = 1,
+  refined_sides_at = 2,
+  refined_things_at = 3,
+  refined_edges_at = 4,
+  refinement_at = 2,  // a uniform block
 };
 
 std::int32_t as_int(std::size_t number) {
@@ -77,12 +125,11 @@ std::int32_t as_int(std::size_t number) {
 
 struct GpuSlices::Impl {
   Compute compute;
-  osg::ref_ptr<osg::Program> place, scan, fill, see;
+  osg::ref_ptr<osg::Program> place, scan, fill, list_things, look, compare;
   // Of the world:
   GpuBuffer vertices, mesh_triangles, clusters;
   std::size_t cluster_count = 0;
   PingBuffers of_ping;
-  std::size_t slice_count = 0;
 
   Impl(EglContext& context, const Options& options)
       : compute(context, options.group),
@@ -93,7 +140,9 @@ struct GpuSlices::Impl {
     place = compute.build("place.comp", shaders::place_comp);
     scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
     fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
-    see = compute.build(
+    list_things = compute.build("things.comp", shaders::things_comp);
+    compare = compute.build("refine.comp", shaders::refine_comp);
+    look = compute.build(
         "see.comp", shaders::see_comp,
         fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
   }
@@ -129,7 +178,9 @@ struct GpuSlices::Impl {
             as_int(of_ping.room.visible),
             as_int(of_ping.room.scratch),
             as_int(of_ping.room.slices),
-            as_int(of_ping.room.pieces)};
+            as_int(of_ping.room.pieces),
+            as_int(of_ping.room.things),
+            as_int(of_ping.room.edges)};
   }
 
   void hold_ping() {
@@ -138,6 +189,11 @@ struct GpuSlices::Impl {
     of_ping.lists.hold(room.entries * sizeof(std::uint32_t));
     of_ping.visible.hold(room.visible * sizeof(GpuVisible));
     of_ping.scratch.hold(room.scratch * bytes_of_scratch);
+    of_ping.slices.hold(room.slices * sizeof(GpuSlice));
+    of_ping.sides.hold(room.slices * 2 * slices::side_probes * sizeof(float));
+    of_ping.things.hold(room.things * sizeof(ThingRecord));
+    of_ping.ends.hold(2 * room.things * sizeof(EndRecord));
+    of_ping.edges.hold(room.edges * sizeof(EdgeRecord));
   }
 
   void upload_parts(const std::vector<PlacedPart>& placed, const PingSetting& setting) {
@@ -153,12 +209,110 @@ struct GpuSlices::Impl {
     of_ping.hiding.fill(hides, GL_STREAM_DRAW);
   }
 
-  void upload_beams(const Fan& fan_of_ping) {
-    std::vector<BeamRecord> records;
-    for (int beam = 0; beam <= fan_of_ping.beam_count(); ++beam) {
-      records.push_back({static_cast<float>(fan_of_ping.edge_rad(beam)), 0, 0, 0});
+  /// @return the first slices of the ping
+  std::vector<GpuSlice> upload_beams(const PingSetting& setting) {
+    const Fan& fan = setting.fan;
+    std::vector<BeamRecord> records(static_cast<std::size_t>(fan.beam_count()) + 1);
+    for (int beam = 0; beam <= fan.beam_count(); ++beam) {
+      BeamRecord& record = records[static_cast<std::size_t>(beam)];
+      const double port = fan.edge_rad(beam);
+      record.port_rad = static_cast<float>(port);
+      if (beam < fan.beam_count()) {
+        const double width = port - fan.edge_rad(beam + 1), middle = port - width / 2;
+        record.middle_rad = static_cast<float>(middle);
+        record.width_rad = static_cast<float>(width);
+        record.cosine = static_cast<float>(std::cos(middle));
+        record.sine = static_cast<float>(std::sin(middle));
+      }
+    }
+    std::vector<GpuSlice> first;
+    for (const FirstSlice& slice : first_slices(fan, static_cast<double>(setting.line_m), setting.accuracy)) {
+      BeamRecord& record = records[static_cast<std::size_t>(slice.beam)];
+      record.first_slice = record.slices == 0 ? static_cast<std::uint32_t>(first.size()) : record.first_slice;
+      ++record.slices;
+      const double middle = (fan.edge_rad(slice.beam) + fan.edge_rad(slice.beam + 1)) / 2;
+      GpuSlice made;
+      made.cosine = static_cast<float>(std::cos(slice.azimuth_rad));
+      made.sine = static_cast<float>(std::sin(slice.azimuth_rad));
+      made.width_rad = static_cast<float>(slice.width_rad);
+      made.beam = slice.beam;
+      made.offset_rad = static_cast<float>(slice.azimuth_rad - middle);
+      first.push_back(made);
     }
     of_ping.beams.fill(records, GL_STREAM_DRAW);
+    of_ping.order.hold(2 * records.size() * (most_slices_of_beam + 1) * sizeof(std::uint32_t));
+    return first;
+  }
+
+  static RefinementRecord refinement_of(const PingSetting& setting) {
+    const SliceAccuracy& accuracy = setting.accuracy;
+    return {accuracy.slices_per_beam,
+            accuracy.most_divisions,
+            accuracy.most_divisions_of_lone_echoes,
+            accuracy.first_in_five ? 1 : 0,
+            accuracy.disagreement,
+            accuracy.shift_lines,
+            {},
+            setting.line_m,
+            setting.max_range_m,
+            accuracy.sagitta_lines,
+            0.0F,
+            setting.weights};
+  }
+
+  void run_list_things(const PingSetting& setting) {
+    compute.use(list_things, of_ping.ping);
+    of_ping.parts.bind(slices_at);
+    of_ping.things.bind(things_at);
+    of_ping.edges.bind(edges_at);
+    of_ping.lists.bind(lists_at);
+    of_ping.fan.bind(fan_at);
+    of_ping.counts.bind(counts_at);
+    of_ping.beams.bind(beams_at);
+    of_ping.ends.bind(ends_at);
+    compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
+  }
+
+  void upload_slices(const std::vector<GpuSlice>& slices) {
+    CountsRecord record;
+    record.counts.slices = static_cast<std::uint32_t>(slices.size());
+    record.rounds[0].slices = record.counts.slices;
+    record.rounds[0].groups = std::min(record.counts.slices, static_cast<std::uint32_t>(most_groups));
+    of_ping.counts.fill(std::vector<CountsRecord>{record}, GL_STREAM_DRAW);
+    of_ping.room.slices = std::max(of_ping.room.slices, slices.size());
+    hold_ping();
+    of_ping.slices.write(slices);
+  }
+
+  void run_see(int round) {
+    compute.use(look, of_ping.ping);
+    compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
+    of_ping.slices.bind(slices_at);
+    of_ping.visible.bind(visible_at);
+    of_ping.scratch.bind(scratch_at);
+    of_ping.lists.bind(lists_at);
+    of_ping.fan.bind(fan_at);
+    of_ping.counts.bind(counts_at);
+    of_ping.beams.bind(beams_at);
+    of_ping.sides.bind(sides_at);
+    compute.gl().glUniform1i(0, round);
+    compute.dispatch_indirect(of_ping.counts,
+                              sizeof(PingCounts) + static_cast<std::size_t>(round) * sizeof(RoundRecord));
+  }
+
+  void run_refine(int round, const PingSetting& setting) {
+    compute.use(compare, of_ping.ping);
+    compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
+    of_ping.slices.bind(slices_at);
+    of_ping.order.bind(order_at);
+    of_ping.sides.bind(refined_sides_at);
+    of_ping.things.bind(refined_things_at);
+    of_ping.edges.bind(refined_edges_at);
+    of_ping.counts.bind(counts_at);
+    of_ping.beams.bind(beams_at);
+    of_ping.ends.bind(ends_at);
+    compute.gl().glUniform1i(0, round);
+    compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
   }
 };
 
@@ -204,14 +358,15 @@ void GpuSlices::set_parts(const std::vector<PlacedPart>& parts) {
   impl_->clusters.fill(clusters);
 }
 
-void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& setting) {
+void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& setting,
+                     const std::vector<GpuSlice>& slices) {
   Impl& on = *impl_;
   PingBuffers& ping = on.of_ping;
-  on.hold_ping();
   on.upload_parts(parts, setting);
-  on.upload_beams(setting.fan);
-  ping.counts.fill(std::vector<PingCounts>(1), GL_STREAM_DRAW);
+  const std::vector<GpuSlice> first = on.upload_beams(setting);
+  on.upload_slices(slices.empty() ? first : slices);
   ping.ping.fill(std::vector<PingRecord>{on.record_of(setting)}, GL_STREAM_DRAW);
+  ping.refinement.fill(std::vector<RefinementRecord>{Impl::refinement_of(setting)}, GL_STREAM_DRAW);
   on.compute.use(on.place, ping.ping);
   on.vertices.bind(vertices_at);
   on.mesh_triangles.bind(triangles_at);
@@ -228,31 +383,25 @@ void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& se
   on.compute.use(on.fill, ping.ping);
   const auto group = static_cast<std::size_t>(on.compute.group());
   on.compute.dispatch((ping.room.triangles + group - 1) / group);
+  on.run_list_things(setting);
 }
 
-std::vector<GpuSlice> GpuSlices::see(const std::vector<GpuSlice>& slices) {
-  Impl& on = *impl_;
-  PingBuffers& ping = on.of_ping;
-  on.slice_count = slices.size();
-  ping.slices.fill(slices, GL_STREAM_DRAW);
-  ping.sides.hold(slices.size() * 2 * slices::side_probes * sizeof(float));
-  on.compute.use(on.see, ping.ping);
-  ping.slices.bind(slices_at);
-  ping.visible.bind(visible_at);
-  ping.scratch.bind(scratch_at);
-  ping.lists.bind(lists_at);
-  ping.fan.bind(fan_at);
-  ping.counts.bind(counts_at);
-  ping.beams.bind(beams_at);
-  ping.sides.bind(sides_at);
-  on.compute.gl().glUniform1ui(0, static_cast<GLuint>(slices.size()));
-  on.compute.dispatch(slices.size());
-  const PingCounts needed = counts();
-  if (!ping.room.fits(needed)) {
-    ping.room.grow(needed);
-    return {};
+void GpuSlices::see(const PingSetting& setting, int rounds) {
+  const int most = setting.accuracy.most_divisions > 1 ? rounds : 1;
+  for (int round = 0; round < most; ++round) {
+    impl_->run_see(round);
+    if (round + 1 < most) {
+      impl_->run_refine(round, setting);
+    }
   }
-  return on.compute.read<GpuSlice>(ping.slices, slices.size());
+}
+
+bool GpuSlices::had_room() {
+  PingBuffers& ping = impl_->of_ping;
+  const PingCounts needed = counts();
+  const bool fits = ping.room.fits(needed);
+  ping.room.grow(needed);
+  return fits;
 }
 
 PingBuffers& GpuSlices::buffers() {
@@ -279,8 +428,15 @@ std::vector<GpuVisible> GpuSlices::visible() {
                                          std::min<std::size_t>(counts().visible, ping.room.visible));
 }
 
+std::vector<GpuSlice> GpuSlices::slices() {
+  const PingBuffers& ping = impl_->of_ping;
+  return impl_->compute.read<GpuSlice>(ping.slices, std::min<std::size_t>(counts().slices, ping.room.slices));
+}
+
 std::vector<float> GpuSlices::sides() {
-  return impl_->compute.read<float>(impl_->of_ping.sides, impl_->slice_count * 2 * slices::side_probes);
+  return impl_->compute.read<float>(
+      impl_->of_ping.sides,
+      std::min<std::size_t>(counts().slices, impl_->of_ping.room.slices) * 2 * slices::side_probes);
 }
 
 }  // namespace sonard::render

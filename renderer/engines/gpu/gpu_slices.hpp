@@ -9,7 +9,9 @@
 #include "renderer/engines/gpu/compute.hpp"
 #include "renderer/engines/gpu/ping_buffers.hpp"
 #include "renderer/engines/slices/fan.hpp"
+#include "renderer/engines/slices/first_slices.hpp"
 #include "renderer/engines/slices/mesh_clusters.hpp"
+#include "renderer/engines/slices/slice_accuracy.hpp"
 #include "renderer/scene/refraction.hpp"
 #include "renderer/skip_ledger.hpp"
 
@@ -37,17 +39,26 @@ class GpuSlices {
 
   struct PingSetting {
     const Fan& fan;
-    Refraction bend;
+    const ProbeWeights& weights;
+    float line_m, max_range_m;  ///< of the range lines
+    SliceAccuracy accuracy{};
+    Refraction bend{};
     bool two_sided = true;  ///< false: triangles seen from behind are invisible
     SkipSwitches skip{};
   };
   /// Begins a ping: places the parts (the same as of set_parts(), elsewhere) and lists their triangles for
   /// each beam.
-  void find(const std::vector<PlacedPart>& parts, const PingSetting& setting);
+  /// @param slices with which it begins; empty: those of first_slices()
+  void find(const std::vector<PlacedPart>& parts, const PingSetting& setting,
+            const std::vector<GpuSlice>& slices = {});
 
-  /// Sees slices.
-  /// @return the slices with their results; empty if a buffer was too small: repeat the ping
-  std::vector<GpuSlice> see(const std::vector<GpuSlice>& slices);
+  static constexpr int most_rounds = 12;
+  /// Sees the slices, and divides them where they disagree or miss something. Does not wait for the GPU.
+  /// @param rounds 1: none is divided
+  void see(const PingSetting& setting, int rounds = most_rounds);
+
+  /// Waits for the GPU. @return false: a buffer was too small, and the ping must be repeated
+  bool had_room();
 
   /// What the later stages of the ping use.
   PingBuffers& buffers();
@@ -57,6 +68,7 @@ class GpuSlices {
   PingCounts counts();
   std::vector<GpuTriangle> triangles();
   std::vector<GpuVisible> visible();
+  std::vector<GpuSlice> slices();
   std::vector<float> sides();  ///< [slice][port, starboard][probe]
 
  private:

@@ -9,7 +9,8 @@ layout(std140, binding = 0) uniform Ping {
   int beams, clusters;
   int is_convex;        // the fan is narrower than half a turn
   int two_sided, cull;  // 0: back faces are not seen; no cluster is culled
-  int most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces;  // room in the buffers
+  int most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces, most_things,
+      most_edges;  // room in the buffers
 }
 ping;
 
@@ -50,17 +51,64 @@ const uint is_thin = 1u, is_small = 2u, is_of_low_cluster = 4u, has_upright_edge
 const uint part_shift = 5u;
 
 struct BeamList {
-  float port_rad;  // edge of the beam; one more record has the edge of the last beam
-  uint count, begin, filled;
+  float port_rad;               // edge of the beam; one more record has the edge of the last beam
+  uint count, begin, filled;    // triangles, in `lists`
+  float middle_rad, width_rad;  // azimuth
+  float cosine, sine;           // of the middle
+  uint first_thing, things;     // see things.comp
+  uint ends;                    // from 2 * first_thing
+  uint first_edge, edges;
+  uint first_slice, slices;                               // before any is divided, in `slices`
+  float port_mismatch, port_curvature, port_shift_lines;  // on the border to the beam before
+};
+
+// A triangle that is thin, small or of a low part, and is joined with those of the same key that touch it.
+struct Thing {
+  float low_azimuth, high_azimuth;
+  float low_t, high_t;
+  uint key;  // kind and part
+};
+// The azimuth at which joined things begin or end.
+struct ThingEnd {
+  float azimuth;
+  uint key, is_high;
+};
+const uint kind_bits = 2u, kind_mask = 3u, thin_kind = 0u, small_kind = 1u, low_kind = 2u;
+
+// An upright edge (UprightEdge), from starboard to port in each beam.
+struct Edge {
+  float offset_rad;  // azimuth, from the middle of the beam
+  uint count;        // of probes
+  uint probes[side_probes / 32];
 };
 
 // Counts of a ping. More than there is room for: the ping must be repeated with more room.
 struct PingCounts {
-  uint triangles, entries, visible, scratch, slices, pieces;
+  uint triangles, entries, visible, scratch, slices, pieces, things, edges;
   uint culled_clusters, hidden_faces;
-  uint overflows;  // of the lists of a slice, which no room helps
+  uint overflows;  // of lists that no room helps
   uint longest_slice;
 };
+// A round of refinement: the slices made for it.
+struct Round {
+  uint groups, one, also_one;  // of an indirect dispatch that sees them
+  uint first_slice, slices;
+};
+const int most_rounds = 12;
+const int most_slices_of_beam = 1023;
+const uint most_groups = 65535u;
+
+// Constants of a ping for comparing and dividing slices.
+layout(std140, binding = 2) uniform Refinement {
+  DivisionLimits division;
+  float line_m, max_range_m, sagitta_lines;  // see SideView and SliceAccuracy
+  ivec4 weights[side_probes / 4];            // ProbeWeights
+}
+refinement;
+
+int probe_weight(uint probe) {
+  return refinement.weights[probe / 4u][probe % 4u];
+}
 
 uint group_number() {
   return gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;

@@ -42,7 +42,7 @@ struct GpuTriangle {
 
 /// More than there is room for: the ping must be repeated with more room.
 struct PingCounts {
-  std::uint32_t triangles, entries, visible, scratch, slices, pieces;
+  std::uint32_t triangles, entries, visible, scratch, slices, pieces, things, edges;
   std::uint32_t culled_clusters, hidden_faces;
   std::uint32_t overflows;  ///< of lists that no room helps
   std::uint32_t longest_slice;
@@ -53,11 +53,12 @@ struct PingBuffers {
   /// In records.
   struct Room {
     std::size_t triangles = 1U << 14, entries = 1U << 16, visible = 1U << 16, scratch = 1U << 18,
-                slices = 1U << 12, pieces = 1U << 16;
+                slices = 1U << 12, pieces = 1U << 16, things = 1U << 12, edges = 1U << 10;
 
     bool fits(const PingCounts& needed) const {
       return needed.triangles <= triangles && needed.entries <= entries && needed.visible <= visible &&
-             needed.scratch <= scratch && needed.slices <= slices && needed.pieces <= pieces;
+             needed.scratch <= scratch && needed.slices <= slices && needed.pieces <= pieces &&
+             needed.things <= things && needed.edges <= edges;
     }
     /// Grows to what a ping needed, and a quarter more.
     void grow(const PingCounts& needed) {
@@ -70,6 +71,8 @@ struct PingBuffers {
       make_room(scratch, needed.scratch);
       make_room(slices, needed.slices);
       make_room(pieces, needed.pieces);
+      make_room(things, needed.things);
+      make_room(edges, needed.edges);
     }
   };
 
@@ -84,18 +87,26 @@ struct PingBuffers {
         slices(gl),
         visible(gl),
         scratch(gl),
-        sides(gl) {}
+        sides(gl),
+        refinement(gl),
+        things(gl),
+        ends(gl),
+        edges(gl),
+        order(gl) {}
 
   Room room;
-  GpuBuffer ping;           ///< the uniform block
-  GpuBuffer parts, hiding;  ///< poses of parts, and which of their shells hide their inner sides
-  GpuBuffer fan;            ///< GpuTriangle
-  GpuBuffer counts;         ///< PingCounts
-  GpuBuffer beams, lists;   ///< triangles of each beam
-  GpuBuffer slices;         ///< GpuSlice
-  GpuBuffer visible;        ///< GpuVisible, slice after slice
-  GpuBuffer scratch;        ///< of see.comp
-  GpuBuffer sides;          ///< of each slice, port and starboard: 1 / h at the probes
+  GpuBuffer ping;                 ///< the uniform block
+  GpuBuffer parts, hiding;        ///< poses of parts, and which of their shells hide their inner sides
+  GpuBuffer fan;                  ///< GpuTriangle
+  GpuBuffer counts;               ///< PingCounts, and the rounds of refinement
+  GpuBuffer beams, lists;         ///< triangles of each beam
+  GpuBuffer slices;               ///< GpuSlice
+  GpuBuffer visible;              ///< GpuVisible, slice after slice
+  GpuBuffer scratch;              ///< of see.comp
+  GpuBuffer sides;                ///< of each slice, port and starboard: 1 / h at the probes
+  GpuBuffer refinement;           ///< the uniform block
+  GpuBuffer things, ends, edges;  ///< of each beam: see things.comp
+  GpuBuffer order;                ///< slices of each beam from port to starboard, in even and odd rounds
 };
 
 }  // namespace sonard::render

@@ -17,7 +17,10 @@ layout(std430, binding = 1) coherent buffer VisibleSegments { Visible visible[];
 layout(std430, binding = 2) coherent buffer Scratch { Seen scratch[]; };
 layout(std430, binding = 3) readonly buffer Lists { uint lists[]; };
 layout(std430, binding = 4) readonly buffer Fan { FanTriangle fan[]; };
-layout(std430, binding = 5) buffer Counts { PingCounts counts; };
+layout(std430, binding = 5) buffer Counts {
+  PingCounts counts;
+  Round rounds[most_rounds];
+};
 layout(std430, binding = 6) readonly buffer Beams { BeamList beams[]; };
 layout(std430, binding = 7) buffer Sides { float sides[]; };  // of each slice, port and starboard: 1 / h at the probes
 
@@ -664,20 +667,57 @@ void find_side(uint out_begin, float offset_rad) {
   barrier();
 }
 
-layout(location = 0) uniform uint slice_count;
+shared int s_in_range[2];
+shared uint s_nearest, s_furthest;  // bits of ranges, which have the order of the ranges
+
+// As summarise() of SideExpectation.
+void summarise_sides(uint port, uint starboard) {
+  if (lane == 0u) {
+    s_in_range[0] = s_in_range[1] = 0;
+    s_nearest = floatBitsToUint(refinement.max_range_m);
+    s_furthest = 0u;
+  }
+  barrier();
+  for (uint k = lane; k < uint(side_probes); k += GROUP) {  // those that find_side() wrote in this invocation
+    float t = probe_at(ping.tan_limit, int(k)), secant = sqrt(1.0 + t * t);
+    for (uint side = 0u; side < 2u; ++side) {
+      float w = sides[(side == 0u ? port : starboard) + k];
+      if (secant < refinement.max_range_m * w) {
+        atomicAdd(s_in_range[side], probe_weight(k));
+        atomicMin(s_nearest, floatBitsToUint(secant / w));
+        atomicMax(s_furthest, floatBitsToUint(secant / w));
+      }
+    }
+  }
+  barrier();
+  float all = float(side_probes) * probe_weight_unit;
+  slice.ensonified = float(s_in_range[0] + s_in_range[1]) / (2.0 * all);
+  slice.one_sided = float(abs(s_in_range[0] - s_in_range[1])) / all;
+  slice.lines = max(0.0, uintBitsToFloat(s_furthest) - uintBitsToFloat(s_nearest)) / refinement.line_m;
+}
+
+layout(location = 0) uniform int round_number;
 
 void main() {
   lane = gl_LocalInvocationID.x;
-  uint number = group_number();
+  Round of_round = rounds[round_number];
+  uint number = of_round.first_slice + gl_WorkGroupID.x;
   bool has_lists = counts.triangles <= uint(ping.most_triangles) && counts.entries <= uint(ping.most_entries);
-  if (number >= slice_count || !has_lists) {
+  if (number >= uint(ping.most_slices) || !has_lists) {
     return;
   }
   slice = slices[number];
-  see_bands();
+  if ((slice.state & is_seen) == 0u) {
+    see_bands();
+    slice.state |= is_seen;
+  }
   memoryBarrierBuffer();
-  for (uint side = 0u; side < 2u; ++side) {
-    find_side((2u * number + side) * uint(side_probes), (side == 0u ? 0.5 : -0.5) * slice.width_rad);
+  if (refinement.division.most_divisions > 1) {
+    uint first = 2u * number * uint(side_probes);
+    for (uint side = 0u; side < 2u; ++side) {
+      find_side(first + side * uint(side_probes), (side == 0u ? 0.5 : -0.5) * slice.width_rad);
+    }
+    summarise_sides(first, first + uint(side_probes));
   }
   if (lane == 0u) {
     slices[number] = slice;
