@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/engines/cpu/normal_arrays.hpp"
-#include "renderer/engines/cpu/part_surface.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/visible_arrays.hpp"
 
 namespace sonard::render {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "renderer/engines/cpu/part_surface.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
 #include "renderer/engines/cpu/vertex_normals.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/engines/cpu/facet_arrays.hpp"
-#include "renderer/engines/cpu/part_surface.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_facets.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
 #include "renderer/engines/cpu/vertex_normals.hpp"

@@ -214,7 +214,7 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
 void SliceSampler::divide(std::size_t whole_number, int parts, std::vector<std::size_t>& order,
                           std::vector<std::size_t>& fresh) {
   const SliceCell& whole = *cells_[whole_number];  // stays valid while cells are added
-  const double width = static_cast<double>(whole.slice.width_rad);
+  const auto width = static_cast<double>(whole.slice.width_rad);
   const double port_rad = whole.slice.azimuth_rad + 0.5 * width;
   const bool at_edges = !whole.edges.empty();
   if (at_edges) {

@@ -3,124 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "renderer/engines/cpu/slice_sampler_impl.hpp"
-#include "renderer/engines/cpu/slice_shading.hpp"
 #include "renderer/engines/slices/first_slices.hpp"
-#include "renderer/scene/coplanar_facets.hpp"
 
 namespace sonard::render {
 
-/// Meshes and normal maps that parts share; each is prepared once.
-struct SliceSampler::Prepared {
-  struct Shape {
-    std::shared_ptr<const TriangleMesh> mesh;
-    std::shared_ptr<const MeshClusters> clusters;
-    std::uint64_t merged_facets = 0;
-  };
-  std::map<std::pair<const TriangleMesh*, bool>, Shape> shapes;  ///< unchanged (false) or merged (true)
-  std::map<const NormalMap*, std::shared_ptr<const NormalPyramid>> pyramids;
-
-  const Shape& shape(const std::shared_ptr<const TriangleMesh>& mesh, bool merge, const SkipSwitches& skip) {
-    Shape& shape = shapes[{mesh.get(), merge}];
-    if (!shape.mesh) {
-      shape.mesh = mesh;
-      if (merge) {
-        TriangleMesh merged = merge_coplanar_facets(*mesh);
-        shape.merged_facets = mesh->triangle_count() - merged.triangle_count();
-        if (shape.merged_facets > 0) {  // otherwise the original mesh is used
-          shape.mesh = std::make_shared<const TriangleMesh>(std::move(merged));
-        }
-      }
-      shape.clusters = std::make_shared<const MeshClusters>(*shape.mesh, skip.on(SkipRule::hidden_faces));
-    }
-    return shape;
-  }
-  /// @param map null: a map without bumps
-  std::shared_ptr<const NormalPyramid> pyramid(const NormalMap* map) {
-    auto& pyramid = pyramids[map];
-    if (!pyramid) {
-      pyramid = std::make_shared<const NormalPyramid>(map ? NormalPyramid(*map) : NormalPyramid::straight());
-    }
-    return pyramid;
-  }
-};
-
 SliceSampler::SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip)
-    : workers_(workers), skip_(skip) {
-  Prepared prepared;
-  for (const Body& body : world.bodies) {
-    for (const BodyPart& part : body.parts) {
-      add_part(part, prepared);
-    }
-    T_world_body_.push_back(body.T_world_body);
-  }
-}
+    : workers_(workers), skip_(skip), world_(world, skip) {}
 
 SliceSampler::~SliceSampler() = default;
-
-/// Adds a part of the next body.
-void SliceSampler::add_part(const BodyPart& part, Prepared& prepared) {
-  PartSurface surface;
-  surface.backscatter = Backscatter(part.material);
-  surface.reflectance = static_cast<float>(part.material.reflectance);
-  if (surface.backscatter.facet_strength > 0) {
-    any_facets_ = true;
-  }
-  surface.vertex_normals = !(skip_.on(SkipRule::geometric_normals) && has_plain_facets(*part.mesh));
-  skipped_parts_.add(SkipRule::geometric_normals, surface.vertex_normals ? 0 : 1);
-  if (!part.normal_map && skip_.on(SkipRule::absent_normal_map)) {
-    skipped_parts_.add(SkipRule::absent_normal_map);
-  } else if (part.mesh->can_be_mapped()) {
-    surface.normal_map = prepared.pyramid(part.normal_map.get());
-    any_mapped_ = true;
-  }
-  // Of a facet that is shaded by its own normal, only the plane matters.
-  const bool merge = !surface.vertex_normals && !surface.normal_map && skip_.on(SkipRule::coplanar_facets);
-  const Prepared::Shape& shape = prepared.shape(part.mesh, merge, skip_);
-  skipped_parts_.add(SkipRule::coplanar_facets, shape.merged_facets);
-  surface.mesh = shape.mesh;
-  parts_.push_back({T_world_body_.size(), part.T_body_part});
-  placed_.push_back({shape.clusters, {}, {}});
-  surfaces_.push_back(std::move(surface));
-}
-
-/// Facets of changed parts are not merged, because neighbouring parts share corners.
-void SliceSampler::set_part_meshes(std::span<const PartMesh> changes) {
-  std::vector<Replacement> replacements(changes.size());
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    if (const Replacement* known = replacements_.find(changes[i].mesh.get())) {
-      replacements[i] = *known;
-    }
-  }
-  workers_.run(static_cast<int>(changes.size()), [&](int i) {
-    const TriangleMesh& mesh = *changes[static_cast<std::size_t>(i)].mesh;
-    Replacement& replacement = replacements[static_cast<std::size_t>(i)];
-    if (!replacement.clusters) {
-      const bool plain = skip_.on(SkipRule::geometric_normals) && has_plain_facets(mesh);
-      replacement = {std::make_shared<const MeshClusters>(mesh, /*find_shells=*/false), !plain};
-    }
-  });
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    placed_[changes[i].part].clusters = replacements[i].clusters;
-    surfaces_[changes[i].part].mesh = changes[i].mesh;
-    surfaces_[changes[i].part].vertex_normals = replacements[i].vertex_normals;
-    replacements_.keep(changes[i].mesh, replacements[i]);
-  }
-}
-
-/// Computes poses relative to the sonar in doubles, so that no world coordinate is rounded to a float.
-void SliceSampler::place_parts(const Pose& T_world_sonar) {
-  bend_.up = glm::vec3(glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1));
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const Pose T_sonar_part = relative(T_world_sonar, T_world_body_[parts_[i].body]) * parts_[i].T_body_part;
-    placed_[i].R_sonar_part = glm::mat3(glm::mat3_cast(T_sonar_part.orientation));
-    placed_[i].t_sonar_part_m = glm::vec3(T_sonar_part.position_m);
-    surfaces_[i].R_part_sonar = glm::transpose(placed_[i].R_sonar_part);
-    surfaces_[i].refraction_in_part = {surfaces_[i].R_part_sonar * bend_.up, bend_.per_m};
-  }
-}
 
 const SliceSampler::Elevations& SliceSampler::elevations_of(const Aperture& aperture, float tan_limit) {
   if (!elevations_ || elevations_->elevation != aperture.elevation ||
@@ -159,20 +51,17 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
                                                    const RangeLines& range, double sampled_range_m,
                                                    const SurfaceModel& surface,
                                                    const SliceAccuracy& accuracy) {
-  place_parts(T_world_sonar);
+  world_.place(T_world_sonar);
   const Fan fan(aperture, sampled_range_m);
   const Elevations& elevations = elevations_of(aperture, fan.tan_limit());
   setting_ = std::make_unique<const Setting>(
-      Setting{fan, elevations.pattern, surface, accuracy, surfaces_, any_mapped_,
-              std::any_of(surfaces_.begin(), surfaces_.end(),
-                          [](const PartSurface& part) { return part.vertex_normals; }),
-              surface.facets == Facets::everywhere || (surface.facets == Facets::near_normal && any_facets_),
-              static_cast<float>(range.step_m),
+      Setting{fan, elevations.pattern, surface, accuracy, world_.surfaces(), world_.any_mapped(),
+              world_.any_vertex_normals(), world_.any_facets(surface), static_cast<float>(range.step_m),
               SideView(elevations.probes, fan.tan_limit(), static_cast<float>(range.max_range_m()),
                        static_cast<float>(range.step_m))});
-  triangles_.find(placed_, fan, bend_, workers_, skip_);
+  triangles_.find(world_.parts(), fan, world_.bend(), workers_, skip_);
   if (setting_->any_vertex_normals) {
-    vertex_normals_.find(triangles_, surfaces_, workers_);
+    vertex_normals_.find(triangles_, world_.surfaces(), workers_);
   }
   lay_first_slices(*setting_);
   std::vector<std::size_t> fresh = order_;
@@ -183,7 +72,7 @@ std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, co
   for (const std::size_t i : order_) {
     cells.push_back(cells_[i].get());
   }
-  skipped_ = skipped_parts_;
+  skipped_ = world_.skipped();
   skipped_.add(SkipRule::culled_clusters, triangles_.clusters_culled());
   skipped_.add(SkipRule::hidden_faces, triangles_.faces_hidden());
   skipped_.add(SkipRule::flat_elevation, setting_->pattern.flat() ? 1 : 0);

@@ -13,9 +13,8 @@
 #include "renderer/engines/cpu/slice_patches.hpp"
 #include "renderer/engines/cpu/slice_sides.hpp"
 #include "renderer/engines/slices/slice_accuracy.hpp"
+#include "renderer/engines/slices/slice_world.hpp"
 #include "renderer/pose.hpp"
-#include "renderer/scene/mesh_cache.hpp"
-#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/world.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/worker_pool.hpp"
@@ -65,33 +64,22 @@ class SliceSampler {
   std::uint64_t make_patches(const SliceCell& cell, std::vector<EchoPatch>& patches) const;
 
   /// See EchoEngine::set_body_pose().
-  void set_body_pose(std::size_t body, const Pose& T_world_body) { T_world_body_[body] = T_world_body; }
+  void set_body_pose(std::size_t body, const Pose& T_world_body) { world_.set_body_pose(body, T_world_body); }
 
   /// See EchoEngine::set_part_meshes().
-  void set_part_meshes(std::span<const PartMesh> changes);
+  void set_part_meshes(std::span<const PartMesh> changes) { world_.set_part_meshes(changes, workers_); }
 
   /// See EchoEngine::set_refraction().
-  void set_refraction(double bend_per_m) { bend_.per_m = static_cast<float>(bend_per_m); }
+  void set_refraction(double bend_per_m) { world_.set_refraction(bend_per_m); }
 
   /// Work that the last sample() left out.
   const SkipCounts& skipped() const { return skipped_; }
 
  private:
-  struct Part {
-    std::size_t body;
-    Pose T_body_part;
-  };
-  struct Replacement {
-    std::shared_ptr<const MeshClusters> clusters;
-    bool vertex_normals = false;
-  };
-  struct Prepared;
   struct Elevations;
   struct Setting;
   struct Scratch;
 
-  void add_part(const BodyPart& part, Prepared& prepared);
-  void place_parts(const Pose& T_world_sonar);
   const Elevations& elevations_of(const Aperture& aperture, float tan_limit);
   void lay_first_slices(const Setting& setting);
   void see(const Setting& setting, const std::vector<std::size_t>& fresh);
@@ -109,15 +97,7 @@ class SliceSampler {
 
   WorkerPool& workers_;
   SkipSwitches skip_;
-  SkipCounts skipped_parts_;  ///< work left out of shading in every ping
-  std::vector<Pose> T_world_body_;
-  std::vector<Part> parts_;
-  std::vector<PlacedPart> placed_;
-  std::vector<PartSurface> surfaces_;
-  MeshCache<Replacement> replacements_;
-  bool any_mapped_ = false;
-  bool any_facets_ = false;  ///< some material has facets
-  Refraction bend_;          ///< in the sonar frame of this ping
+  SliceWorld world_;
   FanTriangles triangles_;
   VertexNormals vertex_normals_;                   ///< of triangles_, if a part is shaded by them
   std::vector<std::unique_ptr<SliceCell>> cells_;  ///< kept for reuse; the first cells_used_ are in use

@@ -91,23 +91,6 @@ glm::vec3 mapped_normal(const PartSurface& part, const SurfacePoint& surface, co
 
 }  // namespace
 
-bool has_plain_facets(const TriangleMesh& mesh) {
-  constexpr float plain_rad = 1e-4F;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size() && !mesh.normals.empty(); i += 3) {
-    const std::uint32_t* corner = &mesh.indices[i];
-    const glm::vec3 edge_b = mesh.positions[corner[1]] - mesh.positions[corner[0]];
-    const glm::vec3 edge_c = mesh.positions[corner[2]] - mesh.positions[corner[0]];
-    const glm::vec3 facet = glm::normalize(glm::cross(edge_b, edge_c));
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Negated, so that NaN returns false.
-      if (!(glm::length(glm::cross(facet, mesh.normals[corner[k]])) < plain_rad)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const SegmentPlace& place, float geometric) {
   const SurfacePoint surface(triangle,

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "renderer/engines/cpu/fan_triangles.hpp"
-#include "renderer/engines/cpu/part_surface.hpp"
 #include "renderer/engines/cpu/slice_cutter.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
@@ -26,10 +26,6 @@ struct SegmentPlace {
 /// @param geometric cos phi of the triangle itself; returned if the shading normal is not finite
 MappedIncidence mapped_incidence(const PartSurface& part, const FanTriangle& triangle,
                                  const SegmentPlace& place, float geometric);
-
-/// True if all vertex normals equal the normals of their facets, to 1e-4 rad, or if there are no vertex
-/// normals: then interpolation is not needed.
-bool has_plain_facets(const TriangleMesh& mesh);
 
 /// SurfaceSample::response of a surface at an incidence and a range, without its facets.
 float surface_response(const PartSurface& part, const SurfaceModel& model, float cosine, float range_m);

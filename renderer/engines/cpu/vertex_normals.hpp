@@ -12,7 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "renderer/engines/cpu/fan_triangles.hpp"
-#include "renderer/engines/cpu/part_surface.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
 #include "renderer/worker_pool.hpp"
 
