@@ -129,14 +129,12 @@ struct GpuSlices::Impl {
   // Of the world:
   GpuBuffer vertices, mesh_triangles, clusters;
   std::size_t cluster_count = 0;
-  PingBuffers of_ping;
 
   Impl(EglContext& context, const Options& options)
       : compute(context, options.group),
         vertices(compute.gl()),
         mesh_triangles(compute.gl()),
-        clusters(compute.gl()),
-        of_ping(compute.gl()) {
+        clusters(compute.gl()) {
     place = compute.build("place.comp", shaders::place_comp);
     scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
     fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
@@ -147,7 +145,7 @@ struct GpuSlices::Impl {
         fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
   }
 
-  PingRecord record_of(const PingSetting& setting) const {
+  PingRecord record_of(const PingBuffers& of_ping, const PingSetting& setting) const {
     const Fan& fan_of_ping = setting.fan;
     const double port = fan_of_ping.edge_rad(0), starboard = fan_of_ping.edge_rad(fan_of_ping.beam_count());
     const double limit = std::atan(static_cast<double>(fan_of_ping.tan_limit()));
@@ -183,7 +181,7 @@ struct GpuSlices::Impl {
             as_int(of_ping.room.edges)};
   }
 
-  void hold_ping() {
+  static void hold(PingBuffers& of_ping) {
     const PingBuffers::Room& room = of_ping.room;
     of_ping.fan.hold(room.triangles * sizeof(GpuTriangle));
     of_ping.lists.hold(room.entries * sizeof(std::uint32_t));
@@ -196,7 +194,8 @@ struct GpuSlices::Impl {
     of_ping.edges.hold(room.edges * sizeof(EdgeRecord));
   }
 
-  void upload_parts(const std::vector<PlacedPart>& placed, const PingSetting& setting) {
+  static void upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
+                           const PingSetting& setting) {
     const bool may_hide = setting.bend.straight() && setting.skip.on(SkipRule::hidden_faces);
     std::vector<PartRecord> records;
     std::vector<float> hides;
@@ -210,7 +209,7 @@ struct GpuSlices::Impl {
   }
 
   /// @return the first slices of the ping
-  std::vector<GpuSlice> upload_beams(const PingSetting& setting) {
+  static std::vector<GpuSlice> upload_beams(PingBuffers& of_ping, const PingSetting& setting) {
     const Fan& fan = setting.fan;
     std::vector<BeamRecord> records(static_cast<std::size_t>(fan.beam_count()) + 1);
     for (int beam = 0; beam <= fan.beam_count(); ++beam) {
@@ -260,7 +259,7 @@ struct GpuSlices::Impl {
             setting.weights};
   }
 
-  void run_list_things(const PingSetting& setting) {
+  void run_list_things(const PingBuffers& of_ping, const PingSetting& setting) const {
     compute.use(list_things, of_ping.ping);
     of_ping.parts.bind(slices_at);
     of_ping.things.bind(things_at);
@@ -273,18 +272,18 @@ struct GpuSlices::Impl {
     compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
   }
 
-  void upload_slices(const std::vector<GpuSlice>& slices) {
+  static void upload_slices(PingBuffers& of_ping, const std::vector<GpuSlice>& slices) {
     CountsRecord record;
     record.counts.slices = static_cast<std::uint32_t>(slices.size());
     record.rounds[0].slices = record.counts.slices;
     record.rounds[0].groups = std::min(record.counts.slices, static_cast<std::uint32_t>(most_groups));
     of_ping.counts.fill(std::vector<CountsRecord>{record}, GL_STREAM_DRAW);
     of_ping.room.slices = std::max(of_ping.room.slices, slices.size());
-    hold_ping();
+    hold(of_ping);
     of_ping.slices.write(slices);
   }
 
-  void run_see(int round) {
+  void run_see(const PingBuffers& of_ping, int round) const {
     compute.use(look, of_ping.ping);
     compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
     of_ping.slices.bind(slices_at);
@@ -300,7 +299,7 @@ struct GpuSlices::Impl {
                               sizeof(PingCounts) + static_cast<std::size_t>(round) * sizeof(RoundRecord));
   }
 
-  void run_refine(int round, const PingSetting& setting) {
+  void run_refine(const PingBuffers& of_ping, int round, const PingSetting& setting) const {
     compute.use(compare, of_ping.ping);
     compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
     of_ping.slices.bind(slices_at);
@@ -358,14 +357,13 @@ void GpuSlices::set_parts(const std::vector<PlacedPart>& parts) {
   impl_->clusters.fill(clusters);
 }
 
-void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& setting,
-                     const std::vector<GpuSlice>& slices) {
-  Impl& on = *impl_;
-  PingBuffers& ping = on.of_ping;
-  on.upload_parts(parts, setting);
-  const std::vector<GpuSlice> first = on.upload_beams(setting);
-  on.upload_slices(slices.empty() ? first : slices);
-  ping.ping.fill(std::vector<PingRecord>{on.record_of(setting)}, GL_STREAM_DRAW);
+void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
+                     const std::vector<GpuSlice>& slices) const {
+  const Impl& on = *impl_;
+  Impl::upload_parts(ping, parts, setting);
+  const std::vector<GpuSlice> first = Impl::upload_beams(ping, setting);
+  Impl::upload_slices(ping, slices.empty() ? first : slices);
+  ping.ping.fill(std::vector<PingRecord>{on.record_of(ping, setting)}, GL_STREAM_DRAW);
   ping.refinement.fill(std::vector<RefinementRecord>{Impl::refinement_of(setting)}, GL_STREAM_DRAW);
   on.compute.use(on.place, ping.ping);
   on.vertices.bind(vertices_at);
@@ -383,60 +381,21 @@ void GpuSlices::find(const std::vector<PlacedPart>& parts, const PingSetting& se
   on.compute.use(on.fill, ping.ping);
   const auto group = static_cast<std::size_t>(on.compute.group());
   on.compute.dispatch((ping.room.triangles + group - 1) / group);
-  on.run_list_things(setting);
+  on.run_list_things(ping, setting);
 }
 
-void GpuSlices::see(const PingSetting& setting, int rounds) {
+void GpuSlices::see(PingBuffers& ping, const PingSetting& setting, int rounds) const {
   const int most = setting.accuracy.most_divisions > 1 ? rounds : 1;
   for (int round = 0; round < most; ++round) {
-    impl_->run_see(round);
+    impl_->run_see(ping, round);
     if (round + 1 < most) {
-      impl_->run_refine(round, setting);
+      impl_->run_refine(ping, round, setting);
     }
   }
 }
 
-bool GpuSlices::had_room() {
-  PingBuffers& ping = impl_->of_ping;
-  const PingCounts needed = counts();
-  const bool fits = ping.room.fits(needed);
-  ping.room.grow(needed);
-  return fits;
-}
-
-PingBuffers& GpuSlices::buffers() {
-  return impl_->of_ping;
-}
-
 const Compute& GpuSlices::compute() const {
   return impl_->compute;
-}
-
-PingCounts GpuSlices::counts() {
-  return impl_->compute.read<PingCounts>(impl_->of_ping.counts, 1)[0];
-}
-
-std::vector<GpuTriangle> GpuSlices::triangles() {
-  const PingBuffers& ping = impl_->of_ping;
-  return impl_->compute.read<GpuTriangle>(ping.fan,
-                                          std::min<std::size_t>(counts().triangles, ping.room.triangles));
-}
-
-std::vector<GpuVisible> GpuSlices::visible() {
-  const PingBuffers& ping = impl_->of_ping;
-  return impl_->compute.read<GpuVisible>(ping.visible,
-                                         std::min<std::size_t>(counts().visible, ping.room.visible));
-}
-
-std::vector<GpuSlice> GpuSlices::slices() {
-  const PingBuffers& ping = impl_->of_ping;
-  return impl_->compute.read<GpuSlice>(ping.slices, std::min<std::size_t>(counts().slices, ping.room.slices));
-}
-
-std::vector<float> GpuSlices::sides() {
-  return impl_->compute.read<float>(
-      impl_->of_ping.sides,
-      std::min<std::size_t>(counts().slices, impl_->of_ping.room.slices) * 2 * slices::side_probes);
 }
 
 }  // namespace sonard::render

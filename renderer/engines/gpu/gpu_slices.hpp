@@ -19,7 +19,8 @@ namespace sonard::render {
 
 class EglContext;
 
-/// The triangles of a world on the GPU, and what slices of a fan see of them. Its context must be current in
+/// The triangles of a world on the GPU, and the shaders that find what slices of a fan see of them. All state
+/// of a ping is in its PingBuffers, so that several pings can be in flight. The context must be current in
 /// every call.
 class GpuSlices {
  public:
@@ -49,27 +50,15 @@ class GpuSlices {
   /// Begins a ping: places the parts (the same as of set_parts(), elsewhere) and lists their triangles for
   /// each beam.
   /// @param slices with which it begins; empty: those of first_slices()
-  void find(const std::vector<PlacedPart>& parts, const PingSetting& setting,
-            const std::vector<GpuSlice>& slices = {});
+  void find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
+            const std::vector<GpuSlice>& slices = {}) const;
 
   static constexpr int most_rounds = 12;
   /// Sees the slices, and divides them where they disagree or miss something. Does not wait for the GPU.
   /// @param rounds 1: none is divided
-  void see(const PingSetting& setting, int rounds = most_rounds);
+  void see(PingBuffers& ping, const PingSetting& setting, int rounds = most_rounds) const;
 
-  /// Waits for the GPU. @return false: a buffer was too small, and the ping must be repeated
-  bool had_room();
-
-  /// What the later stages of the ping use.
-  PingBuffers& buffers();
   const Compute& compute() const;
-
-  // The state of a ping for tests. Each waits for the GPU.
-  PingCounts counts();
-  std::vector<GpuTriangle> triangles();
-  std::vector<GpuVisible> visible();
-  std::vector<GpuSlice> slices();
-  std::vector<float> sides();  ///< [slice][port, starboard][probe]
 
  private:
   struct Impl;

@@ -106,18 +106,46 @@ struct PingOnCpu {
             .accuracy = accuracy,
             .skip = skip};
   }
-  /// Sees it with the GPU, in its own slices or in these.
-  void see_with(GpuSlices& gpu, int rounds, const std::vector<GpuSlice>& slices = {}) const {
-    const std::vector<PlacedPart> parts = placed(scene.world, scene.T_world_sonar);
-    gpu.set_parts(parts);
+};
+
+/// The same ping on the GPU.
+class PingOnGpu {
+ public:
+  /// @param rounds see GpuSlices::see()
+  /// @param slices with which it begins; empty: those of the GPU
+  PingOnGpu(EglContext& context, const GpuSlices::Options& options, const PingOnCpu& cpu, int rounds,
+            const std::vector<GpuSlice>& slices = {})
+      : gpu_(context, options) {
+    const std::vector<PlacedPart> parts = placed(cpu.scene.world, cpu.scene.T_world_sonar);
+    gpu_.set_parts(parts);
     bool has_room = false;
     for (int tries = 0; tries < 8 && !has_room; ++tries) {
-      gpu.find(parts, setting(), slices);
-      gpu.see(setting(), rounds);
-      has_room = gpu.had_room();
+      gpu_.find(buffers_, parts, cpu.setting(), slices);
+      gpu_.see(buffers_, cpu.setting(), rounds);
+      counts = read<PingCounts>(buffers_.counts, 1)[0];
+      has_room = buffers_.room.fits(counts);
+      buffers_.room.grow(counts);
     }
     EXPECT_TRUE(has_room);
   }
+
+  PingCounts counts{};
+  std::vector<GpuSlice> slices() const { return read<GpuSlice>(buffers_.slices, counts.slices); }
+  std::vector<GpuTriangle> triangles() const { return read<GpuTriangle>(buffers_.fan, counts.triangles); }
+  std::vector<GpuVisible> visible() const { return read<GpuVisible>(buffers_.visible, counts.visible); }
+  /// [slice][port, starboard][probe]
+  std::vector<float> sides() const {
+    return read<float>(buffers_.sides, std::size_t{counts.slices} * 2 * slices::side_probes);
+  }
+
+ private:
+  template <class T>
+  std::vector<T> read(const GpuBuffer& buffer, std::size_t count) const {
+    return gpu_.compute().read<T>(buffer, count);
+  }
+
+  GpuSlices gpu_;
+  PingBuffers buffers_{gpu_.compute().gl()};
 };
 
 class GpuSlicesTest : public ::testing::Test {
@@ -161,11 +189,10 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
   for (const SliceCell* cell : cells) {
     slices.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
   }
-  GpuSlices gpu(*context_, options);
-  ping.see_with(gpu, 1, slices);
+  const PingOnGpu gpu(*context_, options, ping, 1, slices);
   const std::vector<GpuSlice> seen = gpu.slices();
   Comparison result;
-  result.counts = gpu.counts();
+  result.counts = gpu.counts;
   result.slices = cells.size();
   EXPECT_EQ(seen.size(), cells.size());
   const auto triangles = gpu.triangles();
@@ -261,15 +288,14 @@ TEST_F(GpuSlicesTest, DividesTheSlicesThatTheCpuDivides) {
   for (const char* scene : {"swell100k", "docking", "b7_pipes", "b5_tank", "b3_cluster"}) {
     SCOPED_TRACE(scene);
     const PingOnCpu ping(scene);
-    GpuSlices gpu(*context_);
-    ping.see_with(gpu, GpuSlices::most_rounds);
+    const PingOnGpu gpu(*context_, {}, ping, GpuSlices::most_rounds);
     const std::vector<GpuSlice> slices = gpu.slices();
     const double same = same_slices(ping, slices);
     const auto kept = std::ranges::count_if(
         slices, [](const GpuSlice& slice) { return (slice.state & GpuSlice::is_divided) == 0; });
     std::cout << scene << ": " << kept << " slices for " << ping.cells.size() << ", " << same
               << " of the fan in the same ones, gap " << worst_gap(ping.fan, slices) << "\n";
-    EXPECT_EQ(gpu.counts().overflows, 0U);
+    EXPECT_EQ(gpu.counts.overflows, 0U);
     EXPECT_GT(same, 0.95);
     EXPECT_LT(worst_gap(ping.fan, slices), 1e-5);
   }
