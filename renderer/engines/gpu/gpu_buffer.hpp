@@ -40,12 +40,18 @@ class GpuBuffer {
       clear_with(bytes, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
     }
   }
-  /// Overwrites the beginning.
-  template <class T>
-  void write(const std::vector<T>& values) {
+  /// Replaces the buffer by one of `bytes` with any contents.
+  void allocate(std::size_t bytes) {
     select();
-    gl_.glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)),
-                        values.data());
+    bytes_ = bytes;
+    gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STATIC_DRAW);
+  }
+  /// Overwrites a part.
+  template <class T>
+  void write(const std::vector<T>& values, std::size_t first_byte = 0) {
+    select();
+    gl_.glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(first_byte),
+                        static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
   }
   std::size_t bytes() const { return bytes_; }
   /// Makes the next hold() allocate again.

@@ -9,6 +9,7 @@
 #include <osg/Program>
 
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/engines/gpu/gpu_meshes.hpp"
 #include "renderer/engines/gpu/shaders.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
 
@@ -23,25 +24,16 @@ struct PingRecord {
   float port_x, port_y, starboard_x, starboard_y;
   float port_rad, starboard_rad, upright_rad, widest_slice_rad;
   float up_x, up_y, up_z, bend_per_m;
-  std::int32_t beams, clusters;
+  std::int32_t beams, clusters, parts;
   std::int32_t is_convex;
   std::int32_t two_sided, cull;
   std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces,
       most_things, most_edges;
 };
 
-struct TriangleRecord {
-  std::uint32_t corners, mesh_triangle, shell;
-};
-
-struct ClusterRecord {
-  float x, y, z, radius_m;
-  std::uint32_t part, first_vertex, vertex_count, first_triangle, triangle_count;
-};
-
 struct PartRecord {
   slices::Placement placement;
-  std::uint32_t first_hiding, is_tall;
+  std::uint32_t first_hiding, is_tall, first_cluster, first_group;
 };
 
 struct BeamRecord {
@@ -94,9 +86,7 @@ constexpr std::size_t bytes_of_scratch = 16;
 constexpr int room_for_waiting = 64;
 
 enum Binding : unsigned {  // as in the shaders
-  vertices_at = 0,
-  triangles_at = 1,
-  clusters_at = 2,
+  meshes_at = 0,           // and 1, 2
   parts_at = 3,
   fan_at = 4,
   counts_at = 5,
@@ -126,15 +116,10 @@ std::int32_t as_int(std::size_t number) {
 struct GpuSlices::Impl {
   Compute compute;
   osg::ref_ptr<osg::Program> place, scan, fill, list_things, look, compare;
-  // Of the world:
-  GpuBuffer vertices, mesh_triangles, clusters;
-  std::size_t cluster_count = 0;
+  GpuMeshes meshes;
 
   Impl(EglContext& context, const Options& options)
-      : compute(context, options.group),
-        vertices(compute.gl()),
-        mesh_triangles(compute.gl()),
-        clusters(compute.gl()) {
+      : compute(context, options.group), meshes(compute.gl(), options.memory_mib << 20U) {
     place = compute.build("place.comp", shaders::place_comp);
     scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
     fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
@@ -145,7 +130,8 @@ struct GpuSlices::Impl {
         fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
   }
 
-  PingRecord record_of(const PingBuffers& of_ping, const PingSetting& setting) const {
+  static PingRecord record_of(const PingBuffers& of_ping, const PingSetting& setting, std::size_t clusters,
+                              std::size_t parts) {
     const Fan& fan_of_ping = setting.fan;
     const double port = fan_of_ping.edge_rad(0), starboard = fan_of_ping.edge_rad(fan_of_ping.beam_count());
     const double limit = std::atan(static_cast<double>(fan_of_ping.tan_limit()));
@@ -167,7 +153,8 @@ struct GpuSlices::Impl {
             setting.bend.up.z,
             setting.bend.per_m,
             fan_of_ping.beam_count(),
-            as_int(cluster_count),
+            as_int(clusters),
+            as_int(parts),
             narrow(port - starboard) < slices::half_turn ? 1 : 0,
             setting.two_sided ? 1 : 0,
             setting.skip.on(SkipRule::culled_clusters) ? 1 : 0,
@@ -194,18 +181,38 @@ struct GpuSlices::Impl {
     of_ping.edges.hold(room.edges * sizeof(EdgeRecord));
   }
 
-  static void upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
+  /// Uploads the parts that the fan may see.
+  /// @return number of their clusters
+  std::size_t upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
                            const PingSetting& setting) {
+    const auto may_be_seen = [&](const PlacedPart& part) {
+      return !setting.skip.on(SkipRule::culled_clusters) || !part.misses(setting.fan, setting.bend);
+    };
+    std::vector<std::shared_ptr<const MeshClusters>> needed;
+    for (const PlacedPart& part : placed) {
+      if (may_be_seen(part)) {
+        needed.push_back(part.clusters);
+      }
+    }
+    meshes.hold(needed);
     const bool may_hide = setting.bend.straight() && setting.skip.on(SkipRule::hidden_faces);
     std::vector<PartRecord> records;
     std::vector<float> hides;
+    std::size_t clusters = 0;
     for (const PlacedPart& part : placed) {
-      records.push_back({part.placement(), static_cast<std::uint32_t>(hides.size()), 0});
+      PartRecord record{part.placement(), static_cast<std::uint32_t>(hides.size()), 0, 0,
+                        static_cast<std::uint32_t>(clusters)};
+      if (may_be_seen(part)) {
+        record.first_cluster = meshes.first_cluster(part.clusters);
+        clusters += part.clusters->clusters.size();
+      }
+      records.push_back(record);
       part.append_hiding(may_hide, hides);
     }
     hides.push_back(0.0F);  // a buffer must not be empty
     of_ping.parts.fill(records, GL_STREAM_DRAW);
     of_ping.hiding.fill(hides, GL_STREAM_DRAW);
+    return clusters;
   }
 
   /// @return the first slices of the ping
@@ -320,61 +327,23 @@ GpuSlices::GpuSlices(EglContext& context, const Options& options)
     : impl_(std::make_unique<Impl>(context, options)) {}
 GpuSlices::~GpuSlices() = default;
 
-void GpuSlices::set_parts(const std::vector<PlacedPart>& parts) {
-  std::vector<float> vertices;
-  std::vector<TriangleRecord> triangles;
-  std::vector<ClusterRecord> clusters;
-  struct Begin {
-    std::uint32_t vertex, triangle;
-  };
-  std::vector<std::pair<const MeshClusters*, Begin>> uploaded;  // meshes that parts share are uploaded once
-  for (std::uint32_t p = 0; p < parts.size(); ++p) {
-    const MeshClusters& mesh = *parts[p].clusters;
-    auto known = std::ranges::find(uploaded, &mesh, [](const auto& entry) { return entry.first; });
-    if (known == uploaded.end()) {
-      const Begin begin{static_cast<std::uint32_t>(vertices.size() / 3),
-                        static_cast<std::uint32_t>(triangles.size())};
-      known = uploaded.insert(uploaded.end(), {&mesh, begin});
-      for (std::size_t v = 0; v < mesh.x.size(); ++v) {
-        vertices.insert(vertices.end(), {mesh.x[v], mesh.y[v], mesh.z[v]});
-      }
-      for (std::size_t t = 0; t < mesh.mesh_triangle.size(); ++t) {
-        const std::uint32_t corners = mesh.corners[0][t] | std::uint32_t{mesh.corners[1][t]} << 8U |
-                                      std::uint32_t{mesh.corners[2][t]} << 16U;
-        triangles.push_back({corners, mesh.mesh_triangle[t], mesh.shell[t]});
-      }
-    }
-    const Begin begin = known->second;
-    for (const MeshClusters::Cluster& c : mesh.clusters) {
-      clusters.push_back({c.centre_m.x, c.centre_m.y, c.centre_m.z, c.radius_m, p,
-                          begin.vertex + c.first_vertex, c.vertex_count, begin.triangle + c.first_triangle,
-                          c.triangle_count});
-    }
-  }
-  impl_->cluster_count = clusters.size();
-  impl_->vertices.fill(vertices);
-  impl_->mesh_triangles.fill(triangles);
-  impl_->clusters.fill(clusters);
-}
-
 void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
-                     const std::vector<GpuSlice>& slices) const {
-  const Impl& on = *impl_;
-  Impl::upload_parts(ping, parts, setting);
+                     const std::vector<GpuSlice>& slices) {
+  Impl& on = *impl_;
+  const std::size_t clusters = on.upload_parts(ping, parts, setting);
   const std::vector<GpuSlice> first = Impl::upload_beams(ping, setting);
   Impl::upload_slices(ping, slices.empty() ? first : slices);
-  ping.ping.fill(std::vector<PingRecord>{on.record_of(ping, setting)}, GL_STREAM_DRAW);
+  ping.ping.fill(std::vector<PingRecord>{Impl::record_of(ping, setting, clusters, parts.size())},
+                 GL_STREAM_DRAW);
   ping.refinement.fill(std::vector<RefinementRecord>{Impl::refinement_of(setting)}, GL_STREAM_DRAW);
   on.compute.use(on.place, ping.ping);
-  on.vertices.bind(vertices_at);
-  on.mesh_triangles.bind(triangles_at);
-  on.clusters.bind(clusters_at);
+  on.meshes.bind(meshes_at);
   ping.parts.bind(parts_at);
   ping.fan.bind(fan_at);
   ping.counts.bind(counts_at);
   ping.beams.bind(beams_at);
   ping.hiding.bind(hiding_at);
-  on.compute.dispatch(on.cluster_count);
+  on.compute.dispatch(clusters);
   ping.lists.bind(lists_at);
   on.compute.use(on.scan, ping.ping);
   on.compute.dispatch(1);
@@ -392,6 +361,10 @@ void GpuSlices::see(PingBuffers& ping, const PingSetting& setting, int rounds) c
       impl_->run_refine(ping, round, setting);
     }
   }
+}
+
+const GpuMeshes& GpuSlices::meshes() const {
+  return impl_->meshes;
 }
 
 const Compute& GpuSlices::compute() const {

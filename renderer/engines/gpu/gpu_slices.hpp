@@ -18,6 +18,7 @@
 namespace sonard::render {
 
 class EglContext;
+class GpuMeshes;
 
 /// The triangles of a world on the GPU, and the shaders that find what slices of a fan see of them. All state
 /// of a ping is in its PingBuffers, so that several pings can be in flight. The context must be current in
@@ -27,6 +28,7 @@ class GpuSlices {
   struct Options {
     int group = 0;  ///< invocations of a group, each with a piece of the sweep; 0: as many as suit the device
     int segments = 960;  ///< of a slice that are seen at a time; 960 fit in 32 KiB, which every OpenGL has
+    std::uint64_t memory_mib = 4096;  ///< bound of the meshes, GpuOptions::memory_mib
   };
   /// @throws RendererError if a shader does not build
   explicit GpuSlices(EglContext& context);
@@ -34,9 +36,6 @@ class GpuSlices {
   ~GpuSlices();
   GpuSlices(const GpuSlices&) = delete;
   GpuSlices& operator=(const GpuSlices&) = delete;
-
-  /// Uploads the clusters of all parts.
-  void set_parts(const std::vector<PlacedPart>& parts);
 
   struct PingSetting {
     const Fan& fan;
@@ -47,11 +46,12 @@ class GpuSlices {
     bool two_sided = true;  ///< false: triangles seen from behind are invisible
     SkipSwitches skip{};
   };
-  /// Begins a ping: places the parts (the same as of set_parts(), elsewhere) and lists their triangles for
-  /// each beam.
+  /// Begins a ping: uploads the parts that the fan may see, places them, and lists their triangles for each
+  /// beam.
   /// @param slices with which it begins; empty: those of first_slices()
+  /// @throws RequestError, RendererError as GpuMeshes::hold()
   void find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
-            const std::vector<GpuSlice>& slices = {}) const;
+            const std::vector<GpuSlice>& slices = {});
 
   static constexpr int most_rounds = 12;
   /// Sees the slices, and divides them where they disagree or miss something. Does not wait for the GPU.
@@ -59,6 +59,7 @@ class GpuSlices {
   void see(PingBuffers& ping, const PingSetting& setting, int rounds = most_rounds) const;
 
   const Compute& compute() const;
+  const GpuMeshes& meshes() const;
 
  private:
   struct Impl;

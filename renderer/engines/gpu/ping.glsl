@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform Ping {
   float port_x, port_y, starboard_x, starboard_y;                // unit normals of its sides, outwards
   float port_rad, starboard_rad, upright_rad, widest_slice_rad;  // see Fan
   float up_x, up_y, up_z, bend_per_m;                            // see Refraction
-  int beams, clusters;
+  int beams, clusters, parts;
   int is_convex;        // the fan is narrower than half a turn
   int two_sided, cull;  // 0: back faces are not seen; no cluster is culled
   int most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces, most_things,
@@ -36,6 +36,14 @@ struct Visible {
   float low_slope, low_reach, high_slope, high_reach;
   float normal_h, normal_s, normal_z;
   uint triangle;  // in `fan`
+};
+
+// A part of a body.
+struct Part {
+  Placement placement;
+  uint first_hiding;                // of its shells: Shell::outwards if they hide their inner sides, or 0
+  uint is_tall;                     // 1: some cluster in the fan is higher than the gap between two probes
+  uint first_cluster, first_group;  // in `clusters`, and of all clusters of the ping
 };
 
 // A triangle in the fan, in the sonar frame.

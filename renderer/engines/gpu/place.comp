@@ -11,12 +11,7 @@ struct Triangle {
 const uint no_shell = 0xffffffffu;
 struct Cluster {
   float x, y, z, radius_m;  // bounding sphere, in the frame of the part
-  uint part, first_vertex, vertex_count, first_triangle, triangle_count;
-};
-struct Part {
-  Placement placement;
-  uint first_hiding;
-  uint is_tall;  // 1: some cluster in the fan is higher than the gap between two probes
+  uint first_vertex, vertex_count, first_triangle, triangle_count;
 };
 layout(std430, binding = 0) readonly buffer Vertices { float vertices[]; };
 layout(std430, binding = 1) readonly buffer Triangles { Triangle triangles[]; };
@@ -121,14 +116,28 @@ int last_beam(float low) {
 Corner corner(uint i) { return Corner(s_x[i], s_y[i], s_z[i]); }
 Sight sight(uint i) { return Sight(s_azimuth[i], s_squared[i], s_tangent[i]); }
 
+// The last part whose clusters do not begin behind this one.
+uint part_of(uint number) {
+  uint begin = 0u, end = uint(ping.parts);
+  while (begin + 1u < end) {
+    uint middle = (begin + end) / 2u;
+    if (parts[middle].first_group <= number) {
+      begin = middle;
+    } else {
+      end = middle;
+    }
+  }
+  return begin;
+}
+
 void main() {
   uint number = group_number();
   if (number >= uint(ping.clusters)) {
     return;
   }
-  uint lane = gl_LocalInvocationID.x;
-  Cluster cluster = clusters[number];
-  Placement placement = parts[cluster.part].placement;
+  uint lane = gl_LocalInvocationID.x, part = part_of(number);
+  Cluster cluster = clusters[parts[part].first_cluster + number - parts[part].first_group];
+  Placement placement = parts[part].placement;
   bool out_of_fan = is_out(cluster, placement);
   if (out_of_fan && ping.cull != 0) {
     if (lane == 0u) {
@@ -173,7 +182,7 @@ void main() {
       continue;
     }
     float outwards =
-        triangle.shell == no_shell ? 0.0 : hiding[parts[cluster.part].first_hiding + triangle.shell];
+        triangle.shell == no_shell ? 0.0 : hiding[parts[part].first_hiding + triangle.shell];
     if (bounds.thin == 0 && is_turned_away(a, b, c, outwards)) {
       atomicAdd(counts.hidden_faces, 1u);
       continue;
@@ -186,7 +195,7 @@ void main() {
     t.x2 = c.x; t.y2 = c.y; t.z2 = c.z;
     t.low_azimuth = whole_turn ? -half_turn : bounds.low_azimuth;
     t.high_azimuth = whole_turn ? half_turn : bounds.high_azimuth;
-    t.flags = (cluster.part << part_shift) | (bounds.upright != 0 ? has_upright_edge : 0u) |
+    t.flags = (part << part_shift) | (bounds.upright != 0 ? has_upright_edge : 0u) |
               (dot(across, vec3(a.x, a.y, a.z)) > 0.0 ? is_back_face : 0u);
     if (!out_of_fan) {
       t.flags |= (bounds.thin != 0 ? is_thin : 0u) | (small ? is_small : 0u) | is_of_low_cluster;
@@ -223,7 +232,7 @@ void main() {
   if (lane == 0u) {
     s_first = atomicAdd(counts.triangles, s_kept);
     if (!out_of_fan && s_steep != 0) {
-      parts[cluster.part].is_tall = 1u;
+      parts[part].is_tall = 1u;
     }
   }
   barrier();

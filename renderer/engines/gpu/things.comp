@@ -3,11 +3,6 @@
 // which slices are divided. As SliceCutter::list_thin() and SliceCutter::list_upright_edges().
 layout(local_size_x = GROUP) in;
 
-struct Part {
-  Placement placement;
-  uint first_hiding;
-  uint is_tall;
-};
 layout(std430, binding = 0) readonly buffer Parts { Part parts[]; };
 layout(std430, binding = 1) coherent buffer Things { Thing things[]; };
 layout(std430, binding = 2) writeonly buffer Edges { Edge edges[]; };

@@ -68,6 +68,7 @@ MeshClusters::MeshClusters(const TriangleMesh& mesh, bool find_shells)
   for (std::size_t next = 0; next < order.size();) {
     add_cluster(mesh, order, next, local_of_vertex);
   }
+  find_sphere();
   shell.resize(mesh_triangle.size(), Shells::none);
   if (find_shells) {
     std::ranges::transform(mesh_triangle, shell.begin(),
@@ -120,6 +121,27 @@ void MeshClusters::close_cluster(Cluster& cluster) const {
     cluster.radius_m =
         std::max(cluster.radius_m, glm::distance(cluster.centre_m, glm::vec3(x[i], y[i], z[i])));
   }
+}
+
+void MeshClusters::find_sphere() {
+  if (clusters.empty()) {
+    return;
+  }
+  glm::vec3 low(clusters[0].centre_m), high = low;
+  for (const Cluster& cluster : clusters) {
+    low = glm::min(low, cluster.centre_m - cluster.radius_m);
+    high = glm::max(high, cluster.centre_m + cluster.radius_m);
+  }
+  centre_m = (low + high) * 0.5F;
+  for (const Cluster& cluster : clusters) {
+    radius_m = std::max(radius_m, glm::distance(centre_m, cluster.centre_m) + cluster.radius_m);
+  }
+}
+
+bool PlacedPart::misses(const Fan& fan, const Refraction& bend) const {
+  const glm::vec3 centre_m = R_sonar_part * clusters->centre_m + t_sonar_part_m;
+  const float spread_m = bend.straight() ? 0.0F : bend.spread_m(centre_m, clusters->radius_m);
+  return fan.misses(bend.straight() ? centre_m : bend.point(centre_m), clusters->radius_m + spread_m);
 }
 
 slices::Placement PlacedPart::placement() const {

@@ -11,8 +11,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "renderer/engines/slices/fan.hpp"
 #include "renderer/engines/slices/shells.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
+#include "renderer/scene/refraction.hpp"
 #include "renderer/scene/world.hpp"
 
 namespace sonard::render {
@@ -32,6 +34,8 @@ struct MeshClusters {
   static constexpr std::size_t most_triangles = 96;
 
   std::vector<Cluster> clusters;
+  glm::vec3 centre_m{0.0F};  ///< of a sphere around all clusters, in the frame of the part
+  float radius_m = 0.0F;
   std::vector<float> x, y, z;                        ///< vertices, cluster after cluster
   std::array<std::vector<std::uint8_t>, 3> corners;  ///< of each triangle, within its cluster's vertices
   std::vector<std::uint32_t> mesh_triangle;          ///< its number in the mesh
@@ -45,6 +49,7 @@ struct MeshClusters {
   void add_cluster(const TriangleMesh& mesh, const std::vector<std::uint32_t>& order, std::size_t& next,
                    std::vector<std::int32_t>& local_of_vertex);
   void close_cluster(Cluster& cluster) const;
+  void find_sphere();
 };
 
 /// The pose of one part of a body in this ping: p_sonar = rotation * p_part + translation, computed in
@@ -54,6 +59,8 @@ struct PlacedPart {
   glm::mat3 R_sonar_part{1.0F};
   glm::vec3 t_sonar_part_m{0.0F};
 
+  /// False if the fan may see the part.
+  bool misses(const Fan& fan, const Refraction& bend) const;
   slices::Placement placement() const;
   /// Appends Shell::outwards of each shell whose inner side is hidden from the sonar; 0 if it may be seen.
   /// @param may_hide false: no shell hides its inner side

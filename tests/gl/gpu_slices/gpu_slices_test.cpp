@@ -117,7 +117,6 @@ class PingOnGpu {
             const std::vector<GpuSlice>& slices = {})
       : gpu_(context, options) {
     const std::vector<PlacedPart> parts = placed(cpu.scene.world, cpu.scene.T_world_sonar);
-    gpu_.set_parts(parts);
     bool has_room = false;
     for (int tries = 0; tries < 8 && !has_room; ++tries) {
       gpu_.find(buffers_, parts, cpu.setting(), slices);

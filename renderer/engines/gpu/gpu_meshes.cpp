@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/engines/gpu/gpu_meshes.hpp"
+
+#include <set>
+
+#include <fmt/format.h>
+
+#include "renderer/engines/gpu/gl_errors.hpp"
+#include "renderer/errors.hpp"
+
+namespace sonard::render {
+
+namespace {
+
+// Records of place.comp.
+
+struct TriangleRecord {
+  std::uint32_t corners, mesh_triangle, shell;
+};
+
+struct ClusterRecord {
+  float x, y, z, radius_m;
+  std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
+};
+
+constexpr std::size_t vertex_bytes = 3 * sizeof(float);
+
+}  // namespace
+
+std::uint64_t GpuMeshes::Sizes::bytes() const {
+  return vertices * vertex_bytes + triangles * sizeof(TriangleRecord) + clusters * sizeof(ClusterRecord);
+}
+
+bool GpuMeshes::Sizes::within(const Sizes& room) const {
+  return vertices <= room.vertices && triangles <= room.triangles && clusters <= room.clusters;
+}
+
+GpuMeshes::Sizes GpuMeshes::Sizes::operator+(const Sizes& more) const {
+  return {vertices + more.vertices, triangles + more.triangles, clusters + more.clusters};
+}
+
+GpuMeshes::Sizes GpuMeshes::sizes_of(const MeshClusters& mesh) {
+  return {mesh.x.size(), mesh.mesh_triangle.size(), mesh.clusters.size()};
+}
+
+void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes) {
+  const std::set<std::shared_ptr<const MeshClusters>> needed(meshes.begin(), meshes.end());
+  Sizes all, missing;
+  for (const auto& mesh : needed) {
+    all = all + sizes_of(*mesh);
+    missing = held_.contains(mesh) ? missing : missing + sizes_of(*mesh);
+  }
+  if (all.bytes() > bound_bytes_) {
+    throw RequestError(fmt::format(
+        "the part of this world that a sonar sees takes {} bytes of video memory, and gpu.memory_mib "
+        "allows {} ({} MiB): raise it, or choose engine: cpu",
+        all.bytes(), bound_bytes_, bound_bytes_ >> 20U));
+  }
+  if (!(used_ + missing).within(room_)) {
+    start_again(all);
+  }
+  for (const auto& mesh : meshes) {  // in the order of the world, which is the same in every run
+    if (!held_.contains(mesh)) {
+      held_[mesh] = upload(*mesh);
+    }
+  }
+  const GlErrors errors = take_gl_errors();
+  if (errors.out_of_memory) {
+    throw RendererError(
+        fmt::format("the GPU has less video memory than gpu.memory_mib allows: {} bytes of the "
+                    "world do not fit; lower it, or choose engine: cpu",
+                    bytes()));
+  }
+  if (errors.any()) {
+    throw RendererError(errors.text("uploading the world"));
+  }
+}
+
+/// Drops all meshes, and makes room for these: and for as many again, if the bound allows it and earlier ones
+/// were held.
+void GpuMeshes::start_again(const Sizes& needed) {
+  room_ = !held_.empty() && (needed + needed).bytes() <= bound_bytes_ ? needed + needed : needed;
+  used_ = {};
+  held_.clear();
+  vertices_.allocate(room_.vertices * vertex_bytes);
+  triangles_.allocate(room_.triangles * sizeof(TriangleRecord));
+  clusters_.allocate(room_.clusters * sizeof(ClusterRecord));
+}
+
+std::uint32_t GpuMeshes::upload(const MeshClusters& mesh) {
+  std::vector<float> vertices;
+  for (std::size_t v = 0; v < mesh.x.size(); ++v) {
+    vertices.insert(vertices.end(), {mesh.x[v], mesh.y[v], mesh.z[v]});
+  }
+  std::vector<TriangleRecord> triangles;
+  for (std::size_t t = 0; t < mesh.mesh_triangle.size(); ++t) {
+    const std::uint32_t corners = mesh.corners[0][t] | std::uint32_t{mesh.corners[1][t]} << 8U |
+                                  std::uint32_t{mesh.corners[2][t]} << 16U;
+    triangles.push_back({corners, mesh.mesh_triangle[t], mesh.shell[t]});
+  }
+  std::vector<ClusterRecord> clusters;
+  const auto vertex = static_cast<std::uint32_t>(used_.vertices),
+             triangle = static_cast<std::uint32_t>(used_.triangles);
+  for (const MeshClusters::Cluster& c : mesh.clusters) {
+    clusters.push_back({c.centre_m.x, c.centre_m.y, c.centre_m.z, c.radius_m, vertex + c.first_vertex,
+                        c.vertex_count, triangle + c.first_triangle, c.triangle_count});
+  }
+  vertices_.write(vertices, used_.vertices * vertex_bytes);
+  triangles_.write(triangles, used_.triangles * sizeof(TriangleRecord));
+  clusters_.write(clusters, used_.clusters * sizeof(ClusterRecord));
+  const auto first = static_cast<std::uint32_t>(used_.clusters);
+  used_ = used_ + sizes_of(mesh);
+  bytes_uploaded_ += sizes_of(mesh).bytes();
+  return first;
+}
+
+void GpuMeshes::bind(unsigned first_binding) const {
+  vertices_.bind(first_binding);
+  triangles_.bind(first_binding + 1);
+  clusters_.bind(first_binding + 2);
+}
+
+}  // namespace sonard::render

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The meshes of a world in video memory, for compute shaders.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/slices/mesh_clusters.hpp"
+
+namespace sonard::render {
+
+/// Holds the clusters of the meshes that pings need, each mesh once, within a bound. If there is no room for
+/// another mesh, those that the ping does not need are dropped. The context must be current in every call.
+class GpuMeshes {
+ public:
+  GpuMeshes(osg::GLExtensions& gl, std::uint64_t bound_bytes)
+      : bound_bytes_(bound_bytes), vertices_(gl), triangles_(gl), clusters_(gl) {}
+
+  /// Uploads what is missing of these meshes. Shaders of earlier pings still see what they were given.
+  /// @throws RequestError if they exceed the bound; then nothing changes
+  /// @throws RendererError if OpenGL has no room for them
+  void hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes);
+
+  /// Index of the first cluster of a mesh of the last hold().
+  std::uint32_t first_cluster(const std::shared_ptr<const MeshClusters>& mesh) const {
+    return held_.at(mesh);
+  }
+  /// Binds vertices, triangles and clusters to three bindings.
+  void bind(unsigned first_binding) const;
+
+  std::uint64_t bytes() const { return vertices_.bytes() + triangles_.bytes() + clusters_.bytes(); }
+  /// Sum since construction, including repeated uploads.
+  std::uint64_t bytes_uploaded() const { return bytes_uploaded_; }
+
+ private:
+  /// Of records.
+  struct Sizes {
+    std::size_t vertices = 0, triangles = 0, clusters = 0;
+
+    std::uint64_t bytes() const;
+    bool within(const Sizes& room) const;
+    Sizes operator+(const Sizes& more) const;
+  };
+  static Sizes sizes_of(const MeshClusters& mesh);
+
+  void start_again(const Sizes& needed);
+  /// @return index of its first cluster
+  std::uint32_t upload(const MeshClusters& mesh);
+
+  const std::uint64_t bound_bytes_;
+  std::uint64_t bytes_uploaded_ = 0;
+  GpuBuffer vertices_, triangles_, clusters_;
+  Sizes room_, used_;
+  std::map<std::shared_ptr<const MeshClusters>, std::uint32_t> held_;  ///< their first clusters
+};
+
+}  // namespace sonard::render
