@@ -27,7 +27,6 @@ void FacetArrays::lay_out(const std::vector<VisibleSegment>& visible, const std:
   }
 }
 
-/// Incidences up to half the turn away count too: cos(phi - a) <= cos phi + a sin phi.
 SONARD_SIMD_CLONES
 void FacetArrays::find_turns(const VisibleArrays& visible, const NormalArrays& normals, float width_rad) {
   const float* __restrict low = visible.low.data();
@@ -47,10 +46,7 @@ void FacetArrays::find_turns(const VisibleArrays& visible, const NormalArrays& n
     const float slope = std::sqrt(variance[i]);
     slopes_per_t[i] = turn.along_per_t / slope;
     slopes_across[i] = turn.across_rad / slope;
-    const float sine2 = 1 - turn.cosine * turn.cosine;
-    const float sine = std::sqrt(sine2 > 0 ? sine2 : 0.0F);
-    const float half_turn = 0.5F * (turn.along_per_t * (high[i] - low[i]) + turn.across_rad);
-    responds[i] = turn.cosine + half_turn * sine > least_cosine[i] ? 1.0F : 0.0F;
+    responds[i] = slices::facets_may_respond(turn, high[i] - low[i], least_cosine[i]) ? 1.0F : 0.0F;
   }
 }
 

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "renderer/engines/cpu/normal_arrays.hpp"
-#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/visible_arrays.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
+#include "renderer/engines/slices/slice_math.hpp"
 
 namespace sonard::render {
 
@@ -35,7 +36,7 @@ class FacetArrays {
   /// The same turn in rms slopes m.
   float slopes_across(std::size_t i) const { return slopes_across_[i]; }
   /// True if the echo changes too much across the wedge for three samples.
-  bool is_wide(std::size_t i) const { return slopes_across_[i] > most_across; }
+  bool is_wide(std::size_t i) const { return slopes_across_[i] > slices::widest_facets; }
 
   /// See SegmentFacets.
   float mean(std::size_t i) const { return mean_[i]; }
@@ -43,8 +44,6 @@ class FacetArrays {
   float gradient(std::size_t i) const { return gradient_[i]; }
 
  private:
-  static constexpr float most_across = 2.5F;
-
   std::vector<float> strength_, variance_, least_cosine_;  ///< Backscatter
   std::vector<float> responds_, slopes_per_t_, slopes_across_;
   std::vector<float> mean_, moment_, gradient_;

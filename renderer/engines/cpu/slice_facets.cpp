@@ -74,14 +74,10 @@ void respond_at(const FacetsAt& facets, float t, const float* __restrict x, std:
 
 }  // namespace
 
-/// On p = h (1, x, t) the surface is perpendicular to its normal: (ln h)' = -n_s / (n . q). The range is h
-/// times the length of q.
 float FacetSight::range_slope(float t, float place) const {
-  constexpr float steepest = 10.0F;  // 84 degrees off: a silhouette
-  const float x = place * width_rad_;
-  const glm::vec3 q(1, x, t), n = normals_.at + x * normals_.per_x + t * normals_.per_t;
-  const float slope = -n.y / glm::dot(n, q);
-  return std::clamp(slope, -steepest, steepest) + x / glm::dot(q, q);
+  const auto& [at, per_x, per_t] = normals_;
+  return slices::range_slope({at.x, at.y, at.z, per_x.x, per_x.y, per_x.z, per_t.x, per_t.y, per_t.z},
+                             place * width_rad_, t);
 }
 
 void FacetSight::respond(const VisibleSegment& segment, std::span<SegmentFacets> facets) const {

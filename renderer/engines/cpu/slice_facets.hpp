@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
 #include "renderer/engines/cpu/vertex_normals.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 
 namespace sonard::render {
 
@@ -20,7 +20,7 @@ struct SegmentFacets {
 /// Normals and directions over one segment. The surface continues beside the segment like its triangle.
 class FacetSight {
  public:
-  static constexpr int most_parts = 16;
+  static constexpr auto most_parts = static_cast<std::size_t>(slices::most_side_by_side);
 
   /// @param slopes_across turn of the echo's direction across the wedge, in rms slopes m
   FacetSight(const Backscatter& backscatter, const NormalRun& normals, float width_rad, float slopes_across)

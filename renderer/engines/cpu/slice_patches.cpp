@@ -15,31 +15,9 @@ namespace sonard::render {
 
 namespace {
 
-constexpr int pattern_steps = 1024;
-constexpr int most_divisions = 16;  // of a segment at once
-constexpr int most_rounds = 6;      // near a foot point, parts are divided again
-constexpr auto most_side_by_side = static_cast<float>(FacetSight::most_parts);  // patches of a segment
 constexpr float anything = std::numeric_limits<float>::infinity();
 
-/// Largest height of a segment that spreads over many range bins, re the fan's half height.
-float share_of_pattern(float linearity) {
-  return 0.36F * std::sqrt(linearity);
-}
-constexpr float share_in_one_place = 0.25F;
-
 }  // namespace
-
-ElevationPattern::ElevationPattern(const Aperture& aperture, bool tabled_if_flat)
-    : tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))),
-      varies_(aperture.elevation != Aperture::Elevation::top_hat) {
-  if (!varies_ && !tabled_if_flat) {
-    return;
-  }
-  for (int i = 0; i <= pattern_steps; ++i) {
-    const double t = static_cast<double>(tan_limit_) * (2.0 * i / pattern_steps - 1);
-    weight_.push_back(static_cast<float>(aperture.elevation_weight(std::atan(t))));
-  }
-}
 
 std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>& patches) {
   visible_ = &request.visible;
@@ -57,7 +35,7 @@ std::uint64_t SlicePatcher::make(const Request& request, std::vector<EchoPatch>&
       facets_.find_turns(seen_, normals_, request.slice.width_rad);
     }
     find_gradients(request);
-  } while (rounds++ < most_rounds && divide_uneven(request));
+  } while (rounds++ < slices::most_division_rounds && divide_uneven(request));
   if (request.any_facets) {
     facets_.respond(seen_, normals_, request.slice.width_rad);
   }
@@ -127,13 +105,10 @@ void SlicePatcher::add_patches(const Request& request, std::size_t i, std::vecto
   const FacetSight sight = sight_of(request, i);
   const float wedge_m = range_mid_[i] * request.slice.width_rad;
   const float moved_m = wedge_m * sight.range_slope(t, 0.0F) * centroid_offset_[i];
-  // Both the move and the curvature of a part fall with the square of the number of parts.
   const float facets_share = 1 - response_without_facets_[i] / response_[i];
   const float sagitta_m =
       0.125F * wedge_m * facets_share * (sight.range_slope(t, 0.5F) - sight.range_slope(t, -0.5F));
-  const float off_m = std::max(std::abs(moved_m), std::abs(sagitta_m));
-  const float wanted = std::sqrt(off_m / allowed_m);
-  const float count = std::clamp(std::ceil(wanted), 1.0F, most_side_by_side);
+  const auto count = static_cast<float>(slices::patches_side_by_side(moved_m, sagitta_m, allowed_m));
   if (count == 1.0F) {
     patches.back().range_a_m += moved_m;
     patches.back().range_b_m += moved_m;
@@ -192,10 +167,7 @@ void SlicePatcher::lay_out(const Request& request) {
   }
 }
 
-/// Computes ranges at both ends and in the middle, smears of the ends, incidence and solid angle. On the
-/// plane n.p = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D and the range sqrt(1 + t^2) h. An end that
-/// moves by m = dt / d azimuth changes range by dr/d azimuth + m dr/dt (docs/physics.md 2.3, equation 2,
-/// along the edge).
+/// Computes ranges at both ends and in the middle, smears of the ends, incidence and solid angle.
 SONARD_SIMD_CLONES
 void SlicePatcher::measure(const Request& request) {
   const float width = request.slice.width_rad;
@@ -221,23 +193,22 @@ void SlicePatcher::measure(const Request& request) {
   float* __restrict cosine_gradient = cosine_gradient_.data();
   float* __restrict cosine_mid = cosine_mid_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const float t1 = low[i], t2 = high[i];
     const slices::PlaneLine plane{w_at_0[i], w_slope[i], normal_h[i], normal_s[i], normal_z[i]};
-    const slices::PlanePoint p1 = slices::point_of_plane(plane, t1, width);
-    const slices::PlanePoint p2 = slices::point_of_plane(plane, t2, width);
-    const slices::PlanePoint pm = slices::point_of_plane(plane, 0.5F * (t1 + t2), width);
-    range_low[i] = p1.range_m;
-    range_mid[i] = pm.range_m;
-    range_high[i] = p2.range_m;
-    by_azimuth_low[i] = p1.by_azimuth + p1.by_t * low_slope[i];
-    by_azimuth_high[i] = p2.by_azimuth + p2.by_t * high_slope[i];
-    smear_low[i] = std::abs(by_azimuth_low[i]) * width;
-    smear_high[i] = std::abs(by_azimuth_high[i]) * width;
-    const slices::CosineRun cosine = slices::cosine_run(p1.cosine, pm.cosine, p2.cosine);
+    const slices::PlaneSegment segment =
+        slices::segment_of_plane(plane, low[i], high[i], low_slope[i], high_slope[i], width);
+    range_low[i] = segment.range_low;
+    range_mid[i] = segment.range_mid;
+    range_high[i] = segment.range_high;
+    by_azimuth_low[i] = segment.by_azimuth_low;
+    by_azimuth_high[i] = segment.by_azimuth_high;
+    smear_low[i] = std::abs(segment.by_azimuth_low) * width;
+    smear_high[i] = std::abs(segment.by_azimuth_high) * width;
+    const slices::CosineRun cosine =
+        slices::cosine_run(segment.cosine_low, segment.cosine_mid, segment.cosine_high);
     cos_phi[i] = cosine.mean < 1 ? cosine.mean : 1.0F;
     cosine_gradient[i] = cosine.gradient;
-    cosine_mid[i] = pm.cosine;
-    solid_angle[i] = (t2 / p2.length - t1 / p1.length) * width;
+    cosine_mid[i] = segment.cosine_mid;
+    solid_angle[i] = segment.solid_angle;
   }
 }
 
@@ -320,10 +291,8 @@ SONARD_SIMD_CLONES
 bool SlicePatcher::mark_uneven(const Request& request) {
   const auto count = visible_->size();
   const float allowed_m = request.linearity * request.line_m;
-  const float most_height =
-      request.pattern.varies()
-          ? std::min(share_in_one_place, share_of_pattern(request.linearity)) * request.tan_limit
-          : anything;
+  const slices::PatchLimits limits = limits_of(request);
+  const float most_height = std::min(limits.height, limits.height_in_one_place);
   const float most_slopes = request.any_facets ? std::min(1.0F, request.facet_slopes) : anything;
   const std::int32_t otherwise = request.any_mapped ? 0 : 1;
   const float* __restrict low = seen_.low.data();
@@ -347,51 +316,31 @@ bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segme
   return map != nullptr && map->levels.size() > 1;  // one texel has no bumps
 }
 
+slices::PatchLimits SlicePatcher::limits_of(const Request& request) {
+  const bool varies = request.pattern.varies();
+  return {.displaced_m = request.linearity * request.line_m,
+          .furthest_m = request.max_range_m,
+          .half_line_m = 0.5F * request.line_m,
+          .mapped_m = request.mapped_lines * request.line_m,
+          .facet_slopes = request.facet_slopes,
+          .height = varies ? slices::height_in_many_lines(request.linearity) * request.tan_limit : anything,
+          .height_in_one_place = varies ? slices::height_in_one_place * request.tan_limit : anything};
+}
+
 /// Number of parts into which a segment must be divided.
 int SlicePatcher::parts_of(const Request& request, std::size_t i) const {
-  const float allowed_m = request.linearity * request.line_m;
-  const float span_m = std::abs(range_mid_[i] - range_low_[i]) + std::abs(range_high_[i] - range_mid_[i]);
-  float parts = 1.0F;
-  if (displaced_[i] > allowed_m) {
-    const bool turns = (range_mid_[i] - range_low_[i]) * (range_high_[i] - range_mid_[i]) < 0;
-    const bool has_gradient = plain_[i] > 0 && range_gradient_[i] != 0.0F;
-    // The displacement falls with the square of the length, or with its third power if the echo has a
-    // gradient.
-    const float excess = displaced_[i] / allowed_m;
-    parts = turns ? 2.0F : 1.0F + std::floor(has_gradient ? std::cbrt(excess) : std::sqrt(excess));
-  }
-  const bool in_range = std::min({range_low_[i], range_mid_[i], range_high_[i]}) < request.max_range_m;
-  if (request.any_mapped && in_range && span_m > request.mapped_lines * request.line_m &&
-      is_mapped(request, (*visible_)[i])) {
-    parts = std::max(parts, 1.0F + std::floor(span_m / (request.mapped_lines * request.line_m)));
-  }
-  if (in_range && request.any_facets) {
-    parts = std::max(parts, parts_for_facets(request, i, span_m));
-  }
-  if (in_range && request.pattern.varies()) {
-    parts = std::max(parts, parts_for_pattern(request, i, span_m));
-  }
-  return static_cast<int>(std::min(parts, static_cast<float>(most_divisions)));
-}
-
-/// Number of parts with a nearly linear elevation pattern, or with an accurate mean of it if a part echoes in
-/// one place.
-float SlicePatcher::parts_for_pattern(const Request& request, std::size_t i, float span_m) const {
-  const float smear_m = 0.5F * (smear_low_[i] + smear_high_[i]);
-  const bool one_place = span_m < std::max(0.5F * request.line_m, smear_m);
-  const float share = one_place ? share_in_one_place : share_of_pattern(request.linearity);
-  return std::ceil((seen_.high[i] - seen_.low[i]) / (share * request.tan_limit));
-}
-
-/// Number of parts with nearly constant echo of facets if a part lies in one line, or nearly linear echo if
-/// it spreads over more.
-float SlicePatcher::parts_for_facets(const Request& request, std::size_t i, float span_m) const {
-  if (!facets_.may_respond(i)) {
-    return 1.0F;
-  }
-  const VisibleSegment& segment = (*visible_)[i];
-  const float share = span_m < 0.5F * request.line_m ? 1.0F : request.facet_slopes;
-  return std::ceil(facets_.slopes_per_t()[i] * (segment.high - segment.low) / share);
+  const float height = seen_.high[i] - seen_.low[i];
+  const bool may_respond = request.any_facets && facets_.may_respond(i);
+  return slices::parts_of_segment({.height = height,
+                                   .range_low = range_low_[i],
+                                   .range_mid = range_mid_[i],
+                                   .range_high = range_high_[i],
+                                   .smear_m = 0.5F * (smear_low_[i] + smear_high_[i]),
+                                   .displaced_m = displaced_[i],
+                                   .has_gradient = plain_[i] > 0 && range_gradient_[i] != 0.0F,
+                                   .is_mapped = request.any_mapped && is_mapped(request, (*visible_)[i]),
+                                   .slopes = may_respond ? facets_.slopes_per_t()[i] * height : 0.0F},
+                                  limits_of(request));
 }
 
 /// Divides the segments whose echo over range a patch cannot represent. @return false if it divided nothing
@@ -429,12 +378,9 @@ bool SlicePatcher::divide_uneven(const Request& request) {
 void SlicePatcher::divide(std::size_t i, int parts) {
   const VisibleSegment& whole = (*visible_)[i];
   VisibleSegment part = whole;
-  // The range turns round at dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
-  const float turn = seen_.w_slope[i] / seen_.w_at_0[i];
-  const bool at_turn = parts == 2 && turn > whole.low && turn < whole.high;
+  const float turn = slices::turn_of_range(seen_.w_at_0[i], seen_.w_slope[i]);
   for (int k = 1; k <= parts; ++k) {
-    const float share = static_cast<float>(k) / static_cast<float>(parts);
-    part.high = k == parts ? whole.high : at_turn ? turn : whole.low + (whole.high - whole.low) * share;
+    part.high = slices::end_of_part(whole.low, whole.high, turn, k, parts);
     part.high_run = k == parts ? whole.high_run : EdgeRun{};
     if (part.high > part.low) {
       divided_.push_back(part);
@@ -467,10 +413,9 @@ void SlicePatcher::join_gradients() {
   float* __restrict range_gradient = range_gradient_.data();
   float* __restrict echo_gradient = echo_gradient_.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const float both = range_gradient[i] + echo_gradient[i];
-    const float kept = both > 1 ? 1.0F : (both < -1 ? -1.0F : both);
+    const float kept = slices::within_one(range_gradient[i] + echo_gradient[i]);
     echo_gradient[i] = range_gradient[i] != 0.0F ? kept : 0.0F;
-    range_gradient[i] = range_gradient[i] > 1 ? 1.0F : (range_gradient[i] < -1 ? -1.0F : range_gradient[i]);
+    range_gradient[i] = slices::within_one(range_gradient[i]);
   }
 }
 

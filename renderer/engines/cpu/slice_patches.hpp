@@ -8,35 +8,16 @@
 
 #include "renderer/binning/echo_patch.hpp"
 #include "renderer/engines/cpu/facet_arrays.hpp"
-#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_facets.hpp"
 #include "renderer/engines/cpu/slice_shading.hpp"
 #include "renderer/engines/cpu/vertex_normals.hpp"
 #include "renderer/engines/cpu/visible_arrays.hpp"
 #include "renderer/engines/cpu/visible_ends.hpp"
+#include "renderer/engines/slices/elevation_pattern.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
-
-/// Table of the elevation pattern as a function of t.
-class ElevationPattern {
- public:
-  /// @param tabled_if_flat also tables a pattern that is 1 everywhere (SkipRule::flat_elevation off)
-  explicit ElevationPattern(const Aperture& aperture, bool tabled_if_flat = false);
-  bool flat() const { return weight_.empty(); }
-  bool varies() const { return varies_; }
-
-  /// Weights at even steps of t from -tan_limit to tan_limit; the index of t is
-  /// step_at_0() + t * steps_per_t().
-  const float* table() const { return weight_.data(); }
-  float steps_per_t() const { return 0.5F * static_cast<float>(weight_.size() - 1) / tan_limit_; }
-  float step_at_0() const { return 0.5F * static_cast<float>(weight_.size() - 1); }
-
- private:
-  float tan_limit_;
-  bool varies_;
-  std::vector<float> weight_;  ///< empty: 1 everywhere
-};
 
 /// Makes patches. One per thread; reuses its memory.
 class SlicePatcher {
@@ -79,10 +60,9 @@ class SlicePatcher {
   bool divide_uneven(const Request& request);
   void divide(std::size_t i, int parts);
   bool mark_uneven(const Request& request);
+  static slices::PatchLimits limits_of(const Request& request);
   int parts_of(const Request& request, std::size_t i) const;
   static bool is_mapped(const Request& request, const VisibleSegment& segment);
-  float parts_for_pattern(const Request& request, std::size_t i, float span_m) const;
-  float parts_for_facets(const Request& request, std::size_t i, float span_m) const;
   void see_normals(const Request& request);
   std::uint64_t shade(const Request& request);
   float shade_plainly(const Request& request, std::size_t i);

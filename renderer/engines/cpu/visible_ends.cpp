@@ -8,14 +8,6 @@
 
 namespace sonard::render {
 
-namespace {
-
-// Relative difference of 1 / h below which segments belong to one surface: a millimetre or two, shorter than
-// a range line.
-constexpr float joined = 1e-4F;
-
-}  // namespace
-
 void VisibleEnds::run_straight(float width_rad, float tan_limit, VisibleArrays& seen) {
   limit(width_rad, tan_limit, seen);
   find_surfaces(seen);
@@ -59,7 +51,7 @@ void VisibleEnds::find_surfaces(const VisibleArrays& seen) {
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const float t = high[i];
     const float w = w_at_0[i] + w_slope[i] * t, next = w_at_0[i + 1] + w_slope[i + 1] * t;
-    goes_on[i] = ((t == low[i + 1]) & (part[i] == part[i + 1]) & (std::abs(w - next) < joined * w)) ? 1 : 0;
+    goes_on[i] = ((t == low[i + 1]) & (part[i] == part[i + 1]) & slices::is_one_surface(w, next)) ? 1 : 0;
   }
   if (count > 0) {
     goes_on[count - 1] = 0;
@@ -70,18 +62,16 @@ void VisibleEnds::find_surfaces(const VisibleArrays& seen) {
 /// far as there are crossings.
 void VisibleEnds::keep_from_crossing(std::size_t first, std::size_t last, float width_rad,
                                      VisibleArrays& seen) {
-  const auto most_of = [&](float length) { return 2 * length / width_rad; };
   const float whole = seen.high_slope[last] - seen.low_slope[first];
-  const float most = most_of(seen.high[last] - seen.low[first]);
+  const float most = 2 * (seen.high[last] - seen.low[first]) / width_rad;
   if (std::abs(whole) > most) {  // the whole surface ends within the wedge
     const float excess = 0.5F * (whole - std::copysign(most, whole));
     seen.low_slope[first] += excess;
     seen.high_slope[last] -= excess;
   }
   const auto excess_of = [&](std::size_t i) {
-    const float difference = seen.high_slope[i] - seen.low_slope[i];
-    const float allowed = most_of(seen.high[i] - seen.low[i]);
-    return difference > allowed ? difference - allowed : difference < -allowed ? difference + allowed : 0.0F;
+    return slices::crossing_excess(seen.low_slope[i], seen.high_slope[i], seen.high[i] - seen.low[i],
+                                   width_rad);
   };
   for (std::size_t i = first; i < last; ++i) {
     const float excess = excess_of(i);

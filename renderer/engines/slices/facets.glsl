@@ -105,3 +105,38 @@ SHARED FacetTurn turn_of_facets(NormalField n, float t, float width_rad) {
   turn.cosine = abs(product);
   return turn;
 }
+
+// False only if all facets of a segment, between both sides of the wedge, echo less than
+// SkipRule::facet_kernel allows. Incidences up to half the turn away count too: cos(phi - a) <= cos phi + a
+// sin phi. height: of the segment, in t
+SHARED bool facets_may_respond(FacetTurn turn, float height, float least_cosine) {
+  float sine2 = 1.0F - turn.cosine * turn.cosine;
+  float sine = sqrt(sine2 > 0.0F ? sine2 : 0.0F);
+  float half_of_turn = 0.5F * (turn.along_per_t * height + turn.across_rad);
+  return turn.cosine + half_of_turn * sine > least_cosine;
+}
+
+// Relative change r' / r, per radian of azimuth, of the range of a surface with these normals, in the
+// direction q = (1, x, t). On p = h q the surface is perpendicular to its normal: (ln h)' = -n_s / (n . q).
+// The range is h times the length of q.
+SHARED float range_slope(NormalField n, float x, float t) {
+  const float steepest = 10.0F;  // 84 degrees off: a silhouette
+  float n_h = n.at_h + x * n.h_per_x + t * n.h_per_t;
+  float n_s = n.at_s + x * n.s_per_x + t * n.s_per_t;
+  float n_z = n.at_z + x * n.z_per_x + t * n.z_per_t;
+  float slope = -n_s / (n_h + n_s * x + n_z * t);
+  float kept = slope > steepest ? steepest : (slope < -steepest ? -steepest : slope);
+  return kept + x / (1.0F + x * x + t * t);
+}
+
+CONSTANT float widest_facets = 2.5F;  // turn across the wedge, in rms slopes, for three samples
+
+CONSTANT float most_side_by_side = 16.0F;
+
+// Number of patches side by side that represent a segment whose facets echo off the middle of the wedge.
+// moved_m: of the centroid. sagitta_m: of the range across the wedge, times the facets' share of the echo
+SHARED int patches_side_by_side(float moved_m, float sagitta_m, float allowed_m) {
+  // Both the move and the curvature of a part fall with the square of the number of parts.
+  float wanted = ceil(sqrt(max(abs(moved_m), abs(sagitta_m)) / allowed_m));
+  return int(min(max(wanted, 1.0F), most_side_by_side));
+}

@@ -45,6 +45,51 @@ SHARED PlanePoint point_of_plane(PlaneLine plane, float t, float width) {
   return point;
 }
 
+// What a slice sees of a segment of a plane, over its wedge.
+struct PlaneSegment {
+  float range_low, range_mid, range_high;  // at the ends and in the middle, m
+  float by_azimuth_low, by_azimuth_high;   // change of the ends' ranges with the azimuth, m / rad
+  float cosine_low, cosine_mid, cosine_high;
+  float solid_angle;
+};
+
+// An end that moves by m = dt / d azimuth changes range by dr/d azimuth + m dr/dt (docs/physics.md 2.3,
+// equation 2, along the edge).
+SHARED PlaneSegment segment_of_plane(PlaneLine plane, float t1, float t2, float low_slope, float high_slope,
+                                     float width) {
+  PlanePoint p1 = point_of_plane(plane, t1, width);
+  PlanePoint p2 = point_of_plane(plane, t2, width);
+  PlanePoint pm = point_of_plane(plane, 0.5F * (t1 + t2), width);
+  PlaneSegment segment;
+  segment.range_low = p1.range_m;
+  segment.range_mid = pm.range_m;
+  segment.range_high = p2.range_m;
+  segment.by_azimuth_low = p1.by_azimuth + p1.by_t * low_slope;
+  segment.by_azimuth_high = p2.by_azimuth + p2.by_t * high_slope;
+  segment.cosine_low = p1.cosine;
+  segment.cosine_mid = pm.cosine;
+  segment.cosine_high = p2.cosine;
+  segment.solid_angle = (t2 / p2.length - t1 / p1.length) * width;
+  return segment;
+}
+
+// Relative difference of 1 / h below which neighbouring segments belong to one surface: a millimetre or two,
+// shorter than a range line.
+CONSTANT float one_surface = 1e-4F;
+
+// Whether a segment and the next one, which begins where it ends, belong to one surface. w: their 1 / h there
+SHARED bool is_one_surface(float w, float next_w) {
+  return abs(w - next_w) < one_surface * w;
+}
+
+// By how much the ends of a segment of a length in t turn too far towards or away from each other, so that
+// they cross within the wedge. 0: they do not cross.
+SHARED float crossing_excess(float low_slope, float high_slope, float length, float width) {
+  float difference = high_slope - low_slope;
+  float allowed = 2.0F * length / width;
+  return difference > allowed ? difference - allowed : (difference < -allowed ? difference + allowed : 0.0F);
+}
+
 // Cosines at the ends and in the middle of a segment as its mean and half its relative change.
 struct CosineRun {
   float mean, gradient;
@@ -123,4 +168,77 @@ SHARED float mean_weight(float t1, float t2, float w1, float wm, float w2, float
   float by_middle = 4.0F / (qm * sqrt(qm));
   float by_high = (1.0F + echo_gradient) / (q2 * sqrt(q2));
   return (w1 * by_low + wm * by_middle + w2 * by_high) / (by_low + by_middle + by_high);
+}
+
+CONSTANT float most_divisions_at_once = 16.0F;  // of a segment
+CONSTANT int most_division_rounds = 6;          // near a foot point, parts are divided again
+CONSTANT float height_in_one_place = 0.25F;     // of the fan's half height, if a segment echoes in one place
+
+// Largest height of a segment that spreads over many range lines, re the fan's half height, if the elevation
+// pattern varies. linearity: largest displacement of an echo, lines
+SHARED float height_in_many_lines(float linearity) {
+  return 0.36F * sqrt(linearity);
+}
+
+// What a patch can represent.
+struct PatchLimits {
+  float displaced_m;  // of the echo, by straight ranges
+  float furthest_m;   // segments wholly beyond are not divided
+  float half_line_m;
+  float mapped_m;                     // extent in range with a normal map, so that bumps are at their ranges
+  float facet_slopes;                 // turn of the facets' direction along a segment, in rms slopes
+  float height, height_in_one_place;  // in t, by the elevation pattern
+};
+
+struct UnevenSegment {
+  float height;  // in t
+  float range_low, range_mid, range_high;
+  float smear_m;  // mean of both ends
+  float displaced_m;
+  bool has_gradient;  // and its response changes evenly
+  bool is_mapped;
+  float slopes;  // turn of the facets' direction along it, in rms slopes; 0 if they do not respond
+};
+
+// Number of parts into which a segment must be divided.
+SHARED int parts_of_segment(UnevenSegment segment, PatchLimits limits) {
+  float to_middle = segment.range_mid - segment.range_low;
+  float from_middle = segment.range_high - segment.range_mid;
+  float span_m = abs(to_middle) + abs(from_middle);
+  float parts = 1.0F;
+  if (segment.displaced_m > limits.displaced_m) {
+    bool turns = to_middle * from_middle < 0.0F;
+    // The displacement falls with the square of the length, or with its third power if the echo has a
+    // gradient.
+    float excess = segment.displaced_m / limits.displaced_m;
+    parts = turns ? 2.0F : 1.0F + floor(segment.has_gradient ? cube_root(excess) : sqrt(excess));
+  }
+  if (least_of(segment.range_low, segment.range_mid, segment.range_high) < limits.furthest_m) {
+    if (segment.is_mapped && span_m > limits.mapped_m) {
+      parts = max(parts, 1.0F + floor(span_m / limits.mapped_m));
+    }
+    // Nearly constant echo of facets if a part lies in one line, or nearly linear echo if it spreads over
+    // more.
+    parts = max(parts, ceil(segment.slopes / (span_m < limits.half_line_m ? 1.0F : limits.facet_slopes)));
+    // A nearly linear elevation pattern, or an accurate mean of it if a part echoes in one place.
+    bool one_place = span_m < max(limits.half_line_m, segment.smear_m);
+    parts = max(parts, ceil(segment.height / (one_place ? limits.height_in_one_place : limits.height)));
+  }
+  return int(min(parts, most_divisions_at_once));
+}
+
+// The t at which the range of a segment turns round: dr/dt = 0 on 1 / h = w_at_0 + w_slope t.
+SHARED float turn_of_range(float w_at_0, float w_slope) {
+  return w_slope / w_at_0;
+}
+
+// High end of the k-th part, from 1, of a segment. Two halves meet where the range turns round.
+SHARED float end_of_part(float low, float high, float turn, int k, int parts) {
+  bool at_turn = parts == 2 && turn > low && turn < high;
+  precise float evenly = low + (high - low) * (float(k) / float(parts));
+  return k == parts ? high : (at_turn ? turn : evenly);
+}
+
+SHARED float within_one(float gradient) {
+  return gradient > 1.0F ? 1.0F : (gradient < -1.0F ? -1.0F : gradient);
 }

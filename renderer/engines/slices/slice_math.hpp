@@ -23,6 +23,8 @@
 namespace sonard::render::slices {
 
 using std::abs;
+using std::ceil;
+using std::floor;
 using std::sqrt;
 
 SHARED float min(float a, float b) {
@@ -39,6 +41,9 @@ SHARED float intBitsToFloat(int bits) {  // NOLINT(readability-identifier-naming
 }
 SHARED bool both(bool a, bool b) {
   return a & b;
+}
+SHARED float cube_root(float x) {
+  return std::cbrt(x);
 }
 SHARED float with_sign_of(float x, float sign) {
   return std::copysign(x, sign);

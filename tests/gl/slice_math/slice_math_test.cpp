@@ -379,6 +379,81 @@ TEST_F(SliceMathTest, PointsOfAPlane) {
                 }});
 }
 
+TEST_F(SliceMathTest, SegmentsOfAPlane) {
+  expect_equal({R"(
+    PlaneLine plane = PlaneLine(get(0), get(1), get(2), get(3), get(4));
+    PlaneSegment s = segment_of_plane(plane, get(5), get(6), get(7), get(8), get(9));
+    put(s.range_low); put(s.range_mid); put(s.range_high); put(s.by_azimuth_low); put(s.by_azimuth_high);
+    put(s.cosine_low); put(s.cosine_mid); put(s.cosine_high); put(s.solid_angle);
+    put(crossing_excess(get(7), get(8), get(6) - get(5), get(9)));
+    put(is_one_surface(get(0), get(0) * (1.0 + 1e-4 * get(7))) ? 1.0 : 0.0);
+)",
+                11, true,
+                [](std::mt19937& random) {
+                  const float t = uniform(random, -0.3, 0.3);
+                  return Numbers{uniform(random, 0.05, 2),
+                                 uniform(random, -1, 1),
+                                 uniform(random, -1, 1),
+                                 uniform(random, -1, 1),
+                                 uniform(random, -1, 1),
+                                 t,
+                                 t + std::exp(uniform(random, -9, -2)),
+                                 uniform(random, -2, 2),
+                                 uniform(random, -2, 2),
+                                 uniform(random, 1e-3, 1e-2)};
+                },
+                [](const Numbers& x) {
+                  const auto s =
+                      slices::segment_of_plane({x[0], x[1], x[2], x[3], x[4]}, x[5], x[6], x[7], x[8], x[9]);
+                  return Numbers{s.range_low,
+                                 s.range_mid,
+                                 s.range_high,
+                                 s.by_azimuth_low,
+                                 s.by_azimuth_high,
+                                 s.cosine_low,
+                                 s.cosine_mid,
+                                 s.cosine_high,
+                                 s.solid_angle,
+                                 slices::crossing_excess(x[7], x[8], x[6] - x[5], x[9]),
+                                 slices::is_one_surface(x[0], x[0] * (1.0F + 1e-4F * x[7])) ? 1.0F : 0.0F};
+                }});
+}
+
+TEST_F(SliceMathTest, PartsOfASegment) {
+  expect_equal(
+      {R"(
+    UnevenSegment s = UnevenSegment(get(0), get(1), get(2), get(3), get(4), get(5), get(6) > 0.5, get(7) > 0.5, get(8));
+    PatchLimits limits = PatchLimits(3e-4, 20.0, 5e-3, 0.025, 0.17, 0.01, 0.04);
+    int parts = parts_of_segment(s, limits);
+    put(float(parts)); put(end_of_part(get(9), get(9) + get(0), turn_of_range(2.0, get(10)), 1, parts));
+    put(within_one(get(10)));
+)",
+       3, false,
+       [](std::mt19937& random) {
+         const float range = uniform(random, 1, 22);
+         const auto beside = [&] { return range + std::exp(uniform(random, -9, -3)); };
+         return Numbers{std::exp(uniform(random, -9, -2)),
+                        beside(),
+                        beside(),
+                        beside(),
+                        uniform(random, 0, 0.01),
+                        std::exp(uniform(random, -12, -1)),
+                        uniform(random, 0, 1),
+                        uniform(random, 0, 1),
+                        uniform(random, 0, 1),
+                        uniform(random, -0.3, 0.3),
+                        uniform(random, -2, 2)};
+       },
+       [](const Numbers& x) {
+         const int parts =
+             slices::parts_of_segment({x[0], x[1], x[2], x[3], x[4], x[5], x[6] > 0.5F, x[7] > 0.5F, x[8]},
+                                      {3e-4F, 20.0F, 5e-3F, 0.025F, 0.17F, 0.01F, 0.04F});
+         return Numbers{static_cast<float>(parts),
+                        slices::end_of_part(x[9], x[9] + x[0], slices::turn_of_range(2.0F, x[10]), 1, parts),
+                        slices::within_one(x[10])};
+       }});
+}
+
 TEST_F(SliceMathTest, Gradients) {
   expect_equal({R"(
     RangeGradient found = gradient_of(RangeSpan(get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8),
@@ -414,9 +489,11 @@ TEST_F(SliceMathTest, Facets) {
     FacetResponse found = facets_of_segment(n, FacetMaterial(get(9), get(10)), get(11), get(12), get(13));
     put(found.mean); put(found.moment); put(found.gradient);
     FacetTurn turn = turn_of_facets(n, get(11), get(13));
-    put(turn.along_per_t); put(turn.across_rad); put(turn.cosine);
+    put(turn.along_per_t); put(turn.across_rad); put(turn.cosine); put(range_slope(n, get(13), get(11)));
+    put(facets_may_respond(turn, get(12) - get(11), 0.9) ? 1.0 : 0.0);
+    put(float(patches_side_by_side(get(9), get(10), 0.01)));
 )",
-                6, false,
+                9, false,
                 [](std::mt19937& random) {
                   const float t = uniform(random, -0.3, 0.3);
                   Numbers numbers{-1, uniform(random, -0.5, 0.5), uniform(random, -0.5, 0.5)};
@@ -432,8 +509,15 @@ TEST_F(SliceMathTest, Facets) {
                   const slices::NormalField n{x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8]};
                   const auto found = slices::facets_of_segment(n, {x[9], x[10]}, x[11], x[12], x[13]);
                   const auto turn = slices::turn_of_facets(n, x[11], x[13]);
-                  return Numbers{found.mean,       found.moment,    found.gradient,
-                                 turn.along_per_t, turn.across_rad, turn.cosine};
+                  return Numbers{found.mean,
+                                 found.moment,
+                                 found.gradient,
+                                 turn.along_per_t,
+                                 turn.across_rad,
+                                 turn.cosine,
+                                 slices::range_slope(n, x[13], x[11]),
+                                 slices::facets_may_respond(turn, x[12] - x[11], 0.9F) ? 1.0F : 0.0F,
+                                 static_cast<float>(slices::patches_side_by_side(x[9], x[10], 0.01F))};
                 }});
 }
 
