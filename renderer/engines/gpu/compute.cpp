@@ -27,7 +27,7 @@ osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* t
     source += common;
   }
   return context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source + text)}, name,
-                                {"Ping", "Shading", "Refinement"});
+                                {"Ping", "Echo", "Refinement"});
 }
 
 void Compute::use(const osg::ref_ptr<osg::Program>& program, const GpuBuffer& ping) const {

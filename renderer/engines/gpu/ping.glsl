@@ -96,6 +96,7 @@ struct PingCounts {
   uint culled_clusters, hidden_faces;
   uint overflows;  // of lists that no room helps
   uint longest_slice;
+  uint samples, invalid, without_facets, empty_beams;  // see BinningResult
 };
 // A round of refinement: the slices made for it.
 struct Round {

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/gpu/gpu_readback.hpp"
 
 namespace sonard::render {
 
@@ -46,6 +47,7 @@ struct PingCounts {
   std::uint32_t culled_clusters, hidden_faces;
   std::uint32_t overflows;  ///< of lists that no room helps
   std::uint32_t longest_slice;
+  std::uint32_t samples, invalid, without_facets, empty_beams;  ///< see BinningResult
 };
 
 /// One ping in flight. Each stage binds the buffers that its shaders use.
@@ -92,7 +94,15 @@ struct PingBuffers {
         things(gl),
         ends(gl),
         edges(gl),
-        order(gl) {}
+        order(gl),
+        echo(gl),
+        surfaces(gl),
+        solid_angles(gl),
+        pieces_of_slices(gl),
+        pieces(gl),
+        sums(gl),
+        image(gl),
+        result(gl) {}
 
   Room room;
   GpuBuffer ping;                 ///< the uniform block
@@ -107,6 +117,12 @@ struct PingBuffers {
   GpuBuffer refinement;           ///< the uniform block
   GpuBuffer things, ends, edges;  ///< of each beam: see things.comp
   GpuBuffer order;                ///< slices of each beam from port to starboard, in even and odd rounds
+  // Of GpuEchoes:
+  GpuBuffer echo;                      ///< the uniform block
+  GpuBuffer surfaces, solid_angles;    ///< of parts; of beams
+  GpuBuffer pieces_of_slices, pieces;  ///< parts of visible segments, later their patches
+  GpuBuffer sums, image;               ///< of bin.comp and sums.comp
+  GpuReadback result;                  ///< counts and image
 };
 
 }  // namespace sonard::render

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surfaces of a world on the GPU: materials, and what shades facets: vertex normals and normal maps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
+
+namespace sonard::render {
+
+/// Its context must be current when it is made, used and deleted.
+class GpuSurfaces {
+ public:
+  explicit GpuSurfaces(osg::GLExtensions& gl) : world_(gl) {}
+
+  /// Uploads the surfaces of all parts. Meshes and maps that parts share are uploaded once.
+  void set(const std::vector<PartSurface>& surfaces);
+  /// Uploads the surfaces for one ping. @param surfaces the same as of set(), placed in the ping
+  void upload(const std::vector<PartSurface>& surfaces, GpuBuffer& to) const;
+
+  const GpuBuffer& world() const { return world_; }  ///< meshes and normal maps, as the shaders read them
+  std::size_t bytes() const { return world_.bytes(); }
+  bool any_shaded() const { return any_shaded_; }  ///< by vertex normals
+  bool any_mapped() const { return any_mapped_; }
+  bool any_facets() const { return any_facets_; }
+
+ private:
+  struct Record {  // Surface in pieces.glsl
+    float rotation[9];
+    float lambert_mu, reflectance, facet_strength, slope_variance, least_cosine;
+    std::uint32_t flags, indices, vertices, floats_per_vertex, levels, level_count;
+  };
+  class Words;
+
+  std::vector<Record> records_;  ///< without rotations
+  GpuBuffer world_;
+  bool any_shaded_ = false, any_mapped_ = false, any_facets_ = false;
+};
+
+}  // namespace sonard::render

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// One group for each slice: divides its visible segments into pieces whose echo over range a patch can
+// represent. As SlicePatcher::make() and VisibleEnds.
+layout(local_size_x = GROUP) in;
+
+shared uint s_count[GROUP];
+shared uint s_first;
+
+uint lane, first, count;  // pieces of the slice
+
+uint begin_of_mine() { return min(lane * ((count + GROUP - 1u) / GROUP), count); }
+uint end_of_mine() { return min((lane + 1u) * ((count + GROUP - 1u) / GROUP), count); }
+
+void wait_for_all() {
+  memoryBarrierBuffer();
+  barrier();
+}
+
+void set_piece(uint i, Piece p) {
+  pieces[2u * i] = floatBitsToUint(vec4(p.low, p.high, p.low_slope, p.high_slope));
+  pieces[2u * i + 1u] = uvec4(p.segment, p.flags, 0u, 0u);
+}
+
+// All invocations must call it. @return first of `wanted` pieces, or false if there is no room
+bool make_room(uint wanted, out uint begin) {
+  if (lane == 0u) {
+    s_first = atomicAdd(counts.pieces, wanted);
+  }
+  barrier();
+  begin = s_first;
+  barrier();
+  return begin + wanted <= uint(ping.most_pieces);
+}
+
+// Sums of s_count before this invocation, and of all. All invocations must call it.
+uint sum_before(uint own, out uint total) {
+  s_count[lane] = own;
+  barrier();
+  uint before = 0u;
+  total = 0u;
+  for (uint k = 0u; k < GROUP; ++k) {
+    before += k < lane ? s_count[k] : 0u;
+    total += s_count[k];
+  }
+  barrier();
+  return before;
+}
+
+// ---- ends across the wedge ----
+
+// Whether the next piece continues the surface of piece p, the i-th.
+bool continues(uint i, Piece p, Visible of_p) {
+  if (i + 1u == count) {
+    return false;
+  }
+  Piece next = piece_at(first + i + 1u);
+  Visible of_next = visible[next.segment];
+  float t = p.high;
+  return t == next.low && fan[of_p.triangle].flags >> part_shift == fan[of_next.triangle].flags >> part_shift &&
+         is_one_surface(of_p.w_at_0 + of_p.w_slope * t, of_next.w_at_0 + of_next.w_slope * t);
+}
+
+void limit_slopes() {
+  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+    Piece p = piece_at(first + i);
+    Visible v = visible[p.segment];
+    bool is_low = (p.flags & low_end) != 0u, is_high = (p.flags & high_end) != 0u;
+    p.low_slope = is_low ? slope_within(v.low_slope, v.low_reach, p.low, slice.width_rad, ping.tan_limit) : 0.0;
+    p.high_slope = is_high ? slope_within(v.high_slope, v.high_reach, p.high, slice.width_rad, ping.tan_limit) : 0.0;
+    p.flags |= continues(i, p, v) ? goes_on : 0u;
+    set_piece(first + i, p);
+  }
+}
+
+// The slopes of both ends of piece i.
+vec2 slopes_of(uint i) { return uintBitsToFloat(pieces[2u * (first + i)].zw); }
+void set_low_slope(uint i, float slope) { pieces[2u * (first + i)].z = floatBitsToUint(slope); }
+void set_high_slope(uint i, float slope) { pieces[2u * (first + i)].w = floatBitsToUint(slope); }
+float excess_of(uint i) {
+  vec4 ends = uintBitsToFloat(pieces[2u * (first + i)]);
+  return crossing_excess(ends.z, ends.w, ends.y - ends.x, slice.width_rad);
+}
+
+// As VisibleEnds::keep_from_crossing().
+void keep_from_crossing(uint begin, uint last) {
+  float low = slopes_of(begin).x, high = slopes_of(last).y;
+  float most = 2.0 * (piece_at(first + last).high - piece_at(first + begin).low) / slice.width_rad;
+  float whole = high - low;
+  if (abs(whole) > most) {  // the whole surface ends within the wedge
+    float excess = 0.5 * (whole - with_sign_of(most, whole));
+    set_low_slope(begin, low + excess);
+    set_high_slope(last, high - excess);
+  }
+  for (uint i = begin; i < last; ++i) {
+    float excess = excess_of(i);
+    if (excess == 0.0) {
+      break;
+    }
+    float slope = slopes_of(i).y - excess;
+    set_high_slope(i, slope);
+    set_low_slope(i + 1u, slope);
+  }
+  for (uint i = last; i > begin; --i) {
+    float excess = excess_of(i);
+    if (excess == 0.0) {
+      break;
+    }
+    float slope = slopes_of(i).x + excess;
+    set_low_slope(i, slope);
+    set_high_slope(i - 1u, slope);
+  }
+}
+
+bool goes_on_after(uint i) { return (pieces[2u * (first + i) + 1u].y & goes_on) != 0u; }
+
+// One invocation for each surface.
+void straighten_ends() {
+  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+    if (i > 0u && goes_on_after(i - 1u)) {
+      continue;
+    }
+    uint last = i;
+    while (last + 1u < count && goes_on_after(last)) {
+      ++last;
+    }
+    keep_from_crossing(i, last);
+  }
+}
+
+// ---- division ----
+
+// Writes the parts of a piece from `to` on. @param writing false: only counts them @return their number
+uint divide(Piece whole, int parts, uint to, bool writing) {
+  float turn = turn_of_range(visible[whole.segment].w_at_0, visible[whole.segment].w_slope);
+  uint made = 0u;
+  Piece part = whole;
+  part.flags = whole.flags & low_end;
+  for (int k = 1; k <= parts; ++k) {
+    part.high = end_of_part(whole.low, whole.high, turn, k, parts);
+    part.flags |= k == parts ? whole.flags & high_end : 0u;
+    if (part.high > part.low) {
+      if (writing) {
+        set_piece(to + made, part);
+      }
+      ++made;
+      part.low = part.high;
+      part.flags = 0u;
+    }
+  }
+  return made;
+}
+
+int parts_of_piece(uint i) {
+  measure(i);
+  float height = piece.high - piece.low;
+  UnevenSegment uneven = UnevenSegment(
+      height, ranges.range_low, ranges.range_mid, ranges.range_high, 0.5 * (gradient.smear_low + gradient.smear_high),
+      gradient.displaced_m, is_plain && gradient.gradient != 0.0, is_mapped(),
+      FACETS == 1 && may_respond ? slopes_per_t * height : 0.0);
+  PatchLimits limits = PatchLimits(echo.displaced_m, ping.max_range_m, 0.5 * echo.line_m, echo.mapped_m,
+                                   echo.facet_slopes, echo.height, echo.height_in_one_place);
+  return parts_of_segment(uneven, limits);
+}
+
+// Notes for each of my pieces how many parts it must have. @return their number
+uint find_parts() {
+  uint made = 0u;
+  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+    int parts = parts_of_piece(first + i);
+    made += parts == 1 ? 1u : divide(piece, parts, 0u, false);
+    pieces[2u * (first + i) + 1u].y = (piece.flags & (low_end | high_end)) | uint(parts) << parts_shift;
+  }
+  return made;
+}
+
+void write_parts(uint to) {
+  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+    Piece whole = piece_at(first + i);
+    int parts = int(whole.flags >> parts_shift);
+    whole.flags &= low_end | high_end;
+    to += divide(whole, parts, to, true);
+  }
+}
+
+// @return false if there is no room
+bool begin_pieces() {
+  count = slice.visible_count;
+  if (!make_room(count, first)) {
+    return false;
+  }
+  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+    uint segment = slice.first_visible + i;
+    set_piece(first + i, Piece(visible[segment].low, visible[segment].high, 0.0, 0.0, segment, low_end | high_end));
+  }
+  return true;
+}
+
+// Divides pieces until none needs it. @return false if there is no room
+bool divide_pieces() {
+  for (int round_number = 0;; ++round_number) {
+    wait_for_all();
+    limit_slopes();
+    wait_for_all();
+    straighten_ends();
+    wait_for_all();
+    if (round_number == most_division_rounds) {
+      return true;
+    }
+    uint total, to, before = sum_before(find_parts(), total);
+    if (total == count) {
+      return true;
+    }
+    if (!make_room(total, to)) {
+      return false;
+    }
+    write_parts(to + before);
+    first = to;
+    count = total;
+  }
+}
+
+void main() {
+  lane = lane_number();
+  uint number = group_number();
+  if (number >= min(counts.slices, uint(ping.most_slices))) {
+    return;
+  }
+  slice = slices[number];
+  bool is_done = (slice.state & is_divided) == 0u && begin_pieces() && divide_pieces();
+  if (lane == 0u) {
+    of_slice[number] = SlicePieces(first, is_done ? count : 0u);
+  }
+}
