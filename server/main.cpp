@@ -308,7 +308,7 @@ render::EngineKind engine_named(const std::string& name) {
 }
 
 /// What a command line without a subcommand gets to read.
-/// @param first its first word; empty if there is none
+/// @param first its first word; may be empty
 std::string missing_subcommand(const CLI::App& app, const std::filesystem::path& first) {
   std::vector<std::string> names;
   for (const CLI::App* const subcommand : app.get_subcommands([](const CLI::App*) { return true; })) {

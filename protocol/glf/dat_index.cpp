@@ -115,7 +115,7 @@ class Indexer {
   }
 
  private:
-  /// Steps over one record; false if there is none.
+  /// Steps over one record; false at the end.
   bool step() {
     Front front{};
     ByteReader reader{read_front(dat_, offset_, front)};

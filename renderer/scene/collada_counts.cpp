@@ -42,7 +42,7 @@ const XMLElement* input_of(const XMLElement& element, std::string_view semantic)
   return input;
 }
 
-/// The element called `kind` in the mesh whose id is the source of `input`; nullptr if there is none.
+/// The element called `kind` in the mesh whose id is the source of `input`, or nullptr.
 const XMLElement* source_of(const XMLElement* input, const XMLElement& mesh, const char* kind) {
   const char* const url = input == nullptr ? nullptr : input->Attribute("source");
   if (url == nullptr || *url != '#') {

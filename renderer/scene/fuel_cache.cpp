@@ -57,7 +57,7 @@ std::vector<fs::path> cache_folders() {
   return folders;
 }
 
-/// The folder with the highest number; nullopt if there is none.
+/// The folder with the highest number, if any.
 std::optional<fs::path> newest_version(const fs::path& model) {
   std::optional<fs::path> newest;
   int highest = -1;

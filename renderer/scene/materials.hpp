@@ -14,7 +14,7 @@ namespace sonard::render {
 /// Names in the table of docs/worlds.md, in its order, without aliases.
 std::vector<std::string> acoustic_material_names();
 
-/// The material with this name or alias, under its first name in the table; nullopt if there is none. Letter
+/// The material with this name or alias, under its first name in the table, if any. Letter
 /// case and a numeric suffix from modelling tools ("Steel.001") are ignored.
 std::optional<AcousticMaterial> find_acoustic_material(std::string_view name);
 

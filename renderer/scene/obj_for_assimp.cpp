@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t\v\f";
 
-/// Removes the first word from `text`, and the blanks before it. Empty if there is none.
+/// Removes the first word from `text`, and the blanks before it. Empty if no word is left.
 std::string_view take_word(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
   const std::string_view word = text.substr(0, text.find_first_of(blanks));

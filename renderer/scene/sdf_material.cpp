@@ -49,7 +49,7 @@ void check_attributes(const SdfElement& element, std::span<const std::string_vie
   }
 }
 
-/// The own name that a name without its prefix is equal or similar to, in any case; empty if there is none.
+/// The own name that a name without its prefix is equal or similar to, in any case; or empty.
 std::string similar_own_name(std::string_view local, std::span<const char* const> own_names) {
   const std::string name = "sonard:" + lower_case(local);
   const std::size_t most = std::max<std::size_t>(1, local.size() / 3);

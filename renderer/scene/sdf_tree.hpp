@@ -34,7 +34,7 @@ struct SdfElement {
   /// nullptr if not given.
   const std::string* attribute(std::string_view key) const;
   void set_attribute(std::string_view key, std::string value);
-  /// The first child with this name; nullptr if there is none.
+  /// The first child with this name, or nullptr.
   const SdfElement* child(std::string_view child_name) const;
   SdfElement* child(std::string_view child_name);
   /// Appends a child with the file and line of `from`.

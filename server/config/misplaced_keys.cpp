@@ -81,7 +81,7 @@ std::vector<std::string> paths_inside(const std::string& here, const std::set<st
   return inside;
 }
 
-/// The mapping at a path from the head or the root on; null if there is none. Indexes of lists are ignored.
+/// The mapping at a path from the head or the root on, or null. Indexes of lists are ignored.
 const KeyReference* mapping_at(const std::vector<KeyReference>& keys, std::string_view path) {
   const std::size_t dot = path.find('.');
   const std::string_view name = path.substr(0, dot);
@@ -92,7 +92,7 @@ const KeyReference* mapping_at(const std::vector<KeyReference>& keys, std::strin
   return dot == std::string_view::npos ? &*found : mapping_at(found->keys, path.substr(dot + 1));
 }
 
-/// The only key of a mapping that can have this word as its value; empty if there is none, or several.
+/// The only key of a mapping that can have this word as its value; empty unless exactly one key can.
 std::string key_with_value(const KeyReference& mapping, std::string_view word) {
   const std::string quoted = fmt::format("\"{}\"", word);
   const bool is_boolean = word == "true" || word == "false";

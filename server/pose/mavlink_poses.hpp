@@ -57,7 +57,7 @@ class MavlinkPoses {
   std::optional<pose::PoseSample> take(const mavlink::Message& message, TimePoint arrival);
 
   const MavlinkPoseCounters& counters() const { return counters_; }
-  /// Why the newest message with a bad value was dropped; empty if there was none.
+  /// Why the newest message with a bad value was dropped; empty before the first one.
   const std::string& newest_problem() const { return newest_problem_; }
   /// True if the newest position has only a depth, because the vehicle has no fix.
   bool knows_depth_alone() const { return depth_alone_; }

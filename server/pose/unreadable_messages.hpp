@@ -11,13 +11,13 @@
 
 namespace sonard::server {
 
-/// Counts messages until none has come for `worth_saying`. Reads no clock.
+/// Counts messages until a pause of `worth_saying`. Reads no clock.
 class UnreadableMessages {
  public:
   static constexpr std::chrono::minutes worth_saying{1};
 
   void note(TimePoint now, std::string sender, std::string problem);
-  /// "91 messages from 127.0.0.1:41234 could not be read: " and the first problem; empty if there are none.
+  /// "91 messages from 127.0.0.1:41234 could not be read: " and the first problem; or empty.
   /// @param sender of the first; may be empty
   std::string text(TimePoint now) const;
 

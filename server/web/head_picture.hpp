@@ -18,7 +18,7 @@ class HeadPicture {
   /// least `interval` ago, and no drawing is in progress.
   bool begin(const std::shared_ptr<const ShownPing>& newest, TimePoint now,
              std::chrono::nanoseconds interval);
-  /// The picture as the text of a foxglove.CompressedImage; null if there is none yet. Drawing thread.
+  /// The picture as the text of a foxglove.CompressedImage; null before the first one. Drawing thread.
   /// @param pings of the head, the newest last; not empty
   Text draw(const Pings& pings, const std::string& head);
   /// @param picture null: no picture

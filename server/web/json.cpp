@@ -73,7 +73,7 @@ json clients_json(const HeadStatus& head, TimePoint at) {
   return clients;
 }
 
-/// Adds the members that need a requested ping; defaults if there is none.
+/// Adds the members that need a requested ping; defaults before the first one.
 void add_newest_ping(json& head, const HeadStatus& status) {
   const NewestPing newest = status.newest.value_or(NewestPing{});
   json settings = json::array();

@@ -14,7 +14,7 @@ std::span<const DeviceType* const> device_types();
 /// The types for the loader of configurations.
 std::span<const HeadType* const> head_types();
 
-/// The type of this name; null if there is none.
+/// The type of this name, or null.
 const DeviceType* type_named(std::string_view name);
 
 /// The type of a head in a log: named by the log, or the type that uses .glf and .dat logs; null if neither
