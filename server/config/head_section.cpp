@@ -22,8 +22,8 @@ constexpr Range level_db = Range::from(-300.0, 300.0);
 
 double read_noise_budget(YamlSection& section, double carrier_hz) {
   section.introduce(
-      "The sonar equation gives the noise level: `spectral_level_db` - `directivity_db` + 10 log10 of the "
-      "bandwidth in Hz - `source_level_db`. The defaults give -138.2 dB at 720 kHz.");
+      "The level is `spectral_level_db` - `directivity_db` + 10 log10 of the bandwidth in Hz - "
+      "`source_level_db`; by default -138.2 dB at 720 kHz.");
   render::NoiseBudget budget;
   budget.spectral_level_db = render::thermal_noise_db(carrier_hz);
   section.number("source_level_db", budget.source_level_db, level_db, "source level, dB re 1 uPa at 1 m");
@@ -48,14 +48,12 @@ void read_ring_down(YamlSection& section, render::RingDown& ring_down) {
   section.number("end_m", ring_down.end_m, Range::above(0.0, 100.0),
                  "range at which the ring-down ends; must be larger than `peak_m`");
   section.boolean("from_start", ring_down.from_start,
-                  "true: the pulse overdrives the receiver, so all samples up to `peak_m` are as bright as "
-                  "the peak; false: the ring-down rises from half of `peak_m`");
+                  "true: all samples up to `peak_m` are as bright as the peak");
   section.number("sd_db", ring_down.sd_db, Range::from(0.0, 20.0),
                  "standard deviation of the level from ping to ping");
   section.number_or_word("vehicle_level_db", ring_down.vehicle_level_db, level_db,
                          {{"off", -std::numeric_limits<double>::infinity()}},
-                         "level of the vehicle's own echo, which follows the ring-down: mean intensity at 1 "
-                         "m re the source intensity at 1 m, before TVG");
+                         "level of the vehicle's echo at 1 m, before TVG");
   section.number("vehicle_fall_db_per_m", ring_down.vehicle_fall_db_per_m, Range::above(0.0, 1000.0),
                  "decay of the vehicle's own echo with range");
   if (ring_down.end_m <= ring_down.peak_m) {
@@ -97,15 +95,12 @@ void read_multipath(YamlSection& section, render::MultipathSettings& multipath) 
   using Level = render::MultipathSettings::Level;
   section.choice("level", multipath.level,
                  {{"full", Level::full}, {"surface", Level::surface}, {"off", Level::off}},
-                 "`full`: every surface that is smooth enough mirrors, corners of two or three surfaces are "
-                 "corner reflectors, and rough surfaces send sound on to one another; `surface`: only the "
-                 "water surface of the world mirrors");
+                 "`full`: smooth surfaces mirror, two or three make corner reflectors, and rough surfaces "
+                 "send sound on to one another; `surface`: only the water surface mirrors");
   section.integer("most_bounces", multipath.most_bounces, 0, 32,
-                  "with level `full`: maximum number of surfaces that sound may meet one after the other; "
-                  "below 2, rough surfaces send no sound on to one another");
+                  "with level `full`: most surfaces that a path meets; below 2: no bounces");
   section.number("bounce_loss_db", multipath.bounce_loss_db, Range::from(0.0, 60.0),
-                 "extra loss each time that a rough surface sends sound on, in addition to the loss of its "
-                 "material: growth, thin plates");
+                 "extra loss when a rough surface sends sound on (growth, thin plates)");
   section.number("water_surface_rms_height_mm", multipath.water_surface_rms_height_m,
                  Range::from(0.0, 10'000.0),
                  "rms height of waves and ripples on the water surface. 0 mirrors like glass; about 20 is a "
@@ -121,37 +116,36 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                   {"frozen", Speckle::frozen},
                   {"per_ping", Speckle::per_ping},
                   {"off", Speckle::off}},
-                 "`ou`: constant while the sonar is at rest, decorrelates as the sonar moves; `frozen`: "
-                 "always the same; `per_ping`: drawn anew for each ping");
+                 "`ou`: constant at rest, decorrelates as the sonar moves; `frozen`: always the same; "
+                 "`per_ping`: drawn anew for each ping");
   section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0),
                  "length of the array; speckle changes over a motion of half this length");
   using Backscatter = render::PhysicalModel::Backscatter;
-  section.choice("backscatter", model.backscatter,
-                 {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}},
-                 "`lambert_facet`: materials show their facets near normal incidence; `lambert`: materials "
-                 "only scatter diffusely");
+  section.choice(
+      "backscatter", model.backscatter,
+      {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}},
+      "`lambert_facet`: materials show facets near normal incidence; `lambert`: they only scatter diffusely");
   section.boolean("noise", model.noise, "adds noise, which the TVG amplifies with range");
   if (section.has("noise_budget") && section.has("noise_level_db")) {
     section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
   }
   section.number("noise_level_db", model.noise_level_db, level_db,
                  "noise intensity re the source intensity at 1 m, before TVG");
-  section.section("noise_budget", "sonar equation for `noise_level_db`, instead of that key",
+  section.section("noise_budget", "sonar equation for the noise, instead of `noise_level_db`",
                   [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
   if (!model.noise) {
     for (const char* key : {"noise_level_db", "noise_budget", "noise_cell_m", "broadside_stripe_db"}) {
       section.warn_if_given(key, "`noise` is false");
     }
   }
-  section.number_or_word(
-      "output_noise_db", model.output_noise_db, level_db, {{"off", -std::numeric_limits<double>::infinity()}},
-      "noise that is added after TVG and gain, re full scale; it is visible in near water");
+  section.number_or_word("output_noise_db", model.output_noise_db, level_db,
+                         {{"off", -std::numeric_limits<double>::infinity()}},
+                         "noise after the TVG, re full scale");
   section.number("noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
                  "c / 2B of the receiver's band B, within which noise is even. 0: noise has the band of the "
                  "pulse, so the longer a tone is, the lower is the noise");
   section.number("tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
-                 "c / 2B of the transducer's two-way band B, which rounds the ends of a tone and keeps its "
-                 "level; 0: sharp ends");
+                 "c / 2B of the transducer band; 0: sharp ends");
   section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
                  "number of scatterers in a cell at `texture_range_m`, proportional to the range: sand 5 to "
                  "20, gravel and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
@@ -162,29 +156,27 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
   }
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
                          {{"off", -std::numeric_limits<double>::infinity()}},
-                         "scattering strength of a cubic metre of water: -80 if the water is clear, -60 if "
-                         "it is turbid or full of bubbles");
+                         "scattering strength of a cubic metre: -80 clear, -60 turbid");
   section.section("water_clutter", "single objects at fixed places in the water: fish, weed, bubbles",
                   [&](YamlSection& inner) { read_water_clutter(inner, model.water_clutter); });
   section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
-                 "X of the time-varying gain (TVG), X log10 r + 2 alpha r");
+                 "X of the time-varying gain, X log10 r + 2 alpha r");
   section.number("tvg_absorption_db_per_km", model.tvg_absorption_db_per_m, Range::from(0.0, 10'000.0),
-                 "alpha of the TVG, one way: the absorption that the device assumes for the water", 1000.0);
+                 "alpha of the TVG, one way, as the device assumes", 1000.0);
   section.default_is("tvg_absorption_db_per_km", "absorption of the water");
   section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0),
-                 "ceiling of the TVG; with X = 40 at 720 kHz in the sea, 78 dB is reached at 37 m");
+                 "maximum of the TVG; a Gemini reaches it at 37 m in the sea");
   section.number("gain_db", model.gain_db, level_db,
                  "output level of unit intensity after TVG, re full scale (80 dB if samples are decibels); "
                  "the client's gain is added");
   section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0),
-                 "range below which the output is exactly 0");
+                 "range below which the output is 0");
   section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0),
-                 "extra noise in the middle of the fan, as in recordings; 0: off");
-  section.number(
-      "noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
-      "scanning heads: amount by which the noise differs between bearings, the same in each sweep");
+                 "extra noise in the middle of the fan; 0: off");
+  section.number("noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
+                 "scanning heads: difference of the noise between bearings");
   section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
-                "scanning heads: standard deviation of the bearings at which sweeps stop");
+                "scanning heads: standard deviation of the bearings of lines");
   if (!scanning) {
     for (const char* key : {"noise_by_bearing_db", "bearing_jitter_deg"}) {
       section.warn_if_given(key, "this head does not scan");
@@ -207,8 +199,8 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   bool later_release = false;
   section.choice(
       "preset", later_release, {{"paper2017", false}, {"paper2018", true}},
-      "start values of the other keys: `paper2017` as in the paper, `paper2018` as in the authors' later "
-      "releases (attenuation 0.024 per m, folded Gaussian speckle of mean 0.95 and sd 0.30, floor 0.03)");
+      "start values of the other keys: `paper2017` as in the paper, `paper2018` as in later releases "
+      "(attenuation 0.024 per m, folded Gaussian speckle of mean 0.95 and sd 0.30, floor 0.03)");
   if (later_release) {
     model = render::PaperModel::release_2018();
   }
@@ -217,11 +209,10 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   section.number("sigmoid_centre", model.sigmoid_centre, Range::from(0.0, 1.0), "x0 of the sigmoid");
   section.boolean("two_sided", model.two_sided,
                   "true: surfaces are visible from both sides; false: surfaces are invisible from behind");
-  section.boolean(
-      "legacy_bin_index", model.legacy_bin_index,
-      "true: ranges are scaled to the last bin as in the authors' code, so the last bin stays empty");
+  section.boolean("legacy_bin_index", model.legacy_bin_index,
+                  "true: ranges are scaled as in the authors' code, so the last bin stays empty");
   section.boolean("legacy_columns", model.legacy_columns,
-                  "true: each pixel column belongs to one beam; false: columns are cut at beam edges");
+                  "true: a pixel column belongs to one beam; false: it is cut at beam edges");
   section.boolean("elevation_mask", model.elevation_mask,
                   "false: the whole planar view counts, so edge beams cover less elevation");
   section.boolean("footprint", model.footprint,
@@ -232,7 +223,7 @@ void read_paper_model(YamlSection& section, render::PaperModel& model) {
   section.choice(
       "speckle", model.speckle,
       {{"gaussian", Speckle::gaussian}, {"folded_gaussian", Speckle::folded_gaussian}, {"off", Speckle::off}},
-      "distribution of the multiplicative speckle, drawn for each ping");
+      "distribution of the multiplicative speckle");
   section.number("speckle_mean", model.speckle_mean, Range::from(0.0, 10.0), "mean of the speckle factor");
   section.number("speckle_sd", model.speckle_sd, Range::from(0.0, 10.0),
                  "standard deviation of the speckle factor");
@@ -266,13 +257,12 @@ bool look_like_radians(const glm::dvec3& angles) {
 }
 
 void read_mount(YamlSection& section, HeadConfig& head) {
-  read_pose(section, head.T_vehicle_sonar,
-            "origin of the sonar in the vehicle frame (x forward, y to port, z up)",
-            "rotation, as in `poses.initial`; [0, 20, 0] turns the x axis 20 degrees down");
+  read_pose(section, head.T_vehicle_sonar, "origin of the sonar on the vehicle (x forward, y to port, z up)",
+            "rotation, as in `poses.initial`; [0, 20, 0] is 20 degrees down");
   section.text("from_world", head.mount_from_world,
                "instead of the other two keys: sonar of the world that gives both "
                "([worlds.md](worlds.md#sonars)). Its name is `bow`, or as much of `rov::sonar_link::bow` as "
-               "distinguishes it from others. It must have the type of this head");
+               "is unique. It must have the type of this head");
   if (const double arm_m = glm::length(head.T_vehicle_sonar.position_m); arm_m > longest_arm_m) {
     section.warn("position_m", fmt::format("puts the sonar {:.4g} m from the origin of the vehicle (is it in "
                                            "centimetres or millimetres? sonard expects metres)",
@@ -327,12 +317,11 @@ void read_common(YamlSection& section, const HeadContext& context, HeadConfig& h
   section.section("mount", "pose of the sonar on the vehicle, T_vehicle_sonar",
                   [&](YamlSection& inner) { read_mount(inner, head); });
   section.boolean("hides_vehicle", head.hides_vehicle,
-                  "true: the vehicle's own model (`world.vehicle_model`) is left out of the images of this "
-                  "head; other heads may still show it");
+                  "true: the images of this head do not show `world.vehicle_model`");
   section.section("dump", "writes pings to disk as the renderer returned them", [&](YamlSection& inner) {
     inner.require("directory", "a folder to write to");
     inner.path("directory", head.dump_directory.emplace(), context.folder,
-               "folder, created if it does not exist; it receives one file per ping, so it fills quickly");
+               "folder, created if missing; it gets one file per ping");
   });
 }
 
@@ -344,20 +333,17 @@ void read_single_beam(YamlSection& section, render::Aperture& aperture) {
 
 void read_receive_array(YamlSection& section, render::Aperture& aperture) {
   section.angle("receive_beamwidth_deg", aperture.receive_beamwidth_rad, Range::from(0.1, 60.0),
-                "-3 dB width of one beam at broadside. It sets the pattern of the beams, and over how many "
-                "beams speckle and noise are correlated");
+                "-3 dB width at broadside, also of speckle and noise");
   using Taper = render::Aperture::Taper;
   using Azimuth = render::Aperture::Azimuth;
   section.choice("azimuth_pattern", aperture.azimuth, {{"array", Azimuth::array}, {"ideal", Azimuth::ideal}},
-                 "`array`: beams overlap and have side lobes, as in a straight array; `ideal`: beams receive "
-                 "only echoes between their edges");
+                 "`array`: overlapping beams with side lobes; `ideal`: sharp beams");
   section.choice("taper", aperture.taper,
                  {{"hamming", Taper::hamming},
                   {"hann", Taper::hann},
                   {"kaiser", Taper::kaiser},
                   {"uniform", Taper::uniform}},
-                 "weights of the array's elements: `hamming` has side lobes of -43 dB, `hann` of -31 dB, "
-                 "`kaiser` (beta 2.5) of -21 dB, `uniform` of -13 dB");
+                 "element weights; side lobes of -43, -31, -21, -13 dB");
   section.integer("fine_beams", aperture.fine_beams, 1, 16,
                   "with `array`: number of parts of a beam to which a bearing is resolved");
   using Bearing = render::Aperture::Bearing;
@@ -365,14 +351,13 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
                  "with `array`: a `planar` beam looks at an azimuth; a `conical` beam looks along a cone, as "
                  "in a straight array, so echoes from off the horizontal appear nearer to the axis");
   section.number("element_amplitude_sd", aperture.element_amplitude_sd, Range::from(0.0, 2.0),
-                 "with `array`: standard deviation of the elements' amplitude errors, as a fraction. They "
-                 "let strong echoes leak into all beams. `seed` draws the errors");
+                 "with `array`: standard deviation of the elements' amplitudes, as a fraction; errors leak "
+                 "strong echoes into all beams");
   section.angle("element_phase_sd_deg", aperture.element_phase_sd_rad, Range::from(0.0, 180.0),
                 "with `array`: standard deviation of the elements' phase errors");
   std::uint64_t element_seed = 0;
   section.integer("element_seed", element_seed, 0, max_u64,
-                  "seed of the element errors, instead of `seed`; with a fixed value, each `seed` gives "
-                  "different noise of the same array");
+                  "seed of the element errors, if they must not follow `seed`");
   section.default_is("element_seed", "`seed`");
   if (section.has("element_seed")) {
     aperture.element_seed = element_seed;
@@ -381,13 +366,13 @@ void read_receive_array(YamlSection& section, render::Aperture& aperture) {
 
 void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
   render::SonarSettings& settings = head.acoustics;
-  section.choice(
-      "mode", settings.model, {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
-      "`physical`: sonar equation with Rayleigh speckle and noise; `paper`: model of Cerqueira et al. 2017");
+  section.choice("mode", settings.model,
+                 {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
+                 "`physical`: sonar equation with noise; `paper`: Cerqueira et al. 2017");
   section.integer("seed", head.seed, 0, max_u64,
-                  "seed of speckle and noise; the same seed, poses and pings give the same bytes");
+                  "seed of speckle and noise; equal seed, poses and pings give equal bytes");
   section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0),
-                "-3 dB full width of the vertical beam");
+                "-3 dB full width");
   using Elevation = render::Aperture::Elevation;
   section.choice(
       "elevation_pattern", settings.aperture.elevation,

@@ -106,10 +106,9 @@ void read_log(YamlSection& section, LogLevel& level, LogFormat& format) {
                   {"info", LogLevel::info},
                   {"warn", LogLevel::warn},
                   {"error", LogLevel::error}},
-                 "minimum severity of the logged events; `--log-level` overrides this key");
+                 "minimum severity; `--log-level` overrides it");
   section.choice("format", format, {{"text", LogFormat::text}, {"json", LogFormat::json}},
-                 "`text`, or `json` with one JSON object per line for programs that collect logs "
-                 "([deploy.md](deploy.md#logs-for-programs)); `--log-format` overrides this key");
+                 "`json`: [an object per line](deploy.md#logs-for-programs)");
 }
 
 void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
@@ -123,31 +122,26 @@ void read_world(YamlSection& section, const std::filesystem::path& folder, Daemo
     section.require("file", "an SDF world; for open water, empty: true");
   }
   section.choice("missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
-                 "reaction to an include or a mesh whose file does not exist: `error`: sonard does not "
-                 "start; `skip`: sonard leaves it out and prints a warning");
+                 "missing files: `error` stops, `skip` omits meshes and includes with a warning");
   section.integer("max_triangles", config.world_max_triangles, 1, 2'000'000'000,
-                  "maximum number of triangles in the world, counting each use of a mesh; sonard rejects a "
-                  "world with more");
+                  "maximum number of triangles, counting each use of a mesh");
   section.text("vehicle_model", config.vehicle_model,
-               "model of the world that is the vehicle itself. It moves with the vehicle, and poses of a "
-               "body with this name in the pose stream have no effect. Its frame is the vehicle frame");
+               "model that is the vehicle itself, and moves with it. Its frame is the vehicle frame. Poses "
+               "of this body in the stream have no effect");
   section.default_is("vehicle_model",
                      "the model with the sonars of `mount.from_world`; no model if no head has `from_world`");
-  section.section(
-      "origin",
-      "position of the world's (0, 0, 0) on Earth, instead of `<spherical_coordinates>` in the file. Maps "
-      "and GLOBAL_POSITION_INT require this position ([worlds.md](worlds.md#where-on-earth))",
-      [&](YamlSection& inner) {
-        render::GeographicOrigin& origin = config.origin.emplace();
-        inner.require("latitude_deg", "degrees, WGS 84, north is positive");
-        inner.require("longitude_deg", "degrees, WGS 84, east is positive");
-        inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
-                     "WGS 84 latitude; north is positive");
-        inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
-                     "WGS 84 longitude; east is positive");
-        inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
-                     "altitude of z = 0 in the datum of the map; without a map, above mean sea level");
-      });
+  section.section("origin", "position of (0, 0, 0) on Earth ([worlds.md](worlds.md#place-on-earth))",
+                  [&](YamlSection& inner) {
+                    render::GeographicOrigin& origin = config.origin.emplace();
+                    inner.require("latitude_deg", "degrees, WGS 84, north is positive");
+                    inner.require("longitude_deg", "degrees, WGS 84, east is positive");
+                    inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
+                                 "WGS 84 latitude; north is positive");
+                    inner.number("longitude_deg", origin.longitude_deg, Range::from(-180.0, 180.0),
+                                 "WGS 84 longitude; east is positive");
+                    inner.number("altitude_m", origin.altitude_m, Range::from(-12'000.0, 9'000.0),
+                                 "altitude of z = 0 in the datum of the map, or above mean sea level");
+                  });
 }
 
 render::Water properties(const WaterConfig& water) {
@@ -169,10 +163,9 @@ void read_water(YamlSection& section, HeadContext& context) {
                  "water depth for these formulas; it does not follow the vehicle");
   section.number("ph", water.ph, Range::from(5.0, 10.0), "acidity; it has little effect above 100 kHz");
   double absorption_db_per_km = -1.0;
-  section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
-                         {{"computed", -1.0}},
-                         "one-way absorption. Outside -2 to 30 degrees Celsius or 30 to 35 ppt, `computed` "
-                         "is an extrapolation, and sonard prints a warning");
+  section.number_or_word(
+      "absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0), {{"computed", -1.0}},
+      "one-way absorption. Outside -2 to 30 degrees Celsius or 30 to 35 ppt, `computed` is an extrapolation");
   context.absorption_db_per_m = absorption_db_per_km < 0.0 ? -1.0 : absorption_db_per_km / 1000.0;
   section.number_or_word(
       "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
@@ -181,8 +174,8 @@ void read_water(YamlSection& section, HeadContext& context) {
       "the client does not send one), so the client's ranges are correct. With other values, ranges are "
       "wrong by the ratio of the two speeds, as at sea");
   section.number("sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0),
-                 "increase of the sound speed with height (m/s per m). 0: sound travels in straight lines. "
-                 "0.5 to 1.8 is warm water above cold: rays bend down, and echoes of the bed appear nearer. "
+                 "increase of the sound speed with height (m/s per m). 0: straight rays. 0.5 to 1.8 is warm "
+                 "water above cold: rays bend down, and the bed appears nearer. "
                  "-0.017 is water of one temperature; no sonar here shows its effect. With a gradient, "
                  "sonard subdivides facets ([acoustics.md](acoustics.md#refraction))");
 }
@@ -191,7 +184,7 @@ void read_trajectory(YamlSection& section, const std::filesystem::path& folder, 
   section.require("file", "a trajectory file, CSV or TUM");
   section.path("file", trajectory.file, folder, "trajectory file, CSV or TUM ([poses.md](poses.md))");
   section.boolean("loop", trajectory.loop,
-                  "true: playback starts again at the end; false: the last pose remains the newest one");
+                  "true: playback starts again at the end; false: the last pose remains");
   section.number("speed", trajectory.speed, Range::above(0.0, 1000.0),
                  "playback speed; 2 is twice as fast as recorded");
   section.choice("axes", trajectory.axes,
@@ -207,20 +200,19 @@ void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
                   "MAVLink system ID of the vehicle; sonard ignores messages from other systems");
   section.integer("component_id", mavlink.component_id, 1, 255,
                   "MAVLink component whose messages sonard uses; 1 is the autopilot");
-  section.choice("messages", mavlink.messages,
-                 {{"auto", MavlinkMessages::automatic},
-                  {"odometry", MavlinkMessages::odometry},
-                  {"local_position", MavlinkMessages::local_position},
-                  {"global_position", MavlinkMessages::global_position}},
-                 "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
-                 "the attitude at the same time. `auto` uses the first message in this list that arrives. "
-                 "GLOBAL_POSITION_INT requires a world with an `origin`; at latitude 0, longitude 0 it needs "
-                 "no origin and gives only the depth");
+  section.choice(
+      "messages", mavlink.messages,
+      {{"auto", MavlinkMessages::automatic},
+       {"odometry", MavlinkMessages::odometry},
+       {"local_position", MavlinkMessages::local_position},
+       {"global_position", MavlinkMessages::global_position}},
+      "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
+      "the attitude at the same time. `auto` uses the first in this list that arrives. GLOBAL_POSITION_INT "
+      "requires an `origin`; at latitude 0, longitude 0 it gives only the depth");
   section.section("origin", "pose of the vehicle's own origin in the world", [&](YamlSection& inner) {
-    read_pose(
-        inner, mavlink.T_world_local,
-        "position in the world (x east, y north, z up) of the point that the vehicle reports as (0, 0, 0)",
-        "rotation, as in `poses.initial`; yaw 90 turns the vehicle's north to the west of the world");
+    read_pose(inner, mavlink.T_world_local,
+              "world position (x east, y north, z up) of the vehicle's (0, 0, 0)",
+              "rotation; yaw 90 turns the vehicle's north to the west of the world");
   });
 }
 
@@ -246,9 +238,8 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
   section.default_is("partition", "value of `IGN_PARTITION`");
   read_own_address(
       section, "address", gazebo.address,
-      "address of this machine on the network to Gazebo; sonard ignores `IGN_IP` and `GZ_IP`. With "
-      "a loopback address (the default), only Gazebo on this machine can publish poses. With any "
-      "other address, every machine on that network can publish poses");
+      "address of this machine on the network to Gazebo, instead of `IGN_IP` and `GZ_IP`. Default: loopback, "
+      "so only this machine can publish poses. With any other address, every machine on that network can");
   section.require("frame", "world, or relative for poses that are relative to parents");
   section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
                  "reference frame of the poses: `world`, or `relative` to `parents`");
@@ -281,8 +272,7 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
     inner.require("entity", "the name of an entity of the simulator");
     inner.text("entity", body.entity.name, "name of the entity in the simulator");
     read_parents(inner, relative, body.entity,
-                 "entities that the pose of `entity` is relative to, the outermost first; only with `frame: "
-                 "relative`");
+                 "as the other `parents`, for `entity`; only with `frame: relative`");
     inner.require("body", "the name of a model of the world");
     inner.text("body", body.body, "name of the model in the world of sonard");
   });
@@ -291,14 +281,12 @@ void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
 void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
   section.introduce(
       "At least one of `initial`, `udp`, `tcp`, `mavlink`, `gazebo` and `trajectory` is required. "
-      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. If several of these four "
-      "are "
-      "set, only one may send poses of the vehicle at a time.");
+      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. Only one of these four may "
+      "send poses of the vehicle at a time.");
   section.section(
       "initial",
-      "pose until the first pose arrives. Without it, and always in simulated time (`clock`), the heads "
-      "answer "
-      "clients but do not ping before the first pose",
+      "pose until the first one arrives. Without it, and always in simulated time (`clock`), the heads "
+      "answer clients but do not ping before the first pose",
       [&](YamlSection& inner) {
         inner.require("position_m", "a list of three numbers");
         read_pose(
@@ -319,10 +307,8 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
         TcpPoseInput& tcp = poses.tcp.emplace();
         read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "TCP address that publishers connect to",
                     "address blocks that may publish poses");
-        inner.integer(
-            "max_clients", tcp.max_clients, 1, 1000,
-            "maximum number of connections. A further one takes the place of a publisher that sent no "
-            "pose for 30 s; otherwise sonard closes it at once");
+        inner.integer("max_clients", tcp.max_clients, 1, 1000,
+                      "maximum number of connections ([beyond it](security.md#limits-on-clients))");
       });
   section.section("mavlink",
                   "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
@@ -333,23 +319,21 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
   section.section("trajectory", "trajectory file, played from the start of the daemon",
                   [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
   section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0),
-                   "time after the newest pose for which sonard follows its twist; without a twist, sonard "
-                   "holds the pose");
+                   "time after the newest pose for which sonard follows its twist, if any");
   section.choice("stale", poses.stale_policy,
                  {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
-                 "behaviour after `extrapolation_limit_ms`: `hold`: pings continue from the last pose; "
-                 "`silence`: pings stop until a pose arrives, and status packets continue");
+                 "after `extrapolation_limit_ms`: `hold`: pings continue from the last pose; `silence`: "
+                 "pings stop until a pose arrives, and status packets continue");
   section.renamed_value("clock", "source", "simulated");
   section.renamed_value("clock", "lock_step", "simulated_lock_step");
-  section.choice(
-      "clock", poses.clock,
-      {{"wall", PingClock::wall},
-       {"simulated", PingClock::simulated},
-       {"simulated_lock_step", PingClock::simulated_lock_step}},
-      "clock for the pings: `wall` is the clock of this machine; with `simulated` and "
-      "`simulated_lock_step`, pings follow simulated time, which is the stamps of the poses, for a "
-      "simulation that is slow, fast or paused. `simulated_lock_step` skips no ping, however slow "
-      "the rendering ([poses.md](poses.md#simulated-time))");
+  section.choice("clock", poses.clock,
+                 {{"wall", PingClock::wall},
+                  {"simulated", PingClock::simulated},
+                  {"simulated_lock_step", PingClock::simulated_lock_step}},
+                 "clock for the pings: `wall` is the clock of this machine; with `simulated` and "
+                 "`simulated_lock_step`, pings follow the stamps of the poses, for a simulation that is "
+                 "slow, fast or paused. `simulated_lock_step` skips no ping, however slow "
+                 "the rendering ([poses.md](poses.md#simulated-time))");
 
   const bool live = poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
   if (live && poses.trajectory) {
@@ -368,8 +352,8 @@ void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseC
 
 void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adaptive_quality) {
   section.introduce(
-      "Target error of the echo. sonard chooses the samples for it automatically. [accuracy.md](accuracy.md) "
-      "lists measured errors, and [benchmark.md](benchmark.md) lists the cost.");
+      "sonard chooses the samples for this error. [accuracy.md](accuracy.md) lists measured errors, "
+      "[benchmark.md](benchmark.md) the cost.");
   using Preset = render::Sampling::Preset;
   section.choice("preset", sampling.preset,
                  {{"fast", Preset::fast},
@@ -377,10 +361,9 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
                   {"reference", Preset::reference},
                   {"grid", Preset::grid}},
                  "target error: `fast` 5 %, `default` 1 %, `reference` as small as possible (for offline "
-                 "use); `grid` renders a fixed grid of samples");
+                 "use); `grid`: a fixed grid of samples");
   section.integer("views", sampling.views, 1, 32,
-                  "only with `grid`: number of side-by-side views across the fan; sonard uses more if one "
-                  "view would exceed 60 degrees");
+                  "only with `grid`: number of views across the fan; more if one would exceed 60 degrees");
   section.integer("columns_per_view", sampling.columns_per_view, 8, 4096,
                   "only with `grid`: pixels of one view across the fan");
   section.integer("rows", sampling.rows, 8, 4096, "only with `grid`: pixels over the elevation of the fan");
@@ -402,25 +385,21 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
 }
 
 void read_gpu(YamlSection& section, render::GpuOptions& gpu) {
-  section.introduce(
-      "These keys apply if the engine is `gpu`, or if `auto` selects the GPU ([gpu.md](gpu.md)).");
+  section.introduce("They also apply if `auto` selects the GPU ([gpu.md](gpu.md)).");
   section.text("device", gpu.device,
-               "EGL device: its number in the list of `sonard selftest`, or a part of its name there. "
-               "Without this key, sonard prefers hardware to software, then the device with the most memory");
-  section.integer(
-      "memory_mib", gpu.memory_mib, 1, 1'048'576,
-      "video memory for meshes and normal maps in MiB, for each renderer. All fans share one renderer, and "
-      "all scanning heads another. sonard first releases data that it drew least recently. If the data for "
-      "one sonar do not fit, the CPU renders instead ([engines.md](engines.md#video-memory))");
+               "EGL device: its number, or a part of its name, in the list of `sonard selftest`. Default: "
+               "hardware before software, then the device with the most memory");
+  section.integer("memory_mib", gpu.memory_mib, 1, 1'048'576,
+                  "video memory for meshes and normal maps in MiB, for each renderer. All fans share one "
+                  "renderer, all scanning heads another. If the data of one ping do not fit, the CPU renders "
+                  "it ([engines.md](engines.md#video-memory))");
   section.number("retry_s", gpu.retry_s, Range::from(0.0, 86'400.0),
-                 "time between attempts to use the GPU again after it was lost. An attempt takes place "
-                 "during a ping, which waits for it. 0: no attempt, the CPU renders until the daemon ends");
+                 "time between attempts to use a lost GPU again, each during a ping, which waits for it; 0: "
+                 "the CPU renders until the daemon ends");
 }
 
 void read_skip(YamlSection& section, render::SkipSwitches& skip) {
-  section.introduce(
-      "sonard skips work that does not change the image. [skipping.md](skipping.md) lists the rules, with "
-      "the largest change and the saving of each. The log counts how often each rule applied.");
+  section.introduce("[skipping.md](skipping.md) lists them and their bounds.");
   std::vector<std::string_view> names;
   for (const render::SkipRuleEntry& entry : render::skip_rules) {
     names.push_back(entry.name);
@@ -437,24 +416,20 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
 
 void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
   section.introduce(
-      "Logs of all heads, in formats that common tools open. [logs.md](logs.md#5-recording) describes their "
-      "content, what happens if the disk is full, and the files that remain after the daemon was killed.");
+      "[logs.md](logs.md#5-recording) describes the formats, full disks, and the files that a killed daemon "
+      "leaves.");
   section.require("directory", "a folder for the logs");
-  section.path(
-      "directory", recording.directory, folder,
-      "folder of the logs, created if it does not exist; only one daemon at a time can record into it");
+  section.path("directory", recording.directory, folder,
+               "folder of the logs, created if missing; only one daemon at a time can use it");
   section.boolean("glf", recording.glf, "writes a `.glf` for each head whose users work with such logs");
   section.boolean("mcap", recording.mcap,
                   "writes one MCAP file with images, poses, and the bytes of both directions");
   section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
-                  "includes the bytes of both directions in the MCAP file. A capture (`pcapng`) contains "
-                  "them too; images and replay do not need them");
+                  "includes the bytes of both directions, which images and replay do not need");
   section.boolean("mcap_foxglove", recording.mcap_foxglove,
-                  "also writes each ping in the form that Foxglove shows: a picture, the pose of the sonar, "
-                  "and echoes as points. This costs the time to draw a picture for each ping");
+                  "also writes each ping as Foxglove shows it: picture, pose, points");
   section.choice("mcap_compression", recording.mcap_zstd, {{"none", false}, {"zstd", true}},
-                 "compression of each finished chunk of the MCAP file (1 MiB or one second); `zstd` makes "
-                 "the file smaller and takes some processor time");
+                 "compression of each chunk of the MCAP file (1 MiB or one second)");
   section.boolean("pcapng", recording.pcapng,
                   "writes one capture for Wireshark with the bytes of both directions");
   if (!recording.glf && !recording.mcap && !recording.pcapng) {
@@ -462,27 +437,23 @@ void read_recording(YamlSection& section, const std::filesystem::path& folder, R
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
   section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and another ping may follow
-                  "file size in MiB; when one file reaches it, sonard closes all files and begins new ones");
+                  "size of a file at which sonard closes all files and begins new ones");
   recording.rotate_bytes = mebibytes << 20;
   section.duration("rotate_min", recording.rotate_after, Range::from(0.05, 10'080.0),
                    "time in minutes after which sonard closes all files and begins new ones");
-  section.choice(
-      "zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
-      "time zone of the times in a `.glf` and in all file names; a `.glf` does not state its time zone");
+  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
+                 "time zone of times in a `.glf`, which does not state its zone, and in file names");
   section.choice("sync", recording.sync,
                  {{"never", RecordingSync::never},
                   {"on_close", RecordingSync::on_close},
                   {"every_second", RecordingSync::every_second}},
-                 "when sonard forces files onto the disk, as protection against power cuts. If the process "
-                 "is killed, nothing is lost with any of these values");
+                 "when files are forced onto the disk, against power cuts");
   mebibytes = recording.queue_bytes >> 20;
   section.integer("queue_mib", mebibytes, 1, 16'384,
-                  "maximum amount of data that waits to be written, in MiB. Data beyond it are dropped and "
-                  "counted, because nothing in sonard waits for the disk");
+                  "maximum amount of data that waits to be written; more is dropped and counted");
   recording.queue_bytes = mebibytes << 20;
   section.duration("stop_deadline_s", recording.stop_deadline, Range::from(0.0, 3600.0),
-                   "maximum time that the daemon waits for the disk when it ends. It then logs which data "
-                   "are not on the disk, and the next start repairs the logs");
+                   "maximum wait for the disk when the daemon ends; the log names lost data");
 }
 
 void read_web(YamlSection& section, WebConfig& web) {
@@ -491,21 +462,18 @@ void read_web(YamlSection& section, WebConfig& web) {
       "([page.md](page.md)). Monitors read `/health`, `/ready`, `/metrics` and `/api/status`.");
   read_socket(section, web.bind, web.allow, endpoint_form,
               "HTTP address of the page; the demo uses 127.0.0.1:8014",
-              "address blocks that may open the page; every viewer sees everything");
+              "address blocks that may open the page");
   section.text("token", web.token,
                "clients that send this token may also change state, for example start or stop the recording; "
                "browsers on this machine need no token");
   section.default_is("token", "no token: only browsers on this machine may change state");
   constexpr TextForm origins{"an origin such as https://example.org", "origins", R"("type": "string")"};
-  section.parsed_list(
-      "origins", web.origins, &any_text, origins,
-      "other sites whose pages may connect from a browser; the page itself may always connect");
+  section.parsed_list("origins", web.origins, &any_text, origins,
+                      "other sites whose pages may connect from a browser");
   section.integer("max_viewers", web.max_viewers, 1, 1000,
-                  "maximum number of WebSockets at a time; sonard refuses further ones with status 503. "
-                  "Monitors can always connect");
+                  "maximum number of WebSockets at a time; monitors always connect");
   section.integer("max_viewers_per_peer", web.max_viewers_per_peer, 1, 1000,
-                  "maximum number of WebSockets from one address at a time. Each tab of the page uses one. "
-                  "Programs behind one gateway or proxy, such as Docker's, share its address");
+                  "maximum number of WebSockets (one per tab) from one address or proxy");
 }
 
 void read_document(YamlSection& root, std::span<const HeadType* const> types, DaemonConfig& config) {

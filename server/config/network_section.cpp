@@ -23,8 +23,7 @@ void read_sockets(YamlSection& section, std::string_view key, std::vector<Socket
   section.sections(key, meaning, [&](YamlSection& inner) {
     Socket socket;
     read_socket(inner, socket.bind, socket.allow, serial_endpoint_form,
-                "address that clients connect or send to",
-                "address blocks of clients that may connect; at most 16 connections at a time");
+                "address that clients connect or send to", "clients, at most 16 connections");
     report_if_taken(inner, socket.bind, sockets);
     sockets.push_back(std::move(socket));
   });
@@ -49,9 +48,7 @@ void read_ptys(YamlSection& section, const std::filesystem::path& folder,
     }
     ptys.push_back(std::move(pty));
   };
-  section.sections("pty",
-                   "pseudo terminals, used like serial devices of this machine; `- {}` is one without a link",
-                   read_pty);
+  section.sections("pty", "pseudo terminals, like serial devices; `- {}` is one without a link", read_pty);
   section.default_is("pty", "[]", "[]");
 }
 
@@ -79,7 +76,7 @@ void read_allow_list(YamlSection& section, Ipv4 bind_address, AllowList& allow, 
                             R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}(/[0-9]{1,2})?$")"};
   section.parsed_list("allow", allow, &parse_cidr, blocks, meaning,
                       "the list is empty (expected at least one address block)");
-  section.default_is("allow", "[127.0.0.0/8]; **required** when not bound to loopback", R"(["127.0.0.0/8"])");
+  section.default_is("allow", "loopback; otherwise **required**", R"(["127.0.0.0/8"])");
 }
 
 void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const TextForm& form,
@@ -92,21 +89,17 @@ void read_socket(YamlSection& section, Endpoint& bind, AllowList& allow, const T
 
 SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::path& folder) {
   section.introduce(
-      "At least one of `tcp`, `udp` and `pty` is required, and each may have any number of entries. Every "
-      "client receives every frame. The head receives the clients' bytes in the order of their arrival. "
-      "Clients may connect and disconnect at any byte. The log names the place of each port.");
+      "At least one of `tcp`, `udp` and `pty` is required, with any number of entries. Every client receives "
+      "every frame.");
   SerialLinkConfig link;
   read_sockets(section, "tcp", link.tcp,
-               "TCP ports with raw bytes to and from each client, as in serial device servers; no telnet, no "
-               "RFC 2217");
+               "TCP ports with raw bytes, as serial device servers; no telnet, no RFC 2217");
   read_sockets(section, "udp", link.udp,
                "UDP ports with one datagram for each frame, to the peer that sent last");
   read_ptys(section, folder, link.pty);
-  section.integer(
-      "baud", link.baud, 300, 4'000'000,
-      "simulated speed of the line in bits per second, with ten bits per byte, in both directions. A head "
-      "that keeps the pace of its line does so without this key. This key also delays single frames as on "
-      "the line: at 115200, a frame of 445 bytes arrives 38.6 ms after it was sent");
+  section.integer("baud", link.baud, 300, 4'000'000,
+                  "simulated speed of the line in bits per second, with ten bits per byte. A head keeps its "
+                  "pace without this key. At 115200, a frame of 445 bytes arrives 38.6 ms after it was sent");
   section.default_is("baud", "no limit");
   if (link.tcp.empty() && link.udp.empty() && link.pty.empty()) {
     section.report("tcp",
@@ -117,15 +110,13 @@ SerialLinkConfig read_serial_link(YamlSection& section, const std::filesystem::p
 
 void read_lock_to_first(YamlSection& section, bool& lock_to_first, std::string_view free_again) {
   section.choice("lock_to_first", lock_to_first, {{"off", false}, {"on", true}},
-                 fmt::format("`on`: the first address that sends commands controls the head. Commands from "
-                             "all other addresses are dropped until {} ([security.md](security.md))",
+                 fmt::format("`on`: the first address that sends commands controls the head. Others are "
+                             "dropped until {} ([security.md](security.md))",
                              free_again));
 }
 
 void read_link_faults(YamlSection& section, LinkConfig& link) {
-  section.introduce(
-      "Faults depend only on the seed and the number of the datagram, so the same traffic meets the same "
-      "faults.");
+  section.introduce("The same seed and traffic give the same faults.");
   section.integer("seed", link.seed, 0, std::numeric_limits<std::uint64_t>::max(), "seed of the faults");
   section.renamed("to_surface", "to_client");
   section.section("to_client", "faults of datagrams that the head sends",

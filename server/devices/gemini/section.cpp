@@ -32,21 +32,17 @@ void read_network(YamlSection& section, GeminiConfig& config) {
   config.interface =
       read_own_address(section, "alternate_address", device.alternate_address,
                        "address that clients find in the status packets and send to, or the interface with "
-                       "this address. If the address of the interface changes, the head follows it. Clients "
-                       "must be able to reach the head at this address");
+                       "this address. If the address of the interface changes, the head follows it");
   if (section.has("alternate_address")) {
     check_host_address(section, "alternate_address", device.alternate_address);
   }
   section.require("netmask", "the mask of the interface that is served, such as 255.255.255.0");
-  config.netmask_interface =
-      read_own_netmask(section, "netmask", device.netmask,
-                       "true mask of the interface on which the head is served. Some clients send nothing if "
-                       "it differs from the mask of their own interface");
+  config.netmask_interface = read_own_netmask(section, "netmask", device.netmask,
+                                              "true mask of the interface; some clients ignore other masks");
   check_inside_network(section, "alternate_address", device.alternate_address, device.netmask);
   const std::string fixed_address = address_text(device.fixed_address);
   section.parsed("fixed_address", device.fixed_address, &parse_ipv4, address_form,
-                 "hard-wired address of a 720i, reported in the status packets. If this machine has it and "
-                 "`bind` is 0.0.0.0, the head is served there too");
+                 "hard-wired address, in the status; also served if `bind` is 0.0.0.0");
   section.default_is("fixed_address", fixed_address, '"' + fixed_address + '"');
   check_host_address(section, "fixed_address", device.fixed_address);
 
@@ -87,12 +83,11 @@ void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
                    "shortest time from ping to ping, whatever the client requests");
   section.renamed("surface_timeout_ms", "client_timeout_ms");
   section.duration("client_timeout_ms", device.client_timeout, Range::from(10.0, 3600.0 * 1000.0),
-                   "time without a command after which the head drops its client and suspends pinging");
+                   "silence after which the head drops its client and suspends pinging");
   section.duration("reboot_time_ms", device.reboot_time, Range::from(0.0, minute_ms),
                    "silence after a reboot command");
-  section.duration(
-      "line_period_us", device.line_period, Range::from(1.0, 10'000.0),
-      "minimum mean time between ping datagrams; the default is the time of a line on a 100 Mbit/s link");
+  section.duration("line_period_us", device.line_period, Range::from(1.0, 10'000.0),
+                   "minimum mean time between ping datagrams; default: as at 100 Mbit/s");
   section.integer("burst_lines", device.burst_lines, 1, 1024,
                   "maximum number of ping datagrams sent back to back");
   section.duration("retry_hold_ms", device.retry_hold, Range::from(0.0, 10'000.0),
@@ -103,17 +98,14 @@ void read_timing(YamlSection& section, gemini::DeviceConfig& device) {
     section.report("retry_hold_max_ms", "is shorter than retry_hold_ms (expected at least as long)");
   }
   section.duration("render_lead_ms", device.render_lead, Range::from(0.0, 1000.0),
-                   "how long before its transmit time a ping may be rendered. 0: rendering starts when the "
-                   "pose at the transmit time is known. A longer time raises the ping rate of a slow "
-                   "renderer, and the pose is then extrapolated by this time");
+                   "how long before its transmit time a ping may be rendered. More raises the ping rate of a "
+                   "slow renderer; the pose is then extrapolated by this time");
 }
 
 void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
-  section.introduce(
-      "The device's own gain law is not published. This law is inferred from the values that clients send.");
+  section.introduce("It is inferred from the values that clients send.");
   section.number("reference_spreading", law.reference_spreading, Range::above(0.0, 1023.0),
-                 "value of the `spreading` field that gives 0 dB. The default is the value that early "
-                 "clients send for 50 percent; later clients send 213");
+                 "`spreading` of 0 dB; 50 percent is 67 (early clients) or 213");
   section.number("db_per_percent", law.db_per_percent, Range::from(0.0, 10.0),
                  "dB per percent of gain, with the percentages of early clients");
   section.number("nominal_main_gain_db", law.nominal_main_gain_db, Range::from(0.0, 100.0),
@@ -126,12 +118,11 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
   using Pulse = render::PhysicalModel::Pulse;
   section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
                  "`tone`: as long as the client requests; `point`: no length");
-  section.boolean(
-      "snap_sound_speed", config.device.snap_sound_speed,
-      "true: the head reports sound speeds on the grid of the real head, 1400 m/s and steps of 3.2 m/s");
+  section.boolean("snap_sound_speed", config.device.snap_sound_speed,
+                  "true: the head rounds sound speeds to 1400 + 3.2 k m/s, as a real one");
   section.boolean("steering_error", config.steering_error,
-                  "true: if the sound speed of the water differs from the ping configuration, beams point in "
-                  "wrong directions, as in a flat array; false: only ranges are wrong");
+                  "true: if the sound speed of the water differs from the ping configuration, bearings are "
+                  "wrong, as in a flat array; false: only ranges are wrong");
   section.section("gain_law", "effect of the client's gain",
                   [&](YamlSection& inner) { read_gain_law(inner, config.device.gain); });
 }
@@ -161,8 +152,7 @@ GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, 
   section.section("trigger", "external trigger input", [&](YamlSection& inner) {
     inner.require("bind", trigger_form.expected);
     inner.parsed("bind", config.trigger.emplace(), &parse_endpoint, trigger_form,
-                 "UDP address of the trigger input. Each datagram counts as one edge of the external "
-                 "trigger. Only senders in the head's `network.allow` count");
+                 "UDP address; each datagram from `network.allow` is a trigger edge");
   });
   return config;
 }

@@ -24,23 +24,21 @@ void read_device(YamlSection& section, micron::DeviceConfig& device) {
                  "264 bytes, for libminiking; `older`: only 175 bytes, as from a head that is not a DST");
   section.boolean("mounted_inverted", device.mounted_inverted,
                   "true: the head is mounted boot down. Left and right are correct if this key and the "
-                  "client's invert bit agree, so set this key for a client that always sets the bit");
+                  "client's invert bit agree");
   section.choice(
       "nibble_order", device.nibble_order,
       {{"high_first", micron::NibbleOrder::high_first}, {"low_first", micron::NibbleOrder::low_first}},
-      "half of a byte that holds the nearer of two bins of 4-bit data; most drivers expect the high half");
+      "half of a byte with the nearer of two 4-bit bins");
   section.choice("limits_order", device.limits_order,
                  {{"clockwise", micron::LimitsOrder::clockwise}, {"swapped", micron::LimitsOrder::swapped}},
-                 "reading of a sector whose left limit is the larger number: `clockwise`: the sector runs "
-                 "through astern; `swapped`: the client has confused the limits");
+                 "if the left limit is larger: `clockwise`: the sector runs through astern; `swapped`: the "
+                 "limits are exchanged");
   section.boolean("always_reports_scan_right", device.always_reports_scan_right,
-                  "true: lines report the direction \"scan right\", whatever the direction is");
-  section.boolean(
-      "alive_while_scanning", device.alive_while_scanning,
-      "true: the head sends its periodic alives between lines too; some drivers block without them");
-  section.boolean(
-      "alive_after_head_command", device.alive_after_head_command,
-      "true: the head answers a head command at once with an alive, in addition to the regular ones");
+                  "true: lines always report the direction \"scan right\"");
+  section.boolean("alive_while_scanning", device.alive_while_scanning,
+                  "true: alives come between lines, too; some drivers block without them");
+  section.boolean("alive_after_head_command", device.alive_after_head_command,
+                  "true: the head answers a head command at once with an extra alive");
   section.boolean("direction_bit_kept", device.direction_bit_kept,
                   "true: alives report \"off centre\" after centring too");
   section.renamed("clock_follows_host", "clock_follows_client");
@@ -48,19 +46,17 @@ void read_device(YamlSection& section, micron::DeviceConfig& device) {
                   "true: a request with a time of day sets the clock of the head");
   section.integer("request_cap", device.request_cap, 1, 100,
                   "maximum number of stored requests; many clients request more lines than they wait for");
-  section.boolean(
-      "requests_survive_head_command", device.requests_survive_head_command,
-      "true: after new parameters, the head still sends the lines requested before, with the new parameters");
+  section.boolean("requests_survive_head_command", device.requests_survive_head_command,
+                  "true: new parameters keep the lines that were requested before");
 }
 
 void read_timing(YamlSection& section, micron::DeviceConfig& device) {
   section.duration("boot_ms", device.boot_time, Range::from(0.0, 999.0),
-                   "time after a reboot in which the head neither receives nor sends. When the daemon "
-                   "starts, its heads are already on and centred");
-  section.duration("centring_ms", device.least_centring_time, Range::from(0.0, 15'000.0),
-                   "minimum time of centring after a reboot, even if the head is at its centre. Above 1000, "
-                   "a driver gets two alives during centring; above about 1800, a driver with a watchdog "
-                   "reboots the head again. A long way to the centre takes longer");
+                   "silence after a reboot. When the daemon starts, its heads are already on and centred");
+  section.duration(
+      "centring_ms", device.least_centring_time, Range::from(0.0, 15'000.0),
+      "minimum time of centring after a reboot. Above 1000, a driver gets two alives; above 1800, its "
+      "watchdog may reboot again ([drivers](your-micron-driver.md#what-drivers-need-of-a-reboot))");
   section.angle("seek_speed_deg", device.seek_speed_rad_s, Range::above(0.0, 36'000.0),
                 "turning speed while centring, degrees per second");
   section.duration("alive_period_ms", device.alive_period, Range::from(10.0, minute_ms),
@@ -70,14 +66,12 @@ void read_timing(YamlSection& section, micron::DeviceConfig& device) {
   section.duration("reposition_limit_ms", device.reposition_limit, Range::from(0.0, minute_ms),
                    "maximum of `reconfiguration_ms` and the way to a sector together");
   section.integer("link_baud", device.baud, 300, 4'000'000,
-                  "speed in bits per second of the line on which the head is assumed to send. With the times "
-                  "for listening and turning, it sets the pace of lines on any transport");
+                  "assumed line speed in bits per second; it sets the pace on any transport");
   section.duration("line_overhead_ms", device.line_overhead, Range::from(0.0, 1000.0),
                    "overhead of each line, in addition to listening, turning and sending");
   double line_period_ms = -1.0;
-  section.number_or_word(
-      "line_period_ms", line_period_ms, Range::from(0.0, minute_ms), {{"device", -1.0}},
-      "time from line to line; `device`: as on the device; 0: as fast as lines are rendered");
+  section.number_or_word("line_period_ms", line_period_ms, Range::from(0.0, minute_ms), {{"device", -1.0}},
+                         "time from line to line; 0: as fast as lines are rendered");
   if (line_period_ms >= 0.0) {
     device.line_period = std::chrono::nanoseconds(static_cast<std::int64_t>(1e6 * line_period_ms));
   }
@@ -87,7 +81,7 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
   read_acoustics(section, micron::carrier_hz, head);
   read_single_beam(section, head.acoustics.aperture);
   section.number("nominal_gain_db", config.nominal_gain_db, Range::from(0.0, 80.0),
-                 "initial gain of the client, out of 80 dB, at which the level is `physical.gain_db`");
+                 "initial gain of the client (of 80 dB) at which the level is `physical.gain_db`");
   using Pulse = render::PhysicalModel::Pulse;
   section.choice(
       "pulse", head.acoustics.physical.pulse,
@@ -95,13 +89,10 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
       "response in range: `chirp` has side lobes of -13 dB; `windowed_chirp` has side lobes of -31 dB and is "
       "1.6 times as wide; `point` has no length");
   section.number("chirp_bandwidth_khz", config.chirp_bandwidth_hz, Range::from(0.0, 10'000.0),
-                 "bandwidth of the chirp. It sets the range cell (7.5 mm at 1500 m/s with the default); 0 is "
-                 "a pulse without length",
-                 1e-3);
+                 "bandwidth of the chirp, which sets the range cell (default: 7.5 mm)", 1e-3);
   section.number("bin_overlap", head.acoustics.physical.bin_overlap, Range::from(0.0, 1.0),
-                 "weight of the adjoining halves of the neighbouring bins in the level of a bin; the bin's "
-                 "own two halves have weight 1. With 0.55, neighbouring bins have a correlation of 0.42, as "
-                 "in recordings. With 0, a bin is the mean of its own range cells");
+                 "weight of the adjoining halves of the neighbouring bins in a bin; its own halves have 1. "
+                 "With 0.55, neighbours have a correlation of 0.42, as in recordings");
 }
 
 }  // namespace

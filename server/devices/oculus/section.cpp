@@ -29,10 +29,10 @@ void read_identity(YamlSection& section, oculus::DeviceConfig& device) {
 void read_network(YamlSection& section, OculusConfig& config) {
   oculus::DeviceConfig& device = config.device;
   section.require("address", "the address that clients connect to");
-  config.interface = read_own_address(
-      section, "address", device.address,
-      "address that clients find in the status packets and connect to: an address of this machine, or the "
-      "interface with this address. If the address of the interface changes, the head follows it");
+  config.interface =
+      read_own_address(section, "address", device.address,
+                       "address that clients find in the status packets and connect to, or the interface "
+                       "with this address. If the address of the interface changes, the head follows it");
   if (section.has("address")) {
     check_host_address(section, "address", device.address);
   }
@@ -57,9 +57,9 @@ void read_timing(YamlSection& section, oculus::DeviceConfig& device) {
   section.duration("status_period_ms", device.status_period, Range::from(10.0, minute_ms),
                    "period of the status packets");
   section.duration("dummy_period_ms", device.dummy_period, Range::from(10.0, minute_ms),
-                   "period of the Dummy messages to the client while the head does not ping");
+                   "period of the Dummy messages while the head does not ping");
   section.duration("ping_overhead_ms", device.plan.ping_overhead, Range::above(0.0, 1000.0),
-                   "overhead of each ping, in addition to the time until the last echo is back");
+                   "overhead of each ping, beside the time until the last echo");
 }
 
 void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
@@ -67,26 +67,23 @@ void read_firmware(YamlSection& section, oculus::DeviceConfig& device) {
   section.integer("most_ranges", device.plan.most_ranges, 16, 8192,
                   "maximum number of rows in an image; longer ranges have coarser rows");
   section.boolean("rescales_high_frequency_gain", device.plan.rescales_high_frequency_gain,
-                  "true: at the high frequency, the head reports 40 + 0.6 times the gain. One driver "
-                  "reverses this rescaling, and waits for the result");
-  section.boolean(
-      "reports_sound_speed_used", device.plan.reports_sound_speed_used,
-      "true: if a client sends a sound speed of 0, the head reports the speed that it used instead");
+                  "true: at the high frequency the head reports 40 + 0.6 times the gain; one driver waits "
+                  "for this value");
+  section.boolean("reports_sound_speed_used", device.plan.reports_sound_speed_used,
+                  "true: for a commanded 0, the head reports the sound speed that it used");
   section.boolean("reports_version_1", device.plan.reports_version_1,
-                  "version in the header of a ping that answers a fire of version 0: true: 1; false: 0");
+                  "version of a ping that answers a fire of version 0: 1 (true) or 0 (false)");
   section.choice("heading", device.plan.heading_sign,
                  {{"clockwise", 1}, {"counter_clockwise", -1}, {"zero", 0}},
-                 "direction in which the heading of a ping grows from north, the y axis of the world; "
-                 "`zero`: the heading is always 0");
+                 "direction of growth from north (y); `zero`: 0");
   section.choice("pitch", device.plan.pitch_sign, {{"nose_up", 1}, {"nose_down", -1}, {"zero", 0}},
-                 "positive direction of the pitch; `zero`: the pitch is always 0");
+                 "positive direction of the pitch; `zero`: always 0");
   section.choice("roll", device.plan.roll_sign, {{"starboard_down", 1}, {"port_down", -1}, {"zero", 0}},
-                 "positive direction of the roll; `zero`: the roll is always 0");
+                 "positive direction of the roll; `zero`: always 0");
   section.choice("pressure", device.plan.surface_pressure_bar,
                  {{"absolute", device.plan.surface_pressure_bar}, {"gauge", 0.0}},
                  "reported pressure at the surface: `absolute` is the air pressure, 1.013 bar; `gauge` is 0. "
-                 "The pressure includes the depth below the water surface of the world, or `water.depth_m` "
-                 "if the world has no surface");
+                 "It includes the depth below the water surface of the world, or else `water.depth_m`");
   section.text("log_text", device.log_text,
                "text sent to each client that connects; one driver waits for it");
   section.default_is("log_text", "two lines that name sonard");
@@ -96,7 +93,7 @@ void read_aperture(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics
   section.number("aperture_deg", mode.horizontal_deg, Range::from(1.0, 170.0),
                  "angle from the first beam to the last");
   section.number("range_cell_mm", acoustics.range_cell_m, Range::above(0.0, 1000.0),
-                 "range resolution, c / 2B of the chirp: the distance at which two echoes are separate", 1e3);
+                 "range resolution, c / 2B of the chirp", 1e3);
   section.default_is("aperture_deg", "set by `model`");
   section.default_is("range_cell_mm", "set by `model`");
 }
@@ -107,12 +104,10 @@ constexpr double absorption_of_water = -1.0;
 void read_high_frequency(YamlSection& section, oculus::Mode& mode, OculusModeAcoustics& acoustics,
                          double& absorption_db_per_km) {
   section.number_or_word("absorption_db_per_km", absorption_db_per_km, Range::from(0.0, 10'000.0),
-                         {{"of_water", absorption_of_water}},
-                         "one-way absorption; `of_water`: from `water.absorption_db_per_km`, computed at the "
-                         "high frequency unless it is a number");
+                         {{"of_water", absorption_of_water}}, "one-way absorption at the high frequency");
   read_aperture(section, mode, acoustics);
   section.angle("vertical_beamwidth_deg", acoustics.vertical_beamwidth_rad, Range::above(0.0, 170.0),
-                "-3 dB full width of the vertical beam");
+                "-3 dB full width");
   section.angle("receive_beamwidth_deg", acoustics.receive_beamwidth_rad, Range::from(0.1, 60.0),
                 "-3 dB width of one beam at broadside");
   section.default_is("vertical_beamwidth_deg", "set by `model`");
@@ -140,8 +135,7 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
   section.choice(
       "pulse", head.acoustics.physical.pulse,
       {{"windowed_chirp", Pulse::windowed_chirp}, {"chirp", Pulse::chirp}, {"point", Pulse::point}},
-      "output of a matched filter: `windowed_chirp` under a window, `chirp` without a window; `point`: no "
-      "length");
+      "matched filter, windowed or not, or a `point`");
   section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
                  "dB per percent of gain; 50 percent is 0 dB");
   section.section("high_frequency", "values that differ at the high frequency", [&](YamlSection& inner) {

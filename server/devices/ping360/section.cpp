@@ -22,9 +22,8 @@ void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& confi
   const auto read = [&](YamlSection& inner) {
     UdpTransportConfig socket;
     read_socket(inner, socket.bind, socket.allow, endpoint_form,
-                "UDP address that clients send to; 12345 is the port of the unit with an Ethernet plug, 9092 "
-                "the port of a vehicle's bridge",
-                "address blocks of clients that the head answers");
+                "UDP address; port 12345: a unit with Ethernet, 9092: a vehicle's bridge",
+                "address blocks that the head answers");
     report_if_taken(inner, socket.bind, config.udp);
     socket.link = link;
     config.udp.push_back(std::move(socket));
@@ -34,11 +33,11 @@ void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& confi
 
 void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
   section.parsed("bind", discovery.bind, &parse_endpoint, discovery_form,
-                 "UDP address that receives the clients' searches; several heads may share it");
+                 "UDP address for clients' searches; several heads may share it");
   section.default_is("bind", endpoint_text(discovery.bind), '"' + endpoint_text(discovery.bind) + '"');
   section.require("address", "the address in the answers to clients, at which a socket of udp is reachable");
   section.parsed("address", discovery.address, &parse_ipv4, address_form,
-                 "address in the answers to clients; a socket of `udp` must be reachable there");
+                 "address in the answers; a socket of `udp` must be reachable there");
   section.parsed("mac", discovery.mac, &parse_mac, mac_form, "MAC address in the answers to clients");
   section.default_is("mac", "54:10:ec:12:34:56");
   if (!section.has("bind")) {
@@ -73,13 +72,11 @@ void read_device(YamlSection& section, ping360::DeviceConfig& device) {
   section.integer("firmware_major", device.information.firmware_major, 0, 255,
                   "major version of the firmware that the head reports");
   section.integer("firmware_minor", device.information.firmware_minor, 0, 255,
-                  "minor version of the firmware that the head reports; ping-viewer lets a head scan by "
-                  "itself if its firmware is newer than 3.3.0");
+                  "minor version of the firmware; above 3.3.0, ping-viewer lets a head scan by itself");
   section.integer("firmware_patch", device.information.firmware_patch, 0, 255,
                   "patch version of the firmware that the head reports");
   section.integer("bearing_offset", device.bearing_offset, 0, 399,
-                  "angle in gradians at which the head looks straight ahead; ping-viewer assumes 200, ROS "
-                  "drivers assume 0");
+                  "angle in gradians that is straight ahead; ping-viewer assumes 200, ROS drivers 0");
   section.boolean(
       "joins_repeated_commands", device.joins_repeated_commands,
       "true: a transducer command that repeats the client's last unanswered one shares its answer, because "
@@ -91,22 +88,22 @@ void read_device(YamlSection& section, ping360::DeviceConfig& device) {
   section.boolean("accepts_angle_400", device.accepts_angle_400,
                   "true: the head reads 400 gradians as 0, because one ROS driver sends 400");
   section.boolean("obeys_set_common_device_id", device.obeys_set_common_device_id,
-                  "true: the head reads message 100 as message 2000; a real head refused it");
+                  "true: the head obeys message 100 like 2000; a real head refused it");
   section.boolean("signed_scan_angles", device.signed_scan_angles,
-                  "true: the head reads limits of a scan as signed numbers, so 65336 is -200 gradians");
+                  "true: the head reads scan limits as signed numbers: 65336 is -200 gradians");
   section.boolean("clamps_scan_to_stop", device.clamps_scan_to_stop,
-                  "true: a sector ends at its limit; false: it ends at the last whole step before the limit");
+                  "true: a sector ends at its limit; false: at the last whole step before it");
   section.boolean("ignores_other_destinations", device.ignores_other_destinations,
                   "true: the head drops frames to IDs other than its own, 0 and 255");
   section.choice("fan_out", device.fan_out,
                  {{"requester", ping360::FanOut::requester}, {"all", ping360::FanOut::all}},
-                 "clients that receive an answer: `requester`: the client that sent the command or began the "
-                 "scan; `all`: every client, as behind a vehicle's bridge");
+                 "clients that receive an answer: the client that asked or began the scan, or `all`, as "
+                 "behind a vehicle's bridge");
   section.integer("max_clients", device.max_clients, 2, 1000,
-                  "maximum number of clients; beyond it, the head drops the client that was silent longest");
+                  "maximum number of clients; then the head drops the longest silent one");
   section.integer("max_datagram", device.max_datagram, 0, 65'507,
-                  "maximum size of a datagram in bytes; longer frames are split into several datagrams, for "
-                  "clients with short buffers. 0: one datagram for each frame");
+                  "maximum size of a datagram in bytes; longer frames are split, for clients with short "
+                  "buffers. 0: one datagram for each frame");
 }
 
 void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
@@ -117,8 +114,7 @@ void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
   section.number("scale", device.time_scale, Range::from(0.0, 100.0),
                  "factor on the time from ping to ping; 0: as fast as pings are rendered");
   section.duration("idle_timeout_ms", device.idle_timeout, Range::from(0.0, 60.0 * minute_ms),
-                   "time without a frame after which the head drops a client and ends its scan; 0: never, "
-                   "because clients may send nothing for longer than one turn");
+                   "silence after which the head drops a client and ends its scan; 0: never");
   section.duration("reset_ms", device.reset_silence, Range::from(0.0, minute_ms), "silence after a reset");
   section.duration("bootloader_ms", device.bootloader_silence, Range::from(0.0, minute_ms),
                    "silence after a reset to the bootloader");
@@ -129,9 +125,7 @@ void read_transducer_band(YamlSection& section, render::TransducerBand& band) {
       "The transducer is modelled as one resonance. The manufacturer publishes the usable band, 650 to 850 "
       "kHz. The one-way loss of 3 dB at its ends is inferred.");
   section.number("low_khz", band.low_hz, Range::from(0.0, 10'000.0),
-                 "lower end of the band, where the transducer loses 3 dB each way. If `low_khz` and "
-                 "`high_khz` are 0, every frequency passes",
-                 1e-3);
+                 "lower end of the band (-3 dB each way); both ends 0: no band", 1e-3);
   section.number("high_khz", band.high_hz, Range::from(0.0, 10'000.0), "upper end of the band", 1e-3);
   const bool none = band.low_hz == 0.0 && band.high_hz == 0.0;
   if (!none && !(band.low_hz > 0.0 && band.high_hz > band.low_hz)) {
@@ -150,7 +144,7 @@ void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Confi
   using Scale = render::OutputScale;
   section.choice("output_scale", head.acoustics.output_scale,
                  {{"half_decibels", Scale::half_decibels}, {"linear", Scale::linear}},
-                 "meaning of one step of a sample; the manufacturer does not publish it");
+                 "meaning of a step of a sample, which is not published");
   section.number("normal_gain_db", config.device.gain_db[1], Range::from(-100.0, 100.0),
                  "gain of setting 1 over setting 0");
   section.number("high_gain_db", config.device.gain_db[2], Range::from(-100.0, 100.0),
@@ -175,10 +169,10 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   }
   read_common(section, context, head);
   LinkConfig link;
-  section.section("link", "faults of the datagrams between `udp` and the clients",
+  section.section("link", "faults of the datagrams of `udp`",
                   [&](YamlSection& inner) { read_link_faults(inner, link); });
   read_udp(section, link, config);
-  section.section("serial", "serial line in addition to the sockets, and how clients connect to it",
+  section.section("serial", "serial line in addition to the sockets",
                   [&](YamlSection& inner) { config.serial = read_serial_link(inner, context.folder); });
   if (config.udp.empty() && !section.has("serial")) {
     section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
@@ -186,10 +180,9 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
   read_lock_to_first(section, config.device.lock_to_first,
                      "the first address is silent for `timing.idle_timeout_ms`, which must not be 0");
   config.serial.lock_to_first = config.device.lock_to_first;
-  section.section(
-      "discovery",
-      "answers to clients that search the network for heads; without this section, clients find no head",
-      [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
+  section.section("discovery",
+                  "answers to clients that search the network; without this section, clients find no head",
+                  [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
   warn_if_found_in_vain(section, config);
   section.section("device",
                   "identity that the head reports, and behaviour that differs between firmware and clients",
