@@ -85,9 +85,8 @@ struct PingStatistics {
   /// of the samples. 0: no echo. Infinite in mode `paper`, which has no noise.
   double echo_over_floor = std::numeric_limits<double>::infinity();
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
-  /// Echoes of 2^14 times unit response or more, clamped to the range of GpuBinner's sums.
-  std::uint64_t saturated_samples = 0;
-  // GPU engine only: passes drawn, bytes read back, and waits for the GPU.
+  // GPU engine only: images made, more than one if buffers were too small; bytes read back; waits for the
+  // GPU.
   std::uint64_t passes = 0;
   std::uint64_t bytes_read_back = 0;
   std::uint64_t synchronisations = 0;

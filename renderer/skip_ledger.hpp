@@ -22,7 +22,6 @@ enum class SkipRule : std::uint8_t {
   geometric_normals,
   absent_normal_map,
   coplanar_facets,
-  coplanar_samples,
   flat_elevation,
   facet_kernel,
   multipath,
@@ -84,11 +83,6 @@ inline constexpr std::array skip_rules{
     SkipRuleEntry{SkipRule::coplanar_facets, "coplanar_facets",
                   "facets echo like flat ones and lie in one plane, within 1e-4 rad and 0.02 mm", "facets",
                   1e-2},
-    SkipRuleEntry{
-        SkipRule::coplanar_samples, "coplanar_samples",
-        "two samples, one above the other and twice as fine as the first ones of `default`, lie in one "
-        "plane within 0.02 lines and respond alike within 10 %",
-        "pairs", 1e-2},
     SkipRuleEntry{SkipRule::flat_elevation, "flat_elevation", "the elevation pattern is `top_hat`", "pings",
                   1e-6},
     SkipRuleEntry{

@@ -21,8 +21,8 @@
 
 #include "common/text/counted.hpp"
 #include "protocol/pose/trajectory.hpp"
-#include "renderer/engines/gpu/thin_things.hpp"
 #include "renderer/errors.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/world.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
@@ -227,7 +227,7 @@ std::optional<std::pair<const char*, render::Pose>> Check::start() const {
 void Check::check_start(const render::World& world) {
   if (config_.engine == render::EngineKind::gpu) {
     for (const HeadConfig& head : config_.heads) {
-      const std::string lost = render::thin_things_not_looked_for(world, usual_settings(head));
+      const std::string lost = render::missed_by_grid(usual_settings(head));
       if (!lost.empty()) {
         warning("engine", fmt::format("head '{}': {}", head.name, lost));
       }

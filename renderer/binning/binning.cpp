@@ -26,7 +26,6 @@ void hand_over(BinningResult&& bins, MeanEcho& echo, PingStatistics& statistics)
   echo.open_sr = std::move(bins.open_sr);
   statistics.samples += bins.samples;
   statistics.invalid_samples += bins.invalid_samples;
-  statistics.saturated_samples += bins.saturated_samples;
   statistics.skipped += bins.skipped;
 }
 

@@ -34,7 +34,6 @@ struct BinningResult {
   std::vector<float> open_sr;  ///< see MeanEcho::open_sr
   std::uint64_t samples = 0;
   std::uint64_t invalid_samples = 0;
-  std::uint64_t saturated_samples = 0;  ///< GpuBinner only: echoes clamped to the range of its sums
   SkipCounts skipped;
   double shading_s = 0.0;  ///< slices only: time in which patches were made
 };

@@ -251,6 +251,15 @@ bool needs_grid(const SonarSettings& settings) {
           (!paper.footprint || paper.legacy_bin_index || paper.legacy_columns || !paper.elevation_mask));
 }
 
+std::string missed_by_grid(const SonarSettings& settings) {
+  const bool is_cone = settings.aperture.bearing == Aperture::Bearing::conical;
+  if (!is_cone && !needs_grid(settings)) {
+    return {};
+  }
+  return std::string("engine gpu may miss posts and bars thinner than a column in some pings, because `") +
+         (is_cone ? "bearing: conical" : "sampling: {preset: grid}") + "` does not search for them";
+}
+
 GridOptions grid_options(const SonarSettings& settings) {
   GridOptions options;
   if (settings.model == Model::paper) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "renderer/sonar_settings.hpp"
@@ -101,6 +102,10 @@ struct GridOptions {
 /// True if the settings require a grid of pixels: a fixed grid, samples without footprints, or one of the
 /// paper's variants.
 bool needs_grid(const SonarSettings& settings);
+
+/// A sentence for the user about posts and bars that engine `gpu` may miss in some pings, because it draws a
+/// grid for these settings; empty if it does not.
+std::string missed_by_grid(const SonarSettings& settings);
 
 /// Options for the model of `settings`.
 GridOptions grid_options(const SonarSettings& settings);

@@ -24,7 +24,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/pose/trajectory.hpp"
-#include "renderer/engines/gpu/thin_things.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/reader_jail.hpp"
 #include "server/clock/clock.hpp"
 #include "server/config/overlaps.hpp"
@@ -137,7 +137,7 @@ class Daemon {
   RenderService& renderer_of(const HeadConfig& head) const {
     return *(type_of(head).scanning() ? beam_renderer_ : fan_renderer_);
   }
-  void say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads, const render::World& world) const;
+  void say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads) const;
   std::string engine_text() const;
   void warm_up(const std::vector<HeadConfig>& heads) const;
   void start_inputs();
@@ -229,19 +229,18 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
   }
   start_inputs();
   warm_up(config.heads);
-  say_what_the_gpu_may_miss(config.heads, world);
+  say_what_the_gpu_may_miss(config.heads);
   start_page(config, world);
   ready_line_ = fmt::format("sonard ready heads={} world={} triangles={} engine=\"{}\"", heads_.size(),
                             world.name, world.triangle_count(), engine_text());
 }
 
-void Daemon::say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads,
-                                       const render::World& world) const {
+void Daemon::say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads) const {
   if (!engine_text().starts_with("gpu")) {
     return;
   }
   for (const HeadConfig& head : heads) {
-    const std::string lost = render::thin_things_not_looked_for(world, usual_settings(head));
+    const std::string lost = render::missed_by_grid(usual_settings(head));
     if (!lost.empty()) {
       spdlog::warn("head={}: {}", head.name, lost);
     }

@@ -172,8 +172,9 @@ struct GpuEchoes::Impl {
 GpuEchoes::GpuEchoes(const Compute& compute) : impl_(std::make_unique<Impl>(compute)) {}
 GpuEchoes::~GpuEchoes() = default;
 
-void GpuEchoes::set_surfaces(const std::vector<PartSurface>& surfaces) {
-  impl_->surfaces.set(surfaces);
+void GpuEchoes::hold_surfaces(const std::vector<PartSurface>& surfaces, std::size_t version,
+                              const std::vector<bool>& may_be_seen) {
+  impl_->surfaces.hold(surfaces, version, may_be_seen);
 }
 
 const GpuSurfaces& GpuEchoes::surfaces() const {
@@ -262,6 +263,7 @@ std::optional<BinningResult> GpuEchoes::take(PingBuffers& ping, const Setting& s
   if (!got) {
     throw RendererError("the OpenGL context is lost");
   }
+  ping.counted = counts;
   if (!ping.room.fits(counts)) {
     ping.room.grow(counts);
     return std::nullopt;

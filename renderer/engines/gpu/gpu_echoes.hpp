@@ -30,8 +30,10 @@ class GpuEchoes {
   GpuEchoes(const GpuEchoes&) = delete;
   GpuEchoes& operator=(const GpuEchoes&) = delete;
 
-  /// Uploads what shades the parts: materials, vertex normals, normal maps.
-  void set_surfaces(const std::vector<PartSurface>& surfaces);
+  /// Uploads what shades the parts that a fan may see: materials, vertex normals, normal maps.
+  /// @param version changes with the surfaces
+  void hold_surfaces(const std::vector<PartSurface>& surfaces, std::size_t version,
+                     const std::vector<bool>& may_be_seen);
   const GpuSurfaces& surfaces() const;
 
   struct Setting {
@@ -43,7 +45,7 @@ class GpuEchoes {
   };
   /// Lets the GPU make the image of a ping and read it back. Does not wait.
   /// @param ping with the visible segments of its slices; slices that are divided have no echo
-  /// @param placed the surfaces of set_surfaces(), with their poses in this ping
+  /// @param placed the surfaces of hold_surfaces(), with their poses in this ping
   /// @throws RendererError if a shader does not build
   void make(PingBuffers& ping, const std::vector<PartSurface>& placed, const Setting& setting);
 

@@ -43,21 +43,23 @@ GpuMeshes::Sizes GpuMeshes::sizes_of(const MeshClusters& mesh) {
   return {mesh.x.size(), mesh.mesh_triangle.size(), mesh.clusters.size()};
 }
 
-void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes) {
+void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes,
+                     std::uint64_t beside_bytes) {
   const std::set<std::shared_ptr<const MeshClusters>> needed(meshes.begin(), meshes.end());
   Sizes all, missing;
   for (const auto& mesh : needed) {
     all = all + sizes_of(*mesh);
     missing = held_.contains(mesh) ? missing : missing + sizes_of(*mesh);
   }
-  if (all.bytes() > bound_bytes_) {
+  const std::uint64_t needed_bytes = all.bytes() + beside_bytes;
+  if (needed_bytes > bound_bytes_) {
     throw RequestError(fmt::format(
         "the part of this world that a sonar sees takes {} bytes of video memory, and gpu.memory_mib "
         "allows {} ({} MiB): raise it, or choose engine: cpu",
-        all.bytes(), bound_bytes_, bound_bytes_ >> 20U));
+        needed_bytes, bound_bytes_, bound_bytes_ >> 20U));
   }
   if (!(used_ + missing).within(room_)) {
-    start_again(all);
+    start_again(all, beside_bytes);
   }
   for (const auto& mesh : meshes) {  // in the order of the world, which is the same in every run
     if (!held_.contains(mesh)) {
@@ -78,8 +80,9 @@ void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& mes
 
 /// Drops all meshes, and makes room for these: and for as many again, if the bound allows it and earlier ones
 /// were held.
-void GpuMeshes::start_again(const Sizes& needed) {
-  room_ = !held_.empty() && (needed + needed).bytes() <= bound_bytes_ ? needed + needed : needed;
+void GpuMeshes::start_again(const Sizes& needed, std::uint64_t beside_bytes) {
+  const Sizes twice = needed + needed;
+  room_ = !held_.empty() && twice.bytes() + beside_bytes <= bound_bytes_ ? twice : needed;
   used_ = {};
   held_.clear();
   vertices_.allocate(room_.vertices * vertex_bytes);

@@ -20,9 +20,10 @@ class GpuMeshes {
       : bound_bytes_(bound_bytes), vertices_(gl), triangles_(gl), clusters_(gl) {}
 
   /// Uploads what is missing of these meshes. Shaders of earlier pings still see what they were given.
+  /// @param beside_bytes of other things, which count too
   /// @throws RequestError if they exceed the bound; then nothing changes
   /// @throws RendererError if OpenGL has no room for them
-  void hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes);
+  void hold(const std::vector<std::shared_ptr<const MeshClusters>>& meshes, std::uint64_t beside_bytes);
 
   /// Index of the first cluster of a mesh of the last hold().
   std::uint32_t first_cluster(const std::shared_ptr<const MeshClusters>& mesh) const {
@@ -46,7 +47,7 @@ class GpuMeshes {
   };
   static Sizes sizes_of(const MeshClusters& mesh);
 
-  void start_again(const Sizes& needed);
+  void start_again(const Sizes& needed, std::uint64_t beside_bytes);
   /// @return index of its first cluster
   std::uint32_t upload(const MeshClusters& mesh);
 

@@ -185,24 +185,23 @@ struct GpuSlices::Impl {
   /// @return number of their clusters
   std::size_t upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
                            const PingSetting& setting) {
-    const auto may_be_seen = [&](const PlacedPart& part) {
-      return !setting.skip.on(SkipRule::culled_clusters) || !part.misses(setting.fan, setting.bend);
-    };
+    const std::vector<bool> seen = may_be_seen(placed, setting);
     std::vector<std::shared_ptr<const MeshClusters>> needed;
-    for (const PlacedPart& part : placed) {
-      if (may_be_seen(part)) {
-        needed.push_back(part.clusters);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      if (seen[i]) {
+        needed.push_back(placed[i].clusters);
       }
     }
-    meshes.hold(needed);
+    meshes.hold(needed, setting.surface_bytes);
     const bool may_hide = setting.bend.straight() && setting.skip.on(SkipRule::hidden_faces);
     std::vector<PartRecord> records;
     std::vector<float> hides;
     std::size_t clusters = 0;
-    for (const PlacedPart& part : placed) {
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      const PlacedPart& part = placed[i];
       PartRecord record{part.placement(), static_cast<std::uint32_t>(hides.size()), 0, 0,
                         static_cast<std::uint32_t>(clusters)};
-      if (may_be_seen(part)) {
+      if (seen[i]) {
         record.first_cluster = meshes.first_cluster(part.clusters);
         clusters += part.clusters->clusters.size();
       }
@@ -326,6 +325,14 @@ GpuSlices::GpuSlices(EglContext& context) : GpuSlices(context, Options()) {}
 GpuSlices::GpuSlices(EglContext& context, const Options& options)
     : impl_(std::make_unique<Impl>(context, options)) {}
 GpuSlices::~GpuSlices() = default;
+
+std::vector<bool> GpuSlices::may_be_seen(const std::vector<PlacedPart>& parts, const PingSetting& setting) {
+  std::vector<bool> may;
+  for (const PlacedPart& part : parts) {
+    may.push_back(!setting.skip.on(SkipRule::culled_clusters) || !part.misses(setting.fan, setting.bend));
+  }
+  return may;
+}
 
 void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
                      const std::vector<GpuSlice>& slices) {

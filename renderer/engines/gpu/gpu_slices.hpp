@@ -45,7 +45,11 @@ class GpuSlices {
     Refraction bend{};
     bool two_sided = true;  ///< false: triangles seen from behind are invisible
     SkipSwitches skip{};
+    std::uint64_t surface_bytes = 0;  ///< in video memory beside the meshes, within the same bound
   };
+  /// Of each part, false only if the fan misses it.
+  static std::vector<bool> may_be_seen(const std::vector<PlacedPart>& parts, const PingSetting& setting);
+
   /// Begins a ping: uploads the parts that the fan may see, places them, and lists their triangles for each
   /// beam.
   /// @param slices with which it begins; empty: those of first_slices()

@@ -70,11 +70,18 @@ class GpuSurfaces::Words {
   std::map<const NormalPyramid*, std::size_t> maps_;
 };
 
-void GpuSurfaces::set(const std::vector<PartSurface>& surfaces) {
+void GpuSurfaces::hold(const std::vector<PartSurface>& surfaces, std::size_t version,
+                       const std::vector<bool>& may_be_seen) {
+  if (version == version_ && may_be_seen == held_) {
+    return;
+  }
+  version_ = version;
+  held_ = may_be_seen;
   records_.clear();
   any_shaded_ = any_mapped_ = any_facets_ = false;
   Words world;
-  for (const PartSurface& part : surfaces) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const PartSurface& part = surfaces[i];
     const Backscatter& backscatter = part.backscatter;
     const bool is_mapped = part.normal_map != nullptr;
     const bool is_shaded = part.vertex_normals && !part.mesh->normals.empty();
@@ -85,10 +92,10 @@ void GpuSurfaces::set(const std::vector<PartSurface>& surfaces) {
     record.slope_variance = std::min(backscatter.slope_variance, Backscatter::widest_variance);
     record.least_cosine = backscatter.least_cosine;
     record.flags = (is_shaded ? has_vertex_normals : 0) | (is_mapped ? has_map : 0);
-    if (is_shaded || is_mapped) {
+    if (may_be_seen[i] && (is_shaded || is_mapped)) {
       world.add_mesh(*part.mesh, is_mapped, record);
     }
-    if (is_mapped) {
+    if (may_be_seen[i] && is_mapped) {
       world.add_map(*part.normal_map, record);
     }
     any_shaded_ |= is_shaded;

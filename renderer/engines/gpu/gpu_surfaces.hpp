@@ -16,9 +16,13 @@ class GpuSurfaces {
  public:
   explicit GpuSurfaces(osg::GLExtensions& gl) : world_(gl) {}
 
-  /// Uploads the surfaces of all parts. Meshes and maps that parts share are uploaded once.
-  void set(const std::vector<PartSurface>& surfaces);
-  /// Uploads the surfaces for one ping. @param surfaces the same as of set(), placed in the ping
+  /// Uploads the surfaces of the parts that a fan may see. Meshes and maps that parts share are uploaded
+  /// once. Does nothing if they are the last ones.
+  /// @param version changes with the surfaces
+  /// @param may_be_seen of each part
+  void hold(const std::vector<PartSurface>& surfaces, std::size_t version,
+            const std::vector<bool>& may_be_seen);
+  /// Uploads the surfaces for one ping. @param surfaces the same as of hold(), placed in the ping
   void upload(const std::vector<PartSurface>& surfaces, GpuBuffer& to) const;
 
   const GpuBuffer& world() const { return world_; }  ///< meshes and normal maps, as the shaders read them
@@ -36,6 +40,8 @@ class GpuSurfaces {
   class Words;
 
   std::vector<Record> records_;  ///< without rotations
+  std::size_t version_ = 0;
+  std::vector<bool> held_;
   GpuBuffer world_;
   bool any_shaded_ = false, any_mapped_ = false, any_facets_ = false;
 };

@@ -123,6 +123,7 @@ struct PingBuffers {
   GpuBuffer pieces_of_slices, pieces;  ///< parts of visible segments, later their patches
   GpuBuffer sums, image;               ///< of bin.comp and sums.comp
   GpuReadback result;                  ///< counts and image
+  PingCounts counted{};                ///< of the last GpuEchoes::take()
 };
 
 }  // namespace sonard::render

@@ -58,6 +58,17 @@ bool Fan::misses(const glm::vec3& centre_m, float radius_m) const {
   return (convex ? std::max(port_m, starboard_m) : std::min(port_m, starboard_m)) > reach_m;
 }
 
+bool Fan::is_behind(const glm::vec3& centre_m, float radius_m) const {
+  constexpr float slack = 1e-3F;  // as in misses()
+  const float horizontal_m = std::sqrt(centre_m.x * centre_m.x + centre_m.y * centre_m.y);
+  const auto along_m = [&](double edge_rad) {
+    return centre_m.x * static_cast<float>(std::cos(edge_rad)) +
+           centre_m.y * static_cast<float>(std::sin(edge_rad));
+  };
+  return width_rad_ < std::numbers::pi_v<float> && along_m(edges_rad_.front()) < 0 &&
+         along_m(edges_rad_.back()) < 0 && horizontal_m * (1 - slack) > radius_m;
+}
+
 Fan::BeamRange Fan::beams_between(float low_rad, float high_rad) const {
   const auto port = static_cast<float>(edges_rad_.front());
   const auto last_bucket = static_cast<float>(first_beam_.size() - 1);

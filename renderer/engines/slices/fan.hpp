@@ -31,6 +31,9 @@ class Fan {
   /// True if a sphere is wholly outside the range, the elevation limits or the azimuths; false for some
   /// spheres that are just outside.
   bool misses(const glm::vec3& centre_m, float radius_m) const;
+  /// True if a sphere lies behind both sides of a fan of less than half a turn: its nearest point of the fan
+  /// is the sonar. For large spheres; misses() may be false for them.
+  bool is_behind(const glm::vec3& centre_m, float radius_m) const;
 
   /// An edge whose azimuth changes by less than this, at most a tenth of a beam, is upright: it runs along
   /// slices, and a cut does not show how much of the wedge lies to either side of it.

@@ -141,7 +141,9 @@ void MeshClusters::find_sphere() {
 bool PlacedPart::misses(const Fan& fan, const Refraction& bend) const {
   const glm::vec3 centre_m = R_sonar_part * clusters->centre_m + t_sonar_part_m;
   const float spread_m = bend.straight() ? 0.0F : bend.spread_m(centre_m, clusters->radius_m);
-  return fan.misses(bend.straight() ? centre_m : bend.point(centre_m), clusters->radius_m + spread_m);
+  const glm::vec3 at_m = bend.straight() ? centre_m : bend.point(centre_m);
+  return fan.misses(at_m, clusters->radius_m + spread_m) ||
+         fan.is_behind(at_m, clusters->radius_m + spread_m);
 }
 
 slices::Placement PlacedPart::placement() const {

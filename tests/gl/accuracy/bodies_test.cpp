@@ -46,7 +46,7 @@ render::TriangleMesh make_column(double x, double y, double radius_m, double hal
 }
 
 TEST_P(SphereAccuracy, T4Sphere) {
-  render::Body sphere = make_body("sphere", make_sphere(static_cast<float>(corner_radius_m(0.5, 512)), 512));
+  render::Body sphere = make_body("sphere", make_sphere(static_cast<float>(corner_radius_m(0.5, 160)), 160));
   sphere.T_world_body.position_m = {8 * std::cos(20 * degree), 8 * std::sin(20 * degree), 0};
   const Scene scene = forward_looking_scene({sphere});
   const SphereTruth truth{0.5, 8, 20 * degree, 0};

@@ -62,7 +62,7 @@ class BothSides {
     for (const SliceCell* cell : cells_) {
       gpu_cells.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
     }
-    echoes_.set_surfaces(parts_.surfaces());
+    echoes_.hold_surfaces(parts_.surfaces(), 1, std::vector<bool>(parts_.surfaces().size(), true));
     buffers.room = {1U << 16U, 1U << 18U, 1U << 20U, 1U << 21U, 1U << 13U, 1U << 20U, 1U << 14U, 1U << 12U};
   }
 

@@ -34,8 +34,7 @@ TEST(GpuReport, HasARowForEveryPreset) {
     }
     const auto work = find_work(report.results, {"small_plane", "gpu", preset});
     ASSERT_TRUE(work);
-    EXPECT_GT(work->pixels, 0);
-    EXPECT_GT(work->atomic_additions, work->samples);
+    EXPECT_GT(work->samples, 0);
     EXPECT_GE(work->cpu_part_ms, 0);
   }
 }

@@ -171,9 +171,9 @@ TEST_P(Refraction, ShadowOfAWallEndsWhereTheRayOverItsTopLands) {
   const float behind = image.at(10, after);
   EXPECT_NEAR(static_cast<double>(behind) / (bed_density(after * 0.05, (after + 1) * 0.05) * degree), 1,
               0.05);
-  // The edge lies at half of `behind`, to one line (docs/accuracy.md). With slices, the four lines before it
-  // may hold up to 3 %.
-  const float early = GetParam() == EngineKind::cpu ? 0.03F : 1e-3F;
+  // The edge lies at half of `behind`, to one line (docs/accuracy.md). The four lines before it may hold up
+  // to 3 %.
+  const float early = 0.03F;
   const int edge = static_cast<int>(end_m / 0.05);
   EXPECT_GT(image.at(10, edge + 1), 0.5F * behind);
   for (int line = static_cast<int>(base_m / 0.05) + 2; line < edge; ++line) {

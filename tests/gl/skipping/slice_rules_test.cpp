@@ -322,36 +322,14 @@ TEST(SliceRules, FacetsInOnePlaneAreMerged) {
   }
 }
 
-TEST(SliceRules, TheGpuDrawsMergedFacetsToo) {
+TEST(SliceRules, TheGpuSeesMergedFacetsToo) {
   require_gl();
   const auto skipped = [](const World& world) {
     return compare(SkipRule::coplanar_facets, world, small_request(), {}, EngineKind::gpu).skipped;
   };
   EXPECT_EQ(skipped(divided_bed_and_box()), 2u * (40 * 40 + 6 * 16 * 16 - 7));
   EXPECT_EQ(skipped(ball_alone(faceted_ball(false))), 0u);
-  EXPECT_EQ(skipped(mappable_bed(false)), 0u);  // it has normals, which the GPU takes as they are
-}
-
-// Two samples, one above the other, are binned as one if they lie in one plane and the view is fine enough.
-// In a grid set by a user they are not.
-TEST(SliceRules, SamplesInOnePlaneAreBinnedAsOne) {
-  require_gl();
-  PingRequest request = small_request();
-  const auto compare_with = [&](Sampling sampling, const World& world) {
-    request.settings.sampling = sampling;
-    return compare(SkipRule::coplanar_samples, world, request, {}, EngineKind::gpu);
-  };
-  Sampling reference;
-  reference.preset = Sampling::Preset::reference;
-  for (const World& world : {divided_bed_and_box(), mappable_bed(true), ball_alone(make_sphere(0.5F, 16))}) {
-    const Comparison comparison = compare_with(reference, world);
-    EXPECT_GT(comparison.skipped, 1000U);
-    EXPECT_GT(comparison.worst_of_maximum, 0.0);
-  }
-  Sampling fast;
-  fast.preset = Sampling::Preset::fast;
-  EXPECT_EQ(compare_with(fast, mappable_bed(false)).skipped, 0U) << "its rows are too coarse";
-  EXPECT_EQ(compare_with(Sampling::of_grid(3, 64, 2048), mappable_bed(false)).skipped, 0U);
+  EXPECT_EQ(skipped(mappable_bed(false)), 2u * (40 * 40 - 1));
 }
 
 TEST(SliceRules, FacetsInDifferentPlanesAreNotMerged) {

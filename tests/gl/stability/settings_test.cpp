@@ -354,7 +354,7 @@ TEST_P(Settings, S16MaterialsOutsideWhatIsPassive) {
   // S(0) = 6.1e-6 and S(1) = .9975 (docs/physics.md 1.2). Means are coarse if a line holds a sliver of a
   // slice.
   EXPECT_NEAR(strongest(heard(material(0.0, {}), Model::paper)), 6.1e-6,
-              GetParam() == Way::cpu_slices ? 1e-6 : 1e-7);
+              GetParam() == Way::cpu_grid ? 1e-7 : 1e-6);
   EXPECT_NEAR(strongest(heard(glaring, Model::paper)), 0.9975, 1e-4);
 }
 

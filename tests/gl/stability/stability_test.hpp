@@ -20,7 +20,7 @@ namespace sonard::test {
 inline constexpr double full_mu = std::numbers::inv_pi;
 
 enum class Way {
-  gpu,         ///< rasterised grid
+  gpu,         ///< engine `gpu` with a preset: slices in compute shaders
   cpu_slices,  ///< engine `cpu` as presets use it: exact in slices, refined if neighbours disagree
   cpu_grid,    ///< engine `cpu` on a fixed grid
 };

@@ -202,7 +202,7 @@ class BoundedAndUnbounded {
     uploaded_bytes_ += statistics.bytes_uploaded;
     EXPECT_EQ(image.intensity, unbounded_->render_echo(request).intensity);
     EXPECT_GT(*std::max_element(image.intensity.begin(), image.intensity.end()), 0.0F);
-    unbounded_bytes_ = unbounded_->last_statistics().video_memory_bytes;
+    unbounded_bytes_ = std::max(unbounded_bytes_, unbounded_->last_statistics().video_memory_bytes);
   }
 
   std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
