@@ -84,15 +84,16 @@ struct Spread {
 
 Spread spread_at(uint i, bool is_beside) {
   vec4 ends = uintBitsToFloat(pieces[2u * i]), amounts = uintBitsToFloat(pieces[2u * i + 1u]);
-  float lines_per_m = echo.lines_per_m_0 + echo.lines_per_m_1 + echo.lines_per_m_2;
+  precise float lines_per_m = echo.lines_per_m_0 + echo.lines_per_m_1 + echo.lines_per_m_2;
   float furthest = 1e6 / lines_per_m;  // of places, which are whole numbers; nothing echoes there
   Spread s;
   float sum = ends.x + ends.y + ends.z + ends.w + amounts.x + amounts.y + amounts.z + amounts.w;
   s.is_finite = abs(sum) < 3.4e38;  // false for NaN
   s.a = place_of(clamp(ends.x, -furthest, furthest));
   s.b = place_of(clamp(ends.y, -furthest, furthest));
-  s.smear_a = ends.z * lines_per_m;
-  s.smear_b = ends.w * lines_per_m;
+  precise float smear_a = ends.z * lines_per_m, smear_b = ends.w * lines_per_m;
+  s.smear_a = smear_a;
+  s.smear_b = smear_b;
   s.amount = float[2](amounts.x * echo.units_per_sr, amounts.y * echo.units_per_sr);
   s.gradient = float[2](amounts.z, amounts.w);
   s.length = abs(distance_of(s.a, s.b));
@@ -104,9 +105,11 @@ bool is_elsewhere_at(uint i) { return pieces[2u * i].x == is_elsewhere; }
 
 // Whether a patch begins where the one before ends, with the same smear. The narrower a patch, the higher are its
 // two steps, and the more would the smear of another patch displace its echo.
+// `precise`: the invocations of both patches decide alike.
 bool is_joined(Spread before, Spread s) {
-  return !before.is_alone && !s.is_alone && abs(distance_of(before.b, s.a)) < least_spread &&
-         abs(before.smear_b - s.smear_a) * (1.0 + s.smear_a) < min(0.02 * min(before.length, s.length), least_smear);
+  precise float off = abs(before.smear_b - s.smear_a) * (1.0 + s.smear_a);
+  precise float most_off = min(0.02 * min(before.length, s.length), least_smear);
+  return !before.is_alone && !s.is_alone && abs(distance_of(before.b, s.a)) < least_spread && off < most_off;
 }
 
 // ---- steps ----

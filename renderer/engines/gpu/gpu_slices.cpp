@@ -28,7 +28,7 @@ struct PingRecord {
   std::int32_t is_convex;
   std::int32_t two_sided, cull;
   std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces,
-      most_things, most_edges;
+      most_things, most_edges, padding[2];  // std140: blocks are padded to 16 bytes
 };
 
 struct PartRecord {
@@ -84,6 +84,8 @@ struct RefinementRecord {
 constexpr std::size_t bytes_of_scratch = 16;
 
 constexpr int room_for_waiting = 64;
+
+constexpr GLenum written_by_gpu = GL_DYNAMIC_COPY;  // so that drivers keep it in video memory
 
 enum Binding : unsigned {  // as in the shaders
   meshes_at = 0,           // and 1, 2
@@ -165,7 +167,8 @@ struct GpuSlices::Impl {
             as_int(of_ping.room.slices),
             as_int(of_ping.room.pieces),
             as_int(of_ping.room.things),
-            as_int(of_ping.room.edges)};
+            as_int(of_ping.room.edges),
+            {}};
   }
 
   static void hold(PingBuffers& of_ping) {
@@ -209,7 +212,7 @@ struct GpuSlices::Impl {
       part.append_hiding(may_hide, hides);
     }
     hides.push_back(0.0F);  // a buffer must not be empty
-    of_ping.parts.fill(records, GL_STREAM_DRAW);
+    of_ping.parts.fill(records, written_by_gpu);
     of_ping.hiding.fill(hides, GL_STREAM_DRAW);
     return clusters;
   }
@@ -244,7 +247,7 @@ struct GpuSlices::Impl {
       made.offset_rad = static_cast<float>(slice.azimuth_rad - middle);
       first.push_back(made);
     }
-    of_ping.beams.fill(records, GL_STREAM_DRAW);
+    of_ping.beams.fill(records, written_by_gpu);
     of_ping.order.hold(2 * records.size() * (most_slices_of_beam + 1) * sizeof(std::uint32_t));
     return first;
   }
@@ -283,7 +286,7 @@ struct GpuSlices::Impl {
     record.counts.slices = static_cast<std::uint32_t>(slices.size());
     record.rounds[0].slices = record.counts.slices;
     record.rounds[0].groups = std::min(record.counts.slices, static_cast<std::uint32_t>(most_groups));
-    of_ping.counts.fill(std::vector<CountsRecord>{record}, GL_STREAM_DRAW);
+    of_ping.counts.fill(std::vector<CountsRecord>{record}, written_by_gpu);
     of_ping.room.slices = std::max(of_ping.room.slices, slices.size());
     hold(of_ping);
     of_ping.slices.write(slices);

@@ -79,7 +79,7 @@ vec3 mean_normal(vec3 p, vec2 uv) {
   float u_texels = length(u * size), v_texels = length(v * size);
   float shorter = max(1.0, min(u_texels, v_texels)), longer = max(u_texels, v_texels);
   float taps = clamp(ceil(longer / shorter), 1.0, most_taps);
-  float level = min(log2_of(max(shorter, longer / most_taps)), float(surface.level_count - 1u));
+  float level = clamp(log2_of(max(shorter, longer / most_taps)), 0.0, float(surface.level_count - 1u));
   vec2 step_of_taps = u_texels > v_texels ? u : v;
   vec3 sum = vec3(0.0);
   float between = level - floor(level);

@@ -131,7 +131,7 @@ void straighten_ends() {
 
 // Writes the parts of a piece from `to` on. @param writing false: only counts them @return their number
 uint divide(Piece whole, int parts, uint to, bool writing) {
-  float turn = turn_of_range(visible[whole.segment].w_at_0, visible[whole.segment].w_slope);
+  precise float turn = turn_of_range(visible[whole.segment].w_at_0, visible[whole.segment].w_slope);
   uint made = 0u;
   Piece part = whole;
   part.flags = whole.flags & low_end;

@@ -224,13 +224,19 @@ struct SliceEdges {
 
 uint probes_of(uint edge) { return edge == no_edge ? 0u : edges[edge].count; }
 
+// An order that does not depend on where edges lie.
+bool is_higher(uint edge, float offset_rad, uint other, float other_offset_rad) {
+  uint probes = probes_of(edge), of_other = probes_of(other);
+  return probes > of_other || (probes == of_other && offset_rad > other_offset_rad);
+}
+
 // The highest edges in a slice (SliceCutter::find_upright_edges()).
 SliceEdges edges_in(Slice slice) {
   SliceEdges found;
   found.count = 0u;
   for (uint i = 0u; i < of_beam.ends + of_beam.edges; ++i) {
     bool is_end = i < of_beam.ends;
-    ThingEnd end = ends[2u * of_beam.first_thing + (is_end ? i : 0u)];
+    ThingEnd end = ends[is_end ? 2u * of_beam.first_thing + i : 0u];
     uint edge = is_end ? no_edge : of_beam.first_edge + i - of_beam.ends;
     float offset_rad = is_end ? end.azimuth - of_beam.middle_rad : edges[edge].offset_rad;
     if ((is_end && (end.key & kind_mask) != low_kind) || !lies_well_inside(offset_rad, slice)) {
@@ -240,9 +246,9 @@ SliceEdges edges_in(Slice slice) {
     if (at == most_edges_of_slice) {
       at = 0u;
       for (uint k = 1u; k < most_edges_of_slice; ++k) {
-        at = probes_of(found.edge[k]) < probes_of(found.edge[at]) ? k : at;
+        at = is_higher(found.edge[at], found.offset_rad[at], found.edge[k], found.offset_rad[k]) ? k : at;
       }
-      if (probes_of(edge) <= probes_of(found.edge[at])) {
+      if (!is_higher(edge, offset_rad, found.edge[at], found.offset_rad[at])) {
         continue;
       }
     } else {
@@ -305,6 +311,7 @@ void choose_parts(vec2 beam_errors) {
                                refinement.division);
     s_parts[n] = uint(parts);
   }
+  memoryBarrierBuffer();
   barrier();
 }
 

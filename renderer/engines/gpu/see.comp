@@ -29,7 +29,8 @@ const uint none = 0xffffffffu;
 const uint block = 16u;
 shared float s_low[room], s_high[room], s_w_at_0[room], s_w_slope[room];
 shared uint s_number[room], s_triangle[room];  // of the ping
-shared uint s_order[room], s_bucket[room];
+shared uint s_order[room];
+shared uint s_bucket[room > uint(side_probes) ? room : uint(side_probes)];
 shared float s_block_high[room / block + 1u];  // largest high end of 16 segments
 shared uint s_count[GROUP];
 shared uint s_found, s_used, s_base, s_lost;
@@ -152,7 +153,7 @@ void cut_triangles() {
 // ---- sort by low end, then by number ----
 
 uint bucket_of(float low) {
-  float at = (low - band_low) * (float(count) / (band_high - band_low));
+  precise float at = (low - band_low) * (float(count) / (band_high - band_low));  // the same at each call
   return uint(clamp(at, 0.0, float(count - 1u)));
 }
 
@@ -204,7 +205,7 @@ void sort_segments() {
   uint rank[most], element[most], n = 0u;
   for (uint at = lane; at < count; at += GROUP, ++n) {
     uint k = s_order[at], bucket = bucket_of(s_low[k]);
-    uint from = bucket == 0u ? 0u : s_bucket[bucket - 1u], to = s_bucket[bucket];
+    uint from = bucket == 0u ? 0u : s_bucket[max(bucket, 1u) - 1u], to = s_bucket[bucket];
     rank[n] = from;
     element[n] = k;
     for (uint j = from; j < to; ++j) {
@@ -515,7 +516,7 @@ bool is_written(uint i) { return !continues(i) && !is_gap(i, end_of(i)); }
 // Puts what all pieces have seen in order into s_bucket, and counts it for each invocation in s_count.
 // All invocations must call it.
 void order_seen() {
-  seen_count = min(s_used, most_seen);
+  seen_count = s_lost != 0u ? 0u : min(s_used, most_seen);
   s_count[lane] = emitted;
   memoryBarrierBuffer();
   sum_counts();
@@ -712,6 +713,7 @@ void main() {
     slice.state |= is_seen;
   }
   memoryBarrierBuffer();
+  barrier();
   if (refinement.division.most_divisions > 1) {
     uint first = 2u * number * uint(side_probes);
     for (uint side = 0u; side < 2u; ++side) {

@@ -75,7 +75,7 @@ void list_things() {
     has_room = s_first + found <= uint(ping.most_things);
     of_beam.things = has_room ? found : 0u;
   }
-  of_beam.first_thing = s_first;
+  of_beam.first_thing = has_room ? s_first : 0u;
   memoryBarrierBuffer();
   barrier();
 }
@@ -112,6 +112,7 @@ void list_ends() {
   }
   barrier();
   of_beam.ends = s_count;
+  barrier();
 }
 
 // ---- edges ----
@@ -127,7 +128,7 @@ shared uint s_bits[side_probes / 32];
 // whole numbers, whose sums do not depend on their order.
 uint edge_word(int first, int last, bool to_port, float facing) {
   return uint(first) | uint(last) << 9 | (to_port ? 1u << 18 : 0u) |
-         uint((facing / half_turn + 1.0) * 4095.0) << 19;
+         uint(clamp(facing / half_turn + 1.0, 0.0, 2.0) * 4095.0) << 19;
 }
 uint first_of(uint edge) { return edge & 0x1ffu; }
 uint last_of(uint edge) { return edge >> 9 & 0x1ffu; }
@@ -220,11 +221,11 @@ struct EdgeGroup {
   uint probes;
 };
 EdgeGroup group_from(uint begin, uint count) {
-  EdgeGroup group = EdgeGroup(begin, begin, 0u);
+  EdgeGroup group = EdgeGroup(begin, begin, 0u);  // at least one edge, so that the list ends
   float until = s_offset[s_order[begin]] + same_edge_rad;
   while (group.end < count) {
     uint i = s_order[min(group.end, count - 1u)];  // drivers may read it before they compare
-    if (!(s_offset[i] < until)) {
+    if (group.end > begin && !(s_offset[i] < until)) {
       break;
     }
     group.probes += last_of(s_edge[i]) - first_of(s_edge[i]);

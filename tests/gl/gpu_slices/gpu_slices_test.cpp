@@ -236,6 +236,14 @@ TEST_F(GpuSlicesTest, InOnePieceItSeesTheSameBits) {
   }
 }
 
+/// The groups of a GPU. Here the vectors of a group run one after the other, from barrier to barrier.
+TEST_F(GpuSlicesTest, InLargeGroupsItSeesTheSame) {
+  const Comparison found = compare("swell100k", {.group = 64});
+  EXPECT_EQ(found.counts.overflows, 0U);
+  EXPECT_LE(found.differing, 1e-5);
+  EXPECT_LE(found.off_sides, 1e-4);
+}
+
 TEST_F(GpuSlicesTest, SlicesWithTooManySegmentsAreSeenInBands) {
   const Comparison found = compare("swell100k", {.segments = 96});
   EXPECT_EQ(found.counts.longest_slice, 97U) << "more than there was room for";
@@ -284,10 +292,15 @@ double worst_gap(const Fan& fan, const std::vector<GpuSlice>& slices) {
 
 /// A probe more or less decides where few probes receive an echo, as from the pipes: rounding divides others.
 TEST_F(GpuSlicesTest, DividesTheSlicesThatTheCpuDivides) {
-  for (const char* scene : {"swell100k", "docking", "b7_pipes", "b5_tank", "b3_cluster"}) {
+  struct Case {
+    const char* scene;
+    int group = 0;
+  };
+  for (const auto& [scene, group] :
+       {Case{"docking"}, Case{"b7_pipes"}, Case{"b5_tank"}, Case{"b5_tank", 64}, Case{"b3_cluster"}}) {
     SCOPED_TRACE(scene);
     const PingOnCpu ping(scene);
-    const PingOnGpu gpu(*context_, {}, ping, GpuSlices::most_rounds);
+    const PingOnGpu gpu(*context_, {.group = group}, ping, GpuSlices::most_rounds);
     const std::vector<GpuSlice> slices = gpu.slices();
     const double same = same_slices(ping, slices);
     const auto kept = std::ranges::count_if(
