@@ -12,8 +12,8 @@
 #include <glm/vec3.hpp>
 
 #include "renderer/engines/cpu/fan_triangles.hpp"
-#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/engines/cpu/slice_sweep.hpp"
+#include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
