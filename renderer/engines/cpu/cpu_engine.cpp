@@ -20,12 +20,6 @@ std::unique_ptr<SpatialIndex> bendable_index(const World& world, WorkerPool& wor
              : std::make_unique<SpatialIndex>(refractable(world, curvature_per_m), workers);
 }
 
-/// Keeps facets apart that were divided so that they bend with the rays.
-SkipSwitches slice_switches(const RendererOptions& options) {
-  SkipSwitches switches = options.skip;
-  return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
-}
-
 }  // namespace
 
 CpuEngine::CpuEngine(SpatialIndex& index, WorkerPool& workers, const RendererOptions& options)

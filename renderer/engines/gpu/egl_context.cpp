@@ -59,6 +59,13 @@ osg::ref_ptr<osg::Program> EglContext::build_program(const std::vector<osg::ref_
   return program;
 }
 
+osg::ref_ptr<EglContext> EglContext::made_current(const std::string& device) {
+  osg::ref_ptr<EglContext> context = new EglContext(device);
+  context->realize();
+  context->make_current_or_throw();
+  return context;
+}
+
 std::string EglContext::describe() const {
   return describe_current_gl();
 }

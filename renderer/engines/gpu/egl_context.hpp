@@ -18,6 +18,9 @@ class EglContext : public osg::GraphicsContext {
   /// @throws RendererError, with a list of the devices, if no context can be made
   explicit EglContext(const std::string& device);
 
+  /// Makes a context and makes it current. @throws RendererError as the constructor
+  static osg::ref_ptr<EglContext> made_current(const std::string& device);
+
   /// "vendor / renderer / version"; valid once realized and current.
   std::string describe() const;
 

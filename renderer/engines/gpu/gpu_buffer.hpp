@@ -18,10 +18,7 @@ inline constexpr std::size_t most_groups = 65535;
 class GpuBuffer {
  public:
   explicit GpuBuffer(osg::GLExtensions& gl) : gl_(gl) { gl_.glGenBuffers(1, &name_); }
-  ~GpuBuffer() {
-    glDeleteTextures(1, &texels_);
-    gl_.glDeleteBuffers(1, &name_);
-  }
+  ~GpuBuffer() { gl_.glDeleteBuffers(1, &name_); }
   GpuBuffer(const GpuBuffer&) = delete;
   GpuBuffer& operator=(const GpuBuffer&) = delete;
 
@@ -54,22 +51,7 @@ class GpuBuffer {
                         static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
   }
   std::size_t bytes() const { return bytes_; }
-  /// Makes the next hold() allocate again.
-  void forget() { bytes_ = 0; }
   void bind(unsigned binding) const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
-  /// Binds the buffer for texelFetch(), unless it is empty.
-  /// @param format of a texel
-  void bind_texels(unsigned unit, GLenum format) const {
-    if (bytes_ == 0) {
-      return;
-    }
-    gl_.glActiveTexture(GL_TEXTURE0 + unit);
-    if (texels_ == 0) {
-      glGenTextures(1, &texels_);
-    }
-    glBindTexture(GL_TEXTURE_BUFFER, texels_);
-    gl_.glTexBuffer(GL_TEXTURE_BUFFER, format, name_);
-  }
   /// Sets the first `bytes` to a pattern of two words.
   void clear(std::size_t bytes, const std::array<std::uint32_t, 2>& words) {
     select();
@@ -93,7 +75,6 @@ class GpuBuffer {
 
   osg::GLExtensions& gl_;
   GLuint name_ = 0;
-  mutable GLuint texels_ = 0;
   std::size_t bytes_ = 0;
 };
 

@@ -18,19 +18,6 @@ namespace sonard::render {
 
 namespace {
 
-osg::ref_ptr<EglContext> current_context(const GpuOptions& options) {
-  osg::ref_ptr<EglContext> context = new EglContext(options.device);
-  context->realize();
-  context->make_current_or_throw();
-  return context;
-}
-
-/// Keeps facets apart that were divided so that they bend with the rays.
-SkipSwitches slice_switches(const RendererOptions& options) {
-  SkipSwitches switches = options.skip;
-  return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
-}
-
 World drawn_world(const World& world, const RendererOptions& options) {
   return options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m);
 }
@@ -44,7 +31,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       drawn_(drawn_world(world, options)),
       workers_(workers),
       images_until_lost_(options.gpu.lose_context_at_image),
-      context_(current_context(options.gpu)),
+      context_(EglContext::made_current(options.gpu.device)),
       description_("gpu, " + context_->describe()),
       world_(drawn_, slice_switches(options)),
       slices_(*context_, {.memory_mib = options.gpu.memory_mib}),
@@ -169,7 +156,8 @@ void GpuEngine::begin(Ping& ping) {
   const std::uint64_t uploaded_before = slices_.meshes().bytes_uploaded();
   world_.place(ping.job.request.T_world_sonar);
   GpuSlices::PingSetting setting = ping.seen(world_.bend());
-  echoes_.hold_surfaces(world_.surfaces(), world_.version(), GpuSlices::may_be_seen(world_.parts(), setting));
+  setting.may_be_seen = GpuSlices::may_be_seen(world_.parts(), setting);
+  echoes_.hold_surfaces(world_.surfaces(), world_.version(), setting.may_be_seen);
   setting.surface_bytes = echoes_.surfaces().bytes();
   slices_.find(ping.buffers, world_.parts(), setting);
   slices_.see(ping.buffers, setting);

@@ -188,7 +188,8 @@ struct GpuSlices::Impl {
   /// @return number of their clusters
   std::size_t upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
                            const PingSetting& setting) {
-    const std::vector<bool> seen = may_be_seen(placed, setting);
+    const std::vector<bool> seen =
+        setting.may_be_seen.empty() ? std::vector<bool>(placed.size(), true) : setting.may_be_seen;
     std::vector<std::shared_ptr<const MeshClusters>> needed;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       if (seen[i]) {

@@ -46,13 +46,14 @@ class GpuSlices {
     bool two_sided = true;  ///< false: triangles seen from behind are invisible
     SkipSwitches skip{};
     std::uint64_t surface_bytes = 0;  ///< in video memory beside the meshes, within the same bound
+    std::vector<bool> may_be_seen{};  ///< of each part: GpuSlices::may_be_seen(); empty: all may be
   };
   /// Of each part, false only if the fan misses it.
   static std::vector<bool> may_be_seen(const std::vector<PlacedPart>& parts, const PingSetting& setting);
 
   /// Begins a ping: uploads the parts that the fan may see, places them, and lists their triangles for each
   /// beam.
-  /// @param slices with which it begins; empty: those of first_slices()
+  /// @param slices with which the ping begins; empty: first_slices()
   /// @throws RequestError, RendererError as GpuMeshes::hold()
   void find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
             const std::vector<GpuSlice>& slices = {});

@@ -137,9 +137,7 @@ struct RasterSampler::Impl {
   float bend_per_m = 0.0F;
   int max_texture_px = 0;
 
-  Impl(const World& world, const GpuOptions& options) : context(new EglContext(options.device)) {
-    context->realize();
-    context->make_current_or_throw();
+  Impl(const World& world, const GpuOptions& options) : context(EglContext::made_current(options.device)) {
     description = "gpu, " + context->describe();
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_texture_px);
     video_memory = std::make_unique<VideoMemory>(*context->getState(), options.memory_mib << 20);
@@ -383,17 +381,9 @@ unsigned RasterSampler::draw(const Pose& T_world_sonar, const SampleGrid& grid, 
   return impl_->target.samples(*impl_->context->getState());
 }
 
-int RasterSampler::most_view_px() const {
-  return impl_->max_texture_px;
-}
-
 EglContext& RasterSampler::current_context() {
   impl_->context->make_current_or_throw();
   return *impl_->context;
-}
-
-void RasterSampler::make_current_if_alive() {
-  impl_->context->makeCurrent();
 }
 
 void RasterSampler::set_body_pose(std::size_t body, const Pose& T_world_body) {

@@ -56,8 +56,6 @@ class RasterSampler {
   };
   const Drawn& drawn() const;
 
-  /// The argument `most_px` of lay_out().
-  int most_view_px() const;
   /// Like sample(), but the samples stay on the GPU.
   /// @return name of an array of textures (RGBA32F, one SurfaceSample per texel) with the views at the places
   /// of lay_out(); valid until the next call of draw() or sample()
@@ -66,8 +64,6 @@ class RasterSampler {
   /// Makes the context of the texture current and returns it.
   /// @throws RendererError if the context is lost
   EglContext& current_context();
-  /// For destructors: does nothing if the context is lost.
-  void make_current_if_alive();
 
  private:
   struct Impl;

@@ -79,6 +79,11 @@ SliceWorld::SliceWorld(const World& world, const SkipSwitches& skip) : skip_(ski
   }
 }
 
+SkipSwitches slice_switches(const RendererOptions& options) {
+  SkipSwitches switches = options.skip;
+  return options.ray_curvature_per_m == 0.0 ? switches : switches.turn_off(SkipRule::coplanar_facets);
+}
+
 bool SliceWorld::any_vertex_normals() const {
   return std::any_of(surfaces_.begin(), surfaces_.end(),
                      [](const PartSurface& part) { return part.vertex_normals; });

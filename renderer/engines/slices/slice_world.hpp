@@ -10,6 +10,7 @@
 #include "renderer/engines/slices/mesh_clusters.hpp"
 #include "renderer/engines/slices/part_surface.hpp"
 #include "renderer/pose.hpp"
+#include "renderer/renderer_options.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/scene/refraction.hpp"
 #include "renderer/scene/world.hpp"
@@ -18,6 +19,9 @@
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {
+
+/// The rules for a SliceWorld: facets that were divided so that they bend with the rays stay apart.
+SkipSwitches slice_switches(const RendererOptions& options);
 
 /// The parts of all bodies: their meshes in clusters, their surfaces, and their places in a ping.
 class SliceWorld {

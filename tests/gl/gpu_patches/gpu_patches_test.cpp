@@ -15,25 +15,15 @@
 
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "tests/gl/gpu_patches/both_sides.hpp"
-#include "tests/support/engine_test.hpp"
+#include "tests/support/gl_context_test.hpp"
 
 namespace sonard::render {
 namespace {
 
 using namespace test;
 
-class GpuPatchesTest : public ::testing::Test {
+class GpuPatchesTest : public test::GlContextTest {
  protected:
-  void SetUp() override {
-    test::require_gl();
-    if (IsSkipped() || HasFatalFailure()) {
-      return;
-    }
-    context_ = new EglContext("");
-    context_->realize();
-    context_->make_current_or_throw();
-  }
-
   /// The image of the GPU must be that of the CPU engine.
   /// @return number of places where several patches lie side by side
   std::size_t compare(const std::string& name, const Ping& ping, double most_rms = 1e-4) {
@@ -65,8 +55,6 @@ class GpuPatchesTest : public ::testing::Test {
     EXPECT_NEAR(static_cast<double>(found), static_cast<double>(expected),
                 1e-4 * static_cast<double>(expected));
   }
-
-  osg::ref_ptr<EglContext> context_;
 };
 
 Ping ping_of(const std::string& scene) {

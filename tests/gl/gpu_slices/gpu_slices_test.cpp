@@ -15,7 +15,7 @@
 #include "renderer/engines/cpu/slice_sampler.hpp"
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "tests/scenes/scenes.hpp"
-#include "tests/support/engine_test.hpp"
+#include "tests/support/gl_context_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -147,22 +147,10 @@ class PingOnGpu {
   PingBuffers buffers_{gpu_.compute().gl()};
 };
 
-class GpuSlicesTest : public ::testing::Test {
+class GpuSlicesTest : public test::GlContextTest {
  protected:
-  void SetUp() override {
-    test::require_gl();
-    if (IsSkipped() || HasFatalFailure()) {
-      return;
-    }
-    context_ = new EglContext("");
-    context_->realize();
-    context_->make_current_or_throw();
-  }
-
   /// Sees all slices of a ping of the CPU engine, preset `default`, with both.
   Comparison compare(const std::string& scene_name, const GpuSlices::Options& options);
-
-  osg::ref_ptr<EglContext> context_;
 };
 
 bool has_same_bits(const VisibleSegment& cpu, const GpuVisible& gpu) {

@@ -21,7 +21,7 @@
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/gpu_buffer.hpp"
 #include "renderer/engines/gpu/gpu_readback.hpp"
-#include "tests/support/engine_test.hpp"
+#include "tests/support/gl_context_test.hpp"
 
 namespace sonard::render {
 namespace {
@@ -68,18 +68,8 @@ std::string shader_of(const Case& tested, std::size_t inputs) {
          " + written++] = value; }\nvoid main() {\n" + tested.glsl + "}\n";
 }
 
-class SliceMathTest : public ::testing::Test {
+class SliceMathTest : public test::GlContextTest {
  protected:
-  void SetUp() override {
-    test::require_gl();
-    if (IsSkipped() || HasFatalFailure()) {
-      return;
-    }
-    context_ = new EglContext("");
-    context_->realize();
-    context_->make_current_or_throw();
-  }
-
   Numbers on_gpu(const std::string& shader, const Numbers& inputs, std::size_t outputs) {
     osg::State& state = *context_->getState();
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
@@ -134,8 +124,6 @@ class SliceMathTest : public ::testing::Test {
     EXPECT_LE(different, context_->software() ? 0 : expected.size() / 500);
     EXPECT_GT(finite, expected.size() / 2) << "the case tests something";
   }
-
-  osg::ref_ptr<EglContext> context_;
 };
 
 /// Corners of triangles of 1 cm to 3 m, 0.1 to 30 m away. A third are crossed by the slice at azimuth 0.
