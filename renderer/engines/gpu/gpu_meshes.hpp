@@ -19,7 +19,7 @@ class GpuMeshes {
   GpuMeshes(osg::GLExtensions& gl, std::uint64_t bound_bytes)
       : bound_bytes_(bound_bytes), vertices_(gl), triangles_(gl), clusters_(gl) {}
 
-  /// Uploads what is missing of these meshes. Shaders of earlier pings still see what they were given.
+  /// Uploads what is missing of these meshes. Earlier pings in flight keep their data.
   /// @param beside_bytes of other things, which count too
   /// @throws RequestError if they exceed the bound; then nothing changes
   /// @throws RendererError if OpenGL has no room for them

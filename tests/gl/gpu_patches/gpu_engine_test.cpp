@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Engine `gpu` as a whole: its images against those of engine `cpu`, and its waits.
+// Engine `gpu` as a whole: it makes the images of engine `cpu`, and waits once.
 #include <cmath>
 #include <cstddef>
 #include <vector>

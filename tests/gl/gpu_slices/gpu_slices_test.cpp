@@ -112,7 +112,7 @@ struct PingOnCpu {
 class PingOnGpu {
  public:
   /// @param rounds see GpuSlices::see()
-  /// @param slices with which it begins; empty: those of the GPU
+  /// @param slices with which the ping begins; empty: the GPU chooses them
   PingOnGpu(EglContext& context, const GpuSlices::Options& options, const PingOnCpu& cpu, int rounds,
             const std::vector<GpuSlice>& slices = {})
       : gpu_(context, options) {
