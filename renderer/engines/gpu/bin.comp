@@ -243,7 +243,7 @@ void add_end(uint i) {
 
 void main() {
   uint number = group_number();
-  if (number >= min(counts.slices, uint(ping.most_slices))) {
+  if (number >= counts.slices || counts.slices > uint(ping.most_slices) || !slices_have_room(counts)) {
     return;
   }
   begin = of_slice[number].first;

@@ -23,7 +23,6 @@ class Compute {
   explicit Compute(EglContext& context, int group = 0);
 
   osg::GLExtensions& gl() const { return gl_; }
-  int group() const { return group_; }
 
   /// @param name of the shader's file, for messages
   /// @param text of the shader, without what all shaders have in common: GROUP, slices/*.glsl, ping.glsl

@@ -85,6 +85,8 @@ constexpr std::size_t bytes_of_scratch = 16;
 
 constexpr int room_for_waiting = 64;
 
+constexpr std::size_t groups_to_fill = 1024;  // of lists.comp, enough to occupy any GPU
+
 constexpr GLenum written_by_gpu = GL_DYNAMIC_COPY;  // so that drivers keep it in video memory
 
 enum Binding : unsigned {  // as in the shaders
@@ -359,8 +361,7 @@ void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, co
   on.compute.use(on.scan, ping.ping);
   on.compute.dispatch(1);
   on.compute.use(on.fill, ping.ping);
-  const auto group = static_cast<std::size_t>(on.compute.group());
-  on.compute.dispatch((ping.room.triangles + group - 1) / group);
+  on.compute.dispatch(groups_to_fill);
   on.run_list_things(ping, setting);
 }
 

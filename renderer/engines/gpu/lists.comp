@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The lists of triangles of each beam, in any order: SCAN makes room for them, in one group; otherwise they
-// are filled, one invocation for each triangle.
+// are filled.
 layout(local_size_x = GROUP) in;
 layout(std430, binding = 4) readonly buffer Fan { FanTriangle fan[]; };
 layout(std430, binding = 5) buffer Counts { PingCounts counts; };
@@ -33,14 +33,13 @@ void main() {
 }
 #else
 void main() {
-  uint i = group_number() * GROUP + gl_LocalInvocationID.x;
-  if (i >= min(counts.triangles, uint(ping.most_triangles))) {
+  if (!lists_have_room(counts)) {
     return;
   }
-  for (uint beam = fan[i].first_beam; beam <= fan[i].last_beam; ++beam) {
-    uint at = beams[beam].begin + atomicAdd(beams[beam].filled, 1u);
-    if (at < uint(ping.most_entries)) {
-      lists[at] = i;
+  uint stride = gl_NumWorkGroups.x * GROUP;
+  for (uint i = gl_WorkGroupID.x * GROUP + gl_LocalInvocationID.x; i < counts.triangles; i += stride) {
+    for (uint beam = fan[i].first_beam; beam <= fan[i].last_beam; ++beam) {
+      lists[beams[beam].begin + atomicAdd(beams[beam].filled, 1u)] = i;
     }
   }
 }

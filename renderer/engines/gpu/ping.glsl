@@ -90,7 +90,7 @@ struct Edge {
   uint probes[side_probes / 32];
 };
 
-// Counts of a ping. More than there is room for: the ping must be repeated with more room.
+// Counts of a ping. More than there is room for: the ping is repeated with more room, so later stages need not run.
 struct PingCounts {
   uint triangles, entries, visible, scratch, slices, pieces, things, edges;
   uint culled_clusters, hidden_faces;
@@ -98,6 +98,14 @@ struct PingCounts {
   uint longest_slice;
   uint samples, invalid, without_facets, empty_beams;  // see BinningResult
 };
+bool lists_have_room(PingCounts needed) {
+  return needed.triangles <= uint(ping.most_triangles) && needed.entries <= uint(ping.most_entries);
+}
+bool slices_have_room(PingCounts needed) {
+  return lists_have_room(needed) && needed.visible <= uint(ping.most_visible) &&
+         needed.scratch <= uint(ping.most_scratch) && needed.things <= uint(ping.most_things) &&
+         needed.edges <= uint(ping.most_edges);
+}
 // A round of refinement: the slices made for it.
 struct Round {
   uint groups, one, also_one;  // of an indirect dispatch that sees them

@@ -52,20 +52,20 @@ struct PingCounts {
 
 /// One ping in flight. Each stage binds the buffers that its shaders use.
 struct PingBuffers {
-  /// In records.
+  /// In records. At first 65 MB, which is enough for most pings.
   struct Room {
-    std::size_t triangles = 1U << 14, entries = 1U << 16, visible = 1U << 16, scratch = 1U << 18,
-                slices = 1U << 12, pieces = 1U << 16, things = 1U << 12, edges = 1U << 10;
+    std::size_t triangles = 1U << 17, entries = 1U << 18, visible = 1U << 18, scratch = 1U << 20,
+                slices = 1U << 12, pieces = 1U << 19, things = 1U << 14, edges = 1U << 11;
 
     bool fits(const PingCounts& needed) const {
       return needed.triangles <= triangles && needed.entries <= entries && needed.visible <= visible &&
              needed.scratch <= scratch && needed.slices <= slices && needed.pieces <= pieces &&
              needed.things <= things && needed.edges <= edges;
     }
-    /// Grows to what a ping needed, and a quarter more.
+    /// Grows to twice what a ping needed: what came after the full buffer could not be counted.
     void grow(const PingCounts& needed) {
       const auto make_room = [](std::size_t& has, std::size_t needs) {
-        has = needs > has ? needs + needs / 4 : has;
+        has = needs > has ? 2 * needs : has;
       };
       make_room(triangles, needed.triangles);
       make_room(entries, needed.entries);

@@ -75,7 +75,9 @@ vec2 divide(vec2 a, vec2 b) {
 }
 
 // A triangle that crosses the slice behind the vertical axis too (SliceCutter::clip_behind()).
-CutTriangle clip_behind(Corner corners[3]) {
+CutTriangle clip_behind(FanTriangle of) {
+  vec3 corners[3] =
+      vec3[3](vec3(of.x0, of.y0, of.z0), vec3(of.x1, of.y1, of.z1), vec3(of.x2, of.y2, of.z2));
   CutTriangle cut;
   cut.fate = cut_misses;
   vec2 s[3], h[3], end_h[2], end_z[2];
@@ -118,13 +120,9 @@ CutTriangle clip_behind(Corner corners[3]) {
   return cut;
 }
 
-CutTriangle cut_of(FanTriangle t) {
-  Corner corners[3] = Corner[3](Corner(t.x0, t.y0, t.z0), Corner(t.x1, t.y1, t.z1), Corner(t.x2, t.y2, t.z2));
-  CutTriangle cut = cut_triangle(corners[0], corners[1], corners[2], slice.cosine, slice.sine, ping.tan_limit);
-  if (cut.fate == cut_is_partly_behind) {
-    cut = clip_behind(corners);
-  }
-  return cut;
+CutTriangle cut_ahead(FanTriangle t) {
+  return cut_triangle(Corner(t.x0, t.y0, t.z0), Corner(t.x1, t.y1, t.z1), Corner(t.x2, t.y2, t.z2), slice.cosine,
+                      slice.sine, ping.tan_limit);
 }
 
 void cut_triangles() {
@@ -134,7 +132,10 @@ void cut_triangles() {
     if (ping.two_sided == 0 && (t.flags & is_back_face) != 0u) {
       continue;
     }
-    CutTriangle cut = cut_of(t);
+    CutTriangle cut = cut_ahead(t);
+    if (cut.fate == cut_is_partly_behind) {
+      cut = clip_behind(t);
+    }
     if (cut.fate != cut_keeps || !(cut.high > band_low && cut.low < band_high)) {
       continue;
     }
@@ -476,8 +477,9 @@ vec2 run_between(uint before, uint after, float at) {
   }
   bool before_ends = before != none && at == s_high[seen_at(before).segment];
   if (before_ends || (after != none && at == s_low[seen_at(after).segment])) {
-    CutTriangle cut = cut_of(fan[s_triangle[seen_at(before_ends ? before : after).segment]]);
-    return before_ends ? vec2(cut.high_slope, cut.high_reach) : vec2(cut.low_slope, cut.low_reach);
+    CutTriangle cut = cut_ahead(fan[s_triangle[seen_at(before_ends ? before : after).segment]]);
+    vec2 run = before_ends ? vec2(cut.high_slope, cut.high_reach) : vec2(cut.low_slope, cut.low_reach);
+    return cut.fate == cut_keeps ? run : vec2(0.0);  // no motion where clip_behind() has cut
   }
   if (before == none || after == none) {
     return vec2(0.0);
@@ -703,8 +705,7 @@ void main() {
   lane = gl_LocalInvocationID.x;
   Round of_round = rounds[round_number];
   uint number = of_round.first_slice + gl_WorkGroupID.x;
-  bool has_lists = counts.triangles <= uint(ping.most_triangles) && counts.entries <= uint(ping.most_entries);
-  if (number >= uint(ping.most_slices) || !has_lists) {
+  if (number >= uint(ping.most_slices) || !lists_have_room(counts)) {
     return;
   }
   slice = slices[number];

@@ -307,7 +307,7 @@ void list_edges() {
 void main() {
   lane = gl_LocalInvocationID.x;
   beam = group_number();
-  if (counts.triangles > uint(ping.most_triangles) || counts.entries > uint(ping.most_entries)) {
+  if (!lists_have_room(counts)) {
     return;
   }
   of_beam = beams[beam];
