@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <vector>
 
+#include <fmt/format.h>
 #include <osg/GLExtensions>
+
+#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -28,20 +31,25 @@ class GpuBuffer {
     bytes_ = values.size() * sizeof(T);
     gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes_), values.data(), usage);
   }
-  /// Replaces a smaller buffer by `bytes` zeros.
+  /// Replaces a smaller buffer by `bytes` zeros. @throws RequestError as allocate()
   void hold(std::size_t bytes) {
     if (bytes_ < bytes) {
-      select();
-      bytes_ = bytes;
-      gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_COPY);
+      allocate(bytes, GL_DYNAMIC_COPY);
       clear_with(bytes, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
     }
   }
   /// Replaces the buffer by one of `bytes` with any contents.
-  void allocate(std::size_t bytes) {
+  /// @throws RequestError if shaders cannot read so many in one buffer
+  void allocate(std::size_t bytes, GLenum usage = GL_STATIC_DRAW) {
+    GLint most = 0;  // at least 128 MiB
+    glGetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    if (bytes > static_cast<std::size_t>(most)) {
+      throw RequestError(fmt::format(
+          "this GPU has buffers of at most {} bytes, and a ping needs {}: choose engine: cpu", most, bytes));
+    }
     select();
     bytes_ = bytes;
-    gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STATIC_DRAW);
+    gl_.glBufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, usage);
   }
   /// Overwrites a part.
   template <class T>

@@ -12,6 +12,7 @@
 #include "renderer/engines/gpu/gpu_meshes.hpp"
 #include "renderer/engines/gpu/shaders.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
+#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -221,6 +222,7 @@ struct GpuSlices::Impl {
   }
 
   /// @return the first slices of the ping
+  /// @throws RequestError if there are more than the shaders can count
   static std::vector<GpuSlice> upload_beams(PingBuffers& of_ping, const PingSetting& setting) {
     const Fan& fan = setting.fan;
     std::vector<BeamRecord> records(static_cast<std::size_t>(fan.beam_count()) + 1);
@@ -240,7 +242,11 @@ struct GpuSlices::Impl {
     for (const FirstSlice& slice : first_slices(fan, static_cast<double>(setting.line_m), setting.accuracy)) {
       BeamRecord& record = records[static_cast<std::size_t>(slice.beam)];
       record.first_slice = record.slices == 0 ? static_cast<std::uint32_t>(first.size()) : record.first_slice;
-      ++record.slices;
+      if (++record.slices > most_slices_of_beam || first.size() == most_groups) {
+        throw RequestError(
+            fmt::format("this fan needs more than {} slices in beam {}, or {} in all: choose engine: cpu",
+                        most_slices_of_beam, slice.beam + 1, most_groups));
+      }
       const double middle = (fan.edge_rad(slice.beam) + fan.edge_rad(slice.beam + 1)) / 2;
       GpuSlice made;
       made.cosine = static_cast<float>(std::cos(slice.azimuth_rad));

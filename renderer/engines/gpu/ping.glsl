@@ -90,7 +90,8 @@ struct Edge {
   uint probes[side_probes / 32];
 };
 
-// Counts of a ping. More than there is room for: the ping is repeated with more room, so later stages need not run.
+// Counts of a ping. More than there is room for: the ping is repeated with more room, so later stages need
+// not run.
 struct PingCounts {
   uint triangles, entries, visible, scratch, slices, pieces, things, edges;
   uint culled_clusters, hidden_faces;

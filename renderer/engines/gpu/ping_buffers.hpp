@@ -64,9 +64,7 @@ struct PingBuffers {
     }
     /// Grows to twice what a ping needed: what came after the full buffer could not be counted.
     void grow(const PingCounts& needed) {
-      const auto make_room = [](std::size_t& has, std::size_t needs) {
-        has = needs > has ? 2 * needs : has;
-      };
+      const auto make_room = [](std::size_t& has, std::size_t needs) { has = needs > has ? 2 * needs : has; };
       make_room(triangles, needed.triangles);
       make_room(entries, needed.entries);
       make_room(visible, needed.visible);

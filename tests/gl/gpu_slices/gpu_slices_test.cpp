@@ -14,6 +14,7 @@
 
 #include "renderer/engines/cpu/slice_sampler.hpp"
 #include "renderer/engines/gpu/egl_context.hpp"
+#include "renderer/errors.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/support/gl_context_test.hpp"
 
@@ -149,7 +150,8 @@ class PingOnGpu {
 
 class GpuSlicesTest : public test::GlContextTest {
  protected:
-  /// Sees all slices of a ping of the CPU engine, preset `default`, with both.
+  static constexpr std::size_t every = 2;
+  /// Sees every second slice of a ping of the CPU engine, preset `default`, with both.
   Comparison compare(const std::string& scene_name, const GpuSlices::Options& options);
 };
 
@@ -171,9 +173,10 @@ std::size_t count_off(const SideProfile& cpu, const float* gpu) {
 
 Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices::Options& options) {
   const PingOnCpu ping(scene_name);
-  const auto& cells = ping.cells;
+  std::vector<const SliceCell*> cells;
   std::vector<GpuSlice> slices;
-  for (const SliceCell* cell : cells) {
+  for (std::size_t i = 0; i < ping.cells.size(); i += every) {
+    const SliceCell* const cell = cells.emplace_back(ping.cells[i]);
     slices.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
   }
   const PingOnGpu gpu(*context_, options, ping, 1, slices);
@@ -202,6 +205,24 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
             << " slices with the same bits, " << result.differing << " of the elevations differ, "
             << result.off_sides << " of the probes\n";
   return result;
+}
+
+/// The CPU must render what the shaders cannot count: 1024 slices of a beam, or 65,536 of a fan.
+TEST_F(GpuSlicesTest, TooManyFirstSlicesAreARequestError) {
+  for (const auto& [beams, slices_per_beam] : {std::pair{4, 1024}, {4096, 16}}) {
+    SCOPED_TRACE(beams);
+    Aperture aperture = test::make_scene("plane").settings.aperture;
+    aperture.beam_edges_rad = equal_angle_edges(beams, 1.0);
+    const Fan fan(aperture, 10.0F);
+    const ProbeWeights weights = probe_weights(aperture, fan.tan_limit());
+    GpuSlices gpu(*context_);
+    PingBuffers buffers(gpu.compute().gl());
+    SliceAccuracy accuracy;
+    accuracy.slices_per_beam = slices_per_beam;
+    const GpuSlices::PingSetting setting{
+        .fan = fan, .weights = weights, .line_m = 0.01F, .max_range_m = 10.0F, .accuracy = accuracy};
+    EXPECT_THROW(gpu.find(buffers, {}, setting), RequestError);
+  }
 }
 
 /// Pieces that begin in the middle of surfaces which touch may see one or the other of them first.
