@@ -8,32 +8,52 @@
 
 namespace sonard::render {
 
-std::string GlErrors::text(const std::string& doing) const {
-  return fmt::format("OpenGL error {} while {}", other != 0 || !out_of_memory ? other : GL_OUT_OF_MEMORY,
-                     doing);
-}
+namespace {
 
-GlErrors take_gl_errors() {
+/// @return an error since the last call, before all others GL_OUT_OF_MEMORY; GL_NO_ERROR: none
+GLenum take_gl_error() {
   constexpr int most = 16;  // a lost context may report errors without end
-  GlErrors errors;
+  GLenum taken = GL_NO_ERROR;
   for (int i = 0; i < most; ++i) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) {
       break;
     }
-    if (error == GL_OUT_OF_MEMORY) {
-      errors.out_of_memory = true;
-    } else {
-      errors.other = error;
-    }
+    taken = taken == GL_OUT_OF_MEMORY ? taken : error;
   }
-  return errors;
+  return taken;
 }
 
-void check_gl_errors(const std::string& doing) {
-  if (const GlErrors errors = take_gl_errors(); errors.any()) {
-    throw RendererError(errors.text(doing));
+void throw_if(GLenum error, const std::string& doing) {
+  if (error != GL_NO_ERROR) {
+    throw RendererError(fmt::format("OpenGL error {} while {}", error, doing));
   }
+}
+
+}  // namespace
+
+void check_gl_errors(const std::string& doing) {
+  throw_if(take_gl_error(), doing);
+}
+
+void check_video_memory(std::uint64_t needed_bytes, std::uint64_t bound_bytes) {
+  if (needed_bytes > bound_bytes) {
+    throw RequestError(fmt::format(
+        "the part of this world that a sonar sees takes {} bytes of video memory, and gpu.memory_mib "
+        "allows {} ({} MiB): raise it, or choose engine: cpu",
+        needed_bytes, bound_bytes, bound_bytes >> 20U));
+  }
+}
+
+void check_upload(std::uint64_t bytes) {
+  const GLenum error = take_gl_error();
+  if (error == GL_OUT_OF_MEMORY) {
+    throw RendererError(
+        fmt::format("the GPU has less video memory than gpu.memory_mib allows: {} bytes of the "
+                    "world do not fit; lower it, or choose engine: cpu",
+                    bytes));
+  }
+  throw_if(error, "uploading the world");
 }
 
 }  // namespace sonard::render

@@ -1,23 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors reported by OpenGL. The context must be current.
+// Errors reported by OpenGL, and the bound of video memory. The context must be current.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace sonard::render {
 
-/// Errors since the last take_gl_errors().
-struct GlErrors {
-  bool out_of_memory = false;
-  unsigned other = 0;  ///< the last other error; 0: no other error
-
-  bool any() const { return out_of_memory || other != 0; }
-  /// "OpenGL error 1282 while binning".
-  std::string text(const std::string& doing) const;
-};
-GlErrors take_gl_errors();
-
-/// @throws RendererError if there is an error
+/// @throws RendererError if OpenGL has reported an error
 void check_gl_errors(const std::string& doing);
+
+/// Before an upload. @param needed_bytes of the world by a ping
+/// @throws RequestError if they exceed the bound, which is gpu.memory_mib
+void check_video_memory(std::uint64_t needed_bytes, std::uint64_t bound_bytes);
+
+/// After an upload. @param bytes of the world in video memory
+/// @throws RendererError if OpenGL has reported an error
+void check_upload(std::uint64_t bytes);
 
 }  // namespace sonard::render

@@ -6,7 +6,6 @@
 
 #include "renderer/engines/gpu/gpu_meshes.hpp"
 #include "renderer/engines/gpu/gpu_surfaces.hpp"
-#include "renderer/engines/gpu/video_memory.hpp"
 #include "renderer/engines/slices/first_slices.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
@@ -26,7 +25,7 @@ World drawn_world(const World& world, const RendererOptions& options) {
 
 GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOptions& options)
     : skip_(options.skip),
-      options_(options.gpu),
+      memory_bound_bytes_(options.gpu.memory_mib << 20U),
       largest_response_(largest_response(world)),
       drawn_(drawn_world(world, options)),
       workers_(workers),
@@ -38,39 +37,21 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       echoes_(slices_.compute()) {}
 
 GpuEngine::~GpuEngine() {
-  raster_.reset();          // it has its own context
   context_->makeCurrent();  // fails if the context is lost, and its buffers with it
 }
 
 void GpuEngine::set_body_pose(std::size_t body, const Pose& T_world_body) {
   world_.set_body_pose(body, T_world_body);
   drawn_.bodies[body].T_world_body = T_world_body;
-  if (raster_) {
-    raster_->set_body_pose(body, T_world_body);
-  }
 }
 
 void GpuEngine::set_part_meshes(std::span<const PartMesh> changes) {
   world_.set_part_meshes(changes, workers_);
-  std::vector<BodyPart*> parts;
-  for (Body& body : drawn_.bodies) {
-    for (BodyPart& part : body.parts) {
-      parts.push_back(&part);
-    }
-  }
-  for (const PartMesh& change : changes) {
-    parts[change.part]->mesh = change.mesh;
-  }
-  if (raster_) {
-    raster_->set_part_meshes(changes);
-  }
+  replace_meshes(drawn_, changes);
 }
 
 void GpuEngine::set_refraction(double bend_per_m) {
   world_.set_refraction(bend_per_m);
-  if (raster_) {
-    raster_->set_refraction(bend_per_m);
-  }
 }
 
 void GpuEngine::images(std::span<const EchoJob> jobs) {
@@ -201,14 +182,6 @@ void GpuEngine::finish(Ping& ping) {
   hand_over(std::move(*result), echo, statistics);
 }
 
-RasterSampler& GpuEngine::raster() {
-  if (!raster_) {
-    raster_ = std::make_unique<RasterSampler>(drawn_, options_);
-    raster_->set_refraction(static_cast<double>(world_.bend().per_m));
-  }
-  return *raster_;
-}
-
 /// Draws the samples of a fixed grid, and bins them on the CPU. With conical beams and a preset, the grid is
 /// 3 views of 512 x 512.
 void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options) {
@@ -221,20 +194,19 @@ void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options)
   if (grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   }
-  RasterSampler& sampler = raster();
-  const RasterSampler::Drawn before = sampler.drawn();
-  const std::uint64_t uploaded_before = sampler.video_memory().bytes_uploaded();
-  const auto samples = sampler.sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
-                                      settings.range.sampled_range_m());
-  const RasterSampler::Drawn& now = sampler.drawn();
-  statistics.views += now.views - before.views;
-  statistics.pixels += now.pixels - before.pixels;
-  statistics.draw_calls += now.draw_calls - before.draw_calls;
-  statistics.triangles += now.triangles - before.triangles;
-  statistics.preparing_s += now.culling_s - before.culling_s;
-  statistics.bytes_uploaded += sampler.video_memory().bytes_uploaded() - uploaded_before;
-  statistics.bytes_read_back += (now.pixels - before.pixels) * sizeof(SurfaceSample);
-  statistics.video_memory_bytes = sampler.video_memory().bytes();
+  context_->make_current_or_throw();
+  if (!raster_) {
+    raster_ = std::make_unique<RasterSampler>(*context_, drawn_, memory_bound_bytes_);
+  }
+  const std::uint64_t uploaded_before = raster_->bytes_uploaded();
+  const auto samples = raster_->sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
+                                       world_.bend().per_m, settings.range.sampled_range_m());
+  statistics.bytes_uploaded += raster_->bytes_uploaded() - uploaded_before;
+  for (const SubView& view : grid_.grid().views) {
+    statistics.bytes_read_back += sizeof(SurfaceSample) * static_cast<std::uint64_t>(view.columns) *
+                                  static_cast<std::uint64_t>(view.rows);
+  }
+  statistics.video_memory_bytes = raster_->bytes();
   statistics.visibility_s += watch.lap();
   ++statistics.passes;
   ++statistics.synchronisations;

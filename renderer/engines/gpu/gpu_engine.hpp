@@ -44,10 +44,9 @@ class GpuEngine final : public EchoEngine {
   void begin(Ping& ping);
   void finish(Ping& ping);
   void image_by_grid(const EchoJob& job, const BinningOptions& options);
-  RasterSampler& raster();
 
   const SkipSwitches skip_;
-  const GpuOptions options_;
+  const std::uint64_t memory_bound_bytes_;  ///< of slices, and as much of grids
   const float largest_response_;
   World drawn_;  ///< for grids; refractable if rays may bend
   WorkerPool& workers_;

@@ -3,10 +3,7 @@
 
 #include <set>
 
-#include <fmt/format.h>
-
 #include "renderer/engines/gpu/gl_errors.hpp"
-#include "renderer/errors.hpp"
 
 namespace sonard::render {
 
@@ -51,13 +48,7 @@ void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& mes
     all = all + sizes_of(*mesh);
     missing = held_.contains(mesh) ? missing : missing + sizes_of(*mesh);
   }
-  const std::uint64_t needed_bytes = all.bytes() + beside_bytes;
-  if (needed_bytes > bound_bytes_) {
-    throw RequestError(fmt::format(
-        "the part of this world that a sonar sees takes {} bytes of video memory, and gpu.memory_mib "
-        "allows {} ({} MiB): raise it, or choose engine: cpu",
-        needed_bytes, bound_bytes_, bound_bytes_ >> 20U));
-  }
+  check_video_memory(all.bytes() + beside_bytes, bound_bytes_);
   if (!(used_ + missing).within(room_)) {
     start_again(all, beside_bytes);
   }
@@ -66,16 +57,7 @@ void GpuMeshes::hold(const std::vector<std::shared_ptr<const MeshClusters>>& mes
       held_[mesh] = upload(*mesh);
     }
   }
-  const GlErrors errors = take_gl_errors();
-  if (errors.out_of_memory) {
-    throw RendererError(
-        fmt::format("the GPU has less video memory than gpu.memory_mib allows: {} bytes of the "
-                    "world do not fit; lower it, or choose engine: cpu",
-                    bytes()));
-  }
-  if (errors.any()) {
-    throw RendererError(errors.text("uploading the world"));
-  }
+  check_upload(bytes());
 }
 
 /// Drops all meshes, and makes room for these: and for as many again, if the bound allows it and earlier ones

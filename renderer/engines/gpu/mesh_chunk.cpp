@@ -2,15 +2,19 @@
 #include "renderer/engines/gpu/mesh_chunk.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
+#include <vector>
 
+#include <osg/Array>
 #include <osg/GLExtensions>
-#include <osgUtil/CullVisitor>
+#include <osg/PrimitiveSet>
+#include <osg/State>
 
 namespace sonard::render {
 
@@ -19,228 +23,183 @@ namespace {
 constexpr std::size_t chunk_triangles = 2048;  // unit of culling by view and range
 static_assert(3 * chunk_triangles <= std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1,
               "its indices have 16 bits");
+constexpr std::uint32_t none = ~std::uint32_t{0};
 
-/// Culls a chunk that lies wholly beyond the range of the sonar.
-class RangeCull : public osg::DrawableCullCallback {
- public:
-  explicit RangeCull(const float* max_range_m) : max_range_m_(max_range_m) {}
+// Locations in surface.vert.
+enum VertexAttribute : unsigned {
+  position_attribute,
+  normal_attribute,
+  texcoord_attribute,
+  tangent_attribute,
+  facet_attribute  // plane of the triangle that ends with the vertex, one at most: unit normal n, and n.p of
+                   // its points p from the centre of the chunk
+};
+constexpr int eye_uniform = 0;
 
-  bool cull(osg::NodeVisitor* visitor, osg::Drawable* drawable, osg::RenderInfo* /*info*/) const override {
-    const osg::Vec3 eye = static_cast<osgUtil::CullVisitor*>(visitor)->getEyeLocal();
-    const osg::BoundingBox& box = drawable->getBoundingBox();
-    const osg::Vec3 nearest(std::clamp(eye.x(), box.xMin(), box.xMax()),
-                            std::clamp(eye.y(), box.yMin(), box.yMax()),
-                            std::clamp(eye.z(), box.zMin(), box.zMax()));
-    return (nearest - eye).length() > *max_range_m_;
-  }
-
- private:
-  const float* max_range_m_;
+struct Triangle {
+  glm::vec3 centre;
+  std::uint32_t number;
 };
 
-/// Splits the triangles of a mesh into compact chunks by halving along the longest side.
+/// Splits triangles into compact groups by halving along the longest side.
+void split(std::span<Triangle> triangles, const std::function<void(std::span<Triangle>)>& add) {
+  if (triangles.size() <= chunk_triangles) {
+    add(triangles);
+    return;
+  }
+  glm::vec3 low(INFINITY);
+  glm::vec3 high(-INFINITY);
+  for (const Triangle& triangle : triangles) {
+    low = glm::min(low, triangle.centre);
+    high = glm::max(high, triangle.centre);
+  }
+  const glm::vec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+  const std::size_t middle = triangles.size() / 2;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(middle),
+                   triangles.end(), [axis](const Triangle& a, const Triangle& b) {
+                     return std::pair(a.centre[axis], a.number) < std::pair(b.centre[axis], b.number);
+                   });
+  split(triangles.first(middle), add);
+  split(triangles.subspan(middle), add);
+}
+
+/// Makes chunks of groups of triangles.
 class ChunkBuilder {
  public:
   explicit ChunkBuilder(const TriangleMesh& mesh)
-      : mesh_(mesh), number_in_chunk_(mesh.positions.size(), none) {
-    triangles_.reserve(mesh.triangle_count());
-    for (std::uint32_t triangle = 0; triangle < mesh.triangle_count(); ++triangle) {
-      const std::uint32_t* corner = &mesh.indices[std::size_t{triangle} * 3];
-      triangles_.push_back(
-          {(mesh.positions[corner[0]] + mesh.positions[corner[1]] + mesh.positions[corner[2]]) / 3.0F,
-           triangle});
-    }
-  }
+      : mesh_(mesh), number_in_chunk_(mesh.positions.size(), none) {}
 
-  template <class AddChunk>
-  void split(AddChunk add_chunk) {
-    split(triangles_, add_chunk);
-  }
-
- private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-
-  struct Triangle {
-    glm::vec3 centre;
-    std::uint32_t number;
-  };
-
-  template <class AddChunk>
-  void split(std::span<Triangle> triangles, AddChunk& add_chunk) {
-    if (triangles.size() <= chunk_triangles) {
-      add_chunk(content_of(triangles));
-      return;
-    }
-    glm::vec3 low(INFINITY);
-    glm::vec3 high(-INFINITY);
-    for (const Triangle& triangle : triangles) {
-      low = glm::min(low, triangle.centre);
-      high = glm::max(high, triangle.centre);
-    }
-    const glm::vec3 size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const std::size_t middle = triangles.size() / 2;
-    std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(middle),
-                     triangles.end(), [axis](const Triangle& a, const Triangle& b) {
-                       return std::pair(a.centre[axis], a.number) < std::pair(b.centre[axis], b.number);
-                     });
-    split(triangles.first(middle), add_chunk);
-    split(triangles.subspan(middle), add_chunk);
-  }
-
-  ChunkBytes content_of(std::span<Triangle> triangles) {
+  osg::ref_ptr<MeshChunk> build(std::span<Triangle> triangles) {
     // In the order of the mesh, in which neighbours mostly follow one another: OpenGL computes a shared
     // corner once if its triangles follow soon after each other.
     std::ranges::sort(triangles, {}, &Triangle::number);
-    std::vector<std::uint32_t> vertices;       // of the mesh
-    std::vector<std::uint32_t> ending_facets;  // of the mesh, for each vertex
-    std::vector<std::uint16_t> indices;
-    ChunkBytes content;
-    const auto add = [&](std::uint32_t vertex) {
-      vertices.push_back(vertex);
-      ending_facets.push_back(none);
-      return static_cast<std::uint32_t>(vertices.size() - 1);
-    };
+    vertices_.clear();
+    ending_facets_.clear();
+    osg::ref_ptr<osg::DrawElementsUShort> indices = new osg::DrawElementsUShort(GL_TRIANGLES);
     for (const Triangle& triangle : triangles) {
-      std::array<std::uint32_t, 3> corners;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t vertex = mesh_.indices[std::size_t{triangle.number} * 3 + i];
-        std::uint32_t& number = number_in_chunk_[vertex];
-        if (number == none) {
-          number = add(vertex);
-          const glm::vec3& p = mesh_.positions[vertex];
-          content.box.expandBy(p.x, p.y, p.z);
-        }
-        corners[i] = number;
-      }
-      // The triangle ends with a corner with which no other triangle ends, or with a copy of a corner.
-      const auto free =
-          std::find_if(corners.begin(), corners.end(), [&](auto i) { return ending_facets[i] == none; });
-      if (free != corners.end()) {
-        std::rotate(corners.begin(), free + 1, corners.end());
-      } else {
-        corners[2] = add(vertices[corners[2]]);
-      }
-      ending_facets[corners[2]] = triangle.number;
-      indices.insert(indices.end(), corners.begin(), corners.end());
+      const std::array<std::uint32_t, 3> corners = corners_of(triangle.number);
+      indices->insert(indices->end(), corners.begin(), corners.end());
     }
-    for (const std::uint32_t vertex : vertices) {
+    for (const std::uint32_t vertex : vertices_) {
       number_in_chunk_[vertex] = none;
     }
-    add_attribute(mesh_.positions, position_attribute, vertices, content);
-    add_attribute(mesh_.normals, normal_attribute, vertices, content);
-    add_attribute(mesh_.texcoords, texcoord_attribute, vertices, content);
-    add_attribute(mesh_.tangents, tangent_attribute, vertices, content);
-    add_facets(ending_facets, content);
-    content.index_begin = append(indices, content.bytes);
-    content.index_count = static_cast<int>(indices.size());
-    return content;
+    osg::ref_ptr<MeshChunk> chunk = new MeshChunk;
+    chunk->addPrimitiveSet(indices);
+    add<osg::Vec3Array>(mesh_.positions, position_attribute, *chunk);
+    add<osg::Vec3Array>(mesh_.normals, normal_attribute, *chunk);
+    add<osg::Vec2Array>(mesh_.texcoords, texcoord_attribute, *chunk);
+    add<osg::Vec4Array>(mesh_.tangents, tangent_attribute, *chunk);
+    add_facets(*chunk);
+    return chunk;
   }
 
-  void add_facets(const std::vector<std::uint32_t>& facets, ChunkBytes& content) const {
-    const osg::Vec3d centre = content.box.center();
-    std::vector<glm::vec4> planes;
-    planes.reserve(facets.size());
-    for (const std::uint32_t facet : facets) {
-      planes.push_back(facet == none ? glm::vec4(0.0F)
-                                     : plane_of(facet, {centre.x(), centre.y(), centre.z()}));
+ private:
+  /// Of a triangle, counted in the chunk. The triangle ends with a corner with which no other triangle ends,
+  /// or with a copy of a corner.
+  std::array<std::uint32_t, 3> corners_of(std::uint32_t triangle) {
+    std::array<std::uint32_t, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t vertex = mesh_.indices[std::size_t{triangle} * 3 + i];
+      std::uint32_t& number = number_in_chunk_[vertex];
+      number = number == none ? add_vertex(vertex) : number;
+      corners[i] = number;
     }
-    content.attribute_begin[facet_attribute] = append(planes, content.bytes);
+    const auto free = std::ranges::find_if(corners, [&](auto i) { return ending_facets_[i] == none; });
+    if (free != corners.end()) {
+      std::rotate(corners.begin(), free + 1, corners.end());
+    } else {
+      corners[2] = add_vertex(vertices_[corners[2]]);
+    }
+    ending_facets_[corners[2]] = triangle;
+    return corners;
   }
 
-  /// Plane of a triangle, see facet_attribute; zero if it has no area.
-  glm::vec4 plane_of(std::uint32_t triangle, const glm::dvec3& centre) const {
-    const std::uint32_t* corner = &mesh_.indices[std::size_t{triangle} * 3];
-    const glm::dvec3 a = mesh_.positions[corner[0]];
-    const glm::dvec3 normal =
-        glm::cross(glm::dvec3(mesh_.positions[corner[1]]) - a, glm::dvec3(mesh_.positions[corner[2]]) - a);
-    const double length = glm::length(normal);
-    return length > 0.0 ? glm::vec4(normal / length, glm::dot(normal / length, a - centre)) : glm::vec4(0.0F);
+  std::uint32_t add_vertex(std::uint32_t vertex) {
+    vertices_.push_back(vertex);
+    ending_facets_.push_back(none);
+    return static_cast<std::uint32_t>(vertices_.size() - 1);
   }
 
-  template <class Value>
-  static void add_attribute(const std::vector<Value>& of_mesh, VertexAttribute attribute,
-                            const std::vector<std::uint32_t>& vertices, ChunkBytes& content) {
+  template <class Array, class Value>
+  void add(const std::vector<Value>& of_mesh, VertexAttribute attribute, MeshChunk& chunk) const {
     if (of_mesh.empty()) {
       return;
     }
-    std::vector<Value> values;
-    values.reserve(vertices.size());
-    for (const std::uint32_t vertex : vertices) {
-      values.push_back(of_mesh[vertex]);
+    osg::ref_ptr<Array> values = new Array(static_cast<unsigned>(vertices_.size()));
+    static_assert(sizeof(Value) == sizeof(typename Array::ElementDataType));
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      std::memcpy((*values)[i].ptr(), &of_mesh[vertices_[i]], sizeof(Value));
     }
-    content.attribute_begin[attribute] = append(values, content.bytes);
+    chunk.setVertexAttribArray(attribute, values, osg::Array::BIND_PER_VERTEX);
   }
 
-  /// @return begin of the values in `bytes`
-  template <class Value>
-  static std::size_t append(const std::vector<Value>& values, std::vector<std::uint8_t>& bytes) {
-    const std::size_t begin = bytes.size();
-    bytes.resize(begin + values.size() * sizeof(Value));
-    std::memcpy(&bytes[begin], values.data(), values.size() * sizeof(Value));
-    return begin;
+  void add_facets(MeshChunk& chunk) const {
+    const osg::Vec3d centre = chunk.getBoundingBox().center();
+    osg::ref_ptr<osg::Vec4Array> planes = new osg::Vec4Array;
+    for (const std::uint32_t facet : ending_facets_) {
+      planes->push_back(facet == none ? osg::Vec4() : plane_of(facet, {centre.x(), centre.y(), centre.z()}));
+    }
+    chunk.setVertexAttribArray(facet_attribute, planes, osg::Array::BIND_PER_VERTEX);
+  }
+
+  /// Plane of a triangle, see facet_attribute; zero if it has no area.
+  osg::Vec4 plane_of(std::uint32_t triangle, const glm::dvec3& centre) const {
+    const std::uint32_t* corner = &mesh_.indices[std::size_t{triangle} * 3];
+    const glm::dvec3 a = mesh_.positions[corner[0]];
+    const glm::dvec3 across =
+        glm::cross(glm::dvec3(mesh_.positions[corner[1]]) - a, glm::dvec3(mesh_.positions[corner[2]]) - a);
+    const double length = glm::length(across);
+    const glm::dvec3 n = across / length;
+    return length > 0.0 ? osg::Vec4d(n.x, n.y, n.z, glm::dot(n, a - centre)) : osg::Vec4d();
   }
 
   const TriangleMesh& mesh_;
-  std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> number_in_chunk_;  // per vertex of the mesh
+  std::vector<std::uint32_t> vertices_;         // of the mesh, per vertex of the chunk
+  std::vector<std::uint32_t> ending_facets_;    // of the mesh, per vertex of the chunk
 };
-
-const void* place_in_buffer(std::size_t byte) {
-  return reinterpret_cast<const void*>(byte);
-}
 
 }  // namespace
 
-MeshChunk::MeshChunk(ChunkBytes content) : Item(content.bytes.size()), content_(std::move(content)) {
+MeshChunk::MeshChunk() {
   setUseDisplayList(false);
+  setUseVertexBufferObjects(true);
 }
 
 void MeshChunk::drawImplementation(osg::RenderInfo& info) const {
-  assert(vertex_array_ != 0);
-  osg::State& state = *info.getState();
-  state.bindVertexArrayObject(vertex_array_);
-  glDrawElements(GL_TRIANGLES, content_.index_count, GL_UNSIGNED_SHORT,
-                 place_in_buffer(content_.index_begin));
-  state.unbindVertexArrayObject();
+  const osg::Matrixd rounded = osg::Matrixf(info.getState()->getModelViewMatrix());  // as in the shader
+  const osg::Vec3 eye = osg::Matrixd::inverse(rounded).getTrans() - osg::Vec3d(getBoundingBox().center());
+  info.getState()->get<osg::GLExtensions>()->glUniform3f(eye_uniform, eye.x(), eye.y(), eye.z());
+  osg::Geometry::drawImplementation(info);
 }
 
-void MeshChunk::upload(osg::State& state) {
-  osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-  gl.glGenBuffers(1, &buffer_);
-  gl.glGenVertexArrays(1, &vertex_array_);
-  state.bindVertexArrayObject(vertex_array_);
-  gl.glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-  gl.glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer_);  // the vertex array keeps this
-  gl.glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes()), content_.bytes.data(), GL_STATIC_DRAW);
-  for (unsigned i = 0; i < attribute_floats.size(); ++i) {
-    if (content_.attribute_begin[i] != ChunkBytes::none) {
-      gl.glVertexAttribPointer(i, attribute_floats[i], GL_FLOAT, GL_FALSE, 0,
-                               place_in_buffer(content_.attribute_begin[i]));
-      gl.glEnableVertexAttribArray(i);
+std::uint64_t MeshChunk::bytes() const {
+  std::uint64_t bytes = getPrimitiveSet(0)->getTotalDataSize();
+  for (const auto& attribute : getVertexAttribArrayList()) {
+    bytes += attribute ? attribute->getTotalDataSize() : 0;
+  }
+  return bytes;
+}
+
+osg::ref_ptr<osg::Group> make_chunks(const TriangleMesh& mesh, osg::Drawable::CullCallback* culling) {
+  osg::ref_ptr<osg::Group> chunks = new osg::Group;
+  std::vector<Triangle> triangles;
+  for (std::uint32_t triangle = 0; triangle < mesh.triangle_count(); ++triangle) {
+    const std::uint32_t* corner = &mesh.indices[std::size_t{triangle} * 3];
+    triangles.push_back(
+        {(mesh.positions[corner[0]] + mesh.positions[corner[1]] + mesh.positions[corner[2]]) / 3.0F,
+         triangle});
+  }
+  ChunkBuilder builder(mesh);
+  split(triangles, [&](std::span<Triangle> of_chunk) {
+    if (!of_chunk.empty()) {
+      const osg::ref_ptr<MeshChunk> chunk = builder.build(of_chunk);
+      chunk->setCullCallback(culling);
+      chunks->addChild(chunk);
     }
-  }
-  state.unbindVertexArrayObject();
-  gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
-}
-
-void MeshChunk::release(osg::State& state) {
-  osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-  gl.glDeleteVertexArrays(1, &vertex_array_);
-  gl.glDeleteBuffers(1, &buffer_);
-  vertex_array_ = buffer_ = 0;
-}
-
-void add_chunks(const TriangleMesh& mesh, const float* max_range_m, osg::Group& part) {
-  if (mesh.indices.empty()) {
-    return;
-  }
-  const osg::ref_ptr<RangeCull> range_cull = new RangeCull(max_range_m);
-  ChunkBuilder(mesh).split([&](ChunkBytes content) {
-    osg::ref_ptr<MeshChunk> chunk = new MeshChunk(std::move(content));
-    chunk->setCullCallback(range_cull);
-    part.addChild(chunk);
   });
+  return chunks;
 }
 
 }  // namespace sonard::render

@@ -12,7 +12,6 @@
 
 #include "renderer/engines/gpu/egl_context.hpp"
 #include "renderer/engines/gpu/raster_sampler.hpp"
-#include "renderer/engines/gpu/video_memory.hpp"
 #include "tests/scenes/scenes.hpp"
 #include "tests/scenes/shapes.hpp"
 #include "tests/support/engine_test.hpp"
@@ -23,67 +22,6 @@ namespace {
 using namespace test;
 
 constexpr std::uint64_t mib = 1 << 20;
-
-/// Logs each upload (+) and release (-) in `log`.
-class LoggedItem final : public VideoMemory::Item {
- public:
-  LoggedItem(char name, std::uint64_t bytes, std::string& log) : Item(bytes), name_(name), log_(log) {}
-  ~LoggedItem() override { remove(); }
-
- private:
-  void upload(osg::State& /*state*/) override { log_ += {'+', name_}; }
-  void release(osg::State& /*state*/) override { log_ += {'-', name_}; }
-
-  const char name_;
-  std::string& log_;
-};
-
-class VideoMemoryOrder : public ::testing::Test {
- protected:
-  std::string log;
-  osg::ref_ptr<osg::State> state = new osg::State;
-  VideoMemory memory{*state, 100};
-  LoggedItem a{'a', 40, log}, b{'b', 40, log}, c{'c', 20, log}, d{'d', 30, log};
-};
-
-TEST_F(VideoMemoryOrder, ReleasesWhatWasDrawnLongestAgo) {
-  memory.hold({&a, &b, &c});
-  EXPECT_EQ(memory.bytes(), 100U);
-  memory.hold({&a});
-  memory.hold({&c, &c});
-  EXPECT_EQ(log, "+a+b+c");
-  memory.hold({&d});  // b was drawn longest ago, and its place is enough
-  EXPECT_EQ(log, "+a+b+c-b+d");
-  EXPECT_EQ(memory.bytes(), 90U);
-  memory.hold({&b, &d});  // a is the oldest, and its place is enough
-  EXPECT_EQ(log, "+a+b+c-b+d-a+b");
-  EXPECT_EQ(memory.bytes(), 90U);
-  EXPECT_EQ(memory.bytes_uploaded(), 170U);
-}
-
-TEST_F(VideoMemoryOrder, RefusesWhatDoesNotFitAndStaysAsItIs) {
-  memory.hold({&a, &b});
-  EXPECT_THROW(memory.hold({&b, &a, &d}), RequestError);
-  EXPECT_EQ(log, "+a+b");
-  EXPECT_EQ(memory.bytes(), 80U);
-  memory.hold({&b, &d, &c, &b});
-  EXPECT_EQ(log, "+a+b-a+d+c");
-}
-
-TEST_F(VideoMemoryOrder, LetsItemsGo) {
-  {
-    LoggedItem gone('g', 10, log);
-    memory.hold({&a, &gone});
-  }
-  EXPECT_EQ(log, "+a+g-g");
-  EXPECT_EQ(memory.bytes(), 40U);
-  memory.forget_all();
-  EXPECT_EQ(memory.bytes(), 0U);
-  memory.hold({&a, &b});
-  memory.release_all();
-  EXPECT_EQ(log, "+a+g-g+a+b-a-b");
-  EXPECT_EQ(memory.bytes(), 0U);
-}
 
 class VideoMemoryOfWorlds : public ::testing::Test {
  protected:
@@ -148,21 +86,23 @@ TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
   constexpr unsigned cells = 30;  // one chunk
   constexpr std::uint64_t triangles = 2 * cells * cells;
   TriangleMesh mesh = make_square(cells);
+  const osg::ref_ptr<EglContext> context = EglContext::made_current("");
   const auto expect_bytes = [&](std::uint64_t bytes_per_vertex) {
-    RasterSampler sampler(make_world({make_body("square", mesh)}));
-    const std::uint64_t before = buffer_bytes(sampler.current_context());
-    EXPECT_EQ(sampler.video_memory().bytes(), 0U) << "nothing is drawn yet";
-    sampler.draw({}, forward_grid(0.3), {}, 20);
-    const std::uint64_t bytes = sampler.video_memory().bytes();
+    World world = make_world({make_body("square", mesh)});
+    RasterSampler sampler(*context, world, 100 * mib);
+    const std::uint64_t before = buffer_bytes(*context);
+    EXPECT_EQ(sampler.bytes(), 0U) << "nothing is drawn yet";
+    sampler.sample({}, forward_grid(0.3), {}, 0, 20);
+    const std::uint64_t bytes = sampler.bytes();
     EXPECT_GE(bytes, (bytes_per_vertex + 3 * 2) * triangles);
     EXPECT_LE(bytes, (1.01 * bytes_per_vertex + 3 * 2) * triangles);
-    EXPECT_EQ(buffer_bytes(sampler.current_context()) - before, bytes);
-    sampler.draw({}, forward_grid(0.3), {}, 4);  // out of range: not needed, but there is room
-    EXPECT_EQ(sampler.video_memory().bytes(), bytes);
-    const auto nothing = std::make_shared<const TriangleMesh>();
-    sampler.set_part_meshes(std::vector{PartMesh{0, nothing}});
-    EXPECT_EQ(sampler.video_memory().bytes(), 0U);
-    EXPECT_EQ(buffer_bytes(sampler.current_context()), before);
+    EXPECT_EQ(buffer_bytes(*context) - before, bytes);
+    sampler.sample({}, forward_grid(0.3), {}, 0, 4);  // out of range: not needed, but there is room
+    EXPECT_EQ(sampler.bytes(), bytes);
+    world.bodies[0].parts[0].mesh = std::make_shared<const TriangleMesh>();
+    sampler.sample({}, forward_grid(0.3), {}, 0, 20);
+    EXPECT_EQ(sampler.bytes(), 0U);
+    EXPECT_EQ(buffer_bytes(*context), before);
   };
   expect_bytes(12 + 16 + 12 + 8 + 16);
   mesh.tangents.clear();
@@ -174,14 +114,15 @@ TEST_F(VideoMemoryOfWorlds, IsWhatOpenGlWasGiven) {
 
 // 8 bytes a texel of all levels, in rows of 4096.
 TEST_F(VideoMemoryOfWorlds, HoldsNormalMapsToo) {
+  const osg::ref_ptr<EglContext> context = EglContext::made_current("");
   World world = make_world({make_body("square", make_square(1))});
   world.bodies[0].parts[0].normal_map = std::make_shared<const NormalMap>(
       NormalMap{128, 128, std::vector<std::uint8_t>(std::size_t{3} * 128 * 128, 128)});
-  RasterSampler sampler(world);
-  sampler.draw({}, forward_grid(0.3), {}, 20);
+  RasterSampler sampler(*context, world, mib);
+  sampler.sample({}, forward_grid(0.3), {}, 0, 20);
   constexpr std::uint64_t texels = 128 * 128 + 64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4 + 2 * 2 + 1;
   constexpr std::uint64_t rows = (texels + 4095) / 4096;
-  EXPECT_EQ(sampler.video_memory().bytes(), rows * 4096 * 8 + 4 * 64 + 6 * 2);
+  EXPECT_EQ(sampler.bytes(), rows * 4096 * 8 + 4 * 64 + 6 * 2);
 }
 
 /// Renders each request with a bound and without.

@@ -1,111 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL of RasterSampler: one SurfaceSample per pixel. No discard: it would move the depth test behind the
+// One SurfaceSample per pixel. surface_shader_head() precedes it. No discard: it would move the depth test behind the
 // shader.
 //
-// Each kind of surface has its own program, which begins with surface_shader_head() and has only the code for
-// that kind, because a software OpenGL runs both sides of every branch.
-#pragma once
+// Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1) with tangents
+// t. On the plane n.p = d, with p = depth * q, the inverse depth is n.q / d, which is affine in t. This gives the exact
+// range derivatives (docs/physics.md 2.3, equation 2), without differences of positions, even for planes seen edge-on.
 
-#include <string>
-
-#include <fmt/format.h>
-
-#include "renderer/surface/surface_model.hpp"
-
-namespace sonard::render {
-
-/// Kind of a surface, which selects its program: the source of the normal for its echo.
-enum class Shading { geometric_normal = 0, vertex_normals = 1, normal_mapped = 2 };
-
-/// Locations of the uniforms of a view or, at_eye, of a chunk in it; OpenSceneGraph sets the others.
-enum ViewUniform : int { at_tan_half, at_pixel, at_refraction, at_corner, at_eye };
-
-/// The beginning of both shaders. FACETS: 0 no facets, 1 near normal incidence, 2 everywhere. BENT: rays
-/// bend.
-inline std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
-  return fmt::format(
-      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
-      "BENT {:d}\n",
-      static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
-}
-
-// The plane of a triangle is an attribute of its last corner, with which no other triangle ends. Positions
-// that the GPU interpolates between corners are less accurate: they are off by per cents if a triangle of a
-// hundred metres passes a metre from the eye and is clipped there (docs/accuracy.md). The distance of the
-// plane from the eye is computed from the chunk's centre, because corners may be far away.
-inline constexpr char surface_vertex_shader[] = R"glsl(
-layout(location = 0) in vec4 position;  // VertexAttribute
-layout(location = 1) in vec3 normal;
-#if SHADING == 2
-layout(location = 2) in vec2 mapped_at;
-layout(location = 3) in vec4 tangent;  // xyz unit, w handedness
-#endif
-layout(location = 4) in vec4 facet;
-layout(location = 4) uniform vec3 eye;  // from the centre of the chunk, in coordinates of the part
-#if BENT
-layout(location = 2) uniform vec4 refraction;  // Refraction in eye coordinates: up, per_m
-
-// Refraction::normal() at `p`.
-vec3 bent_normal(vec3 n, vec3 p) {
-  vec3 level = p - refraction.xyz * dot(p, refraction.xyz);
-  return n - level * (2.0 * refraction.w * dot(n, refraction.xyz));
-}
-
-// Refraction::point().
-vec3 bent_point(vec3 p) {
-  float height = dot(p, refraction.xyz);
-  float squared = dot(p, p);
-  vec3 lifted = p + refraction.xyz * (refraction.w * (squared - height * height));
-  return lifted * sqrt(squared / max(dot(lifted, lifted), 1e-30));
-}
-#endif
-flat out vec4 plane;  // n / d, where n.p = d, and the distance
-#if SHADING != 0
-out vec3 normal_eye;
-#endif
-#if SHADING == 2
-out vec4 tangent_eye;
-out vec2 texcoord;
-#endif
-
-void main() {
-  vec3 p = (gl_ModelViewMatrix * position).xyz;
-  vec3 n = mat3(gl_ModelViewMatrix) * facet.xyz;
-  float d = facet.w - dot(facet.xyz, eye);
-#if SHADING != 0
-  normal_eye = gl_NormalMatrix * normal;
-#endif
-#if BENT
-  n = bent_normal(n, p);
-#if SHADING != 0
-  normal_eye = bent_normal(normal_eye, p);
-#endif
-  p = bent_point(p);
-  d = dot(n, p);
-#endif
-  gl_Position = gl_ProjectionMatrix * vec4(p, 1.0);
-  plane = d == 0.0 ? vec4(0.0) : vec4(n / d, abs(d) * inversesqrt(dot(n, n)));
-#if SHADING == 2
-  tangent_eye = vec4(gl_NormalMatrix * tangent.xyz, tangent.w);
-  texcoord = mapped_at;
-#endif
-}
-)glsl";
-
-// Eye coordinates: x to starboard, y up, the view axis along -z. The ray of a pixel is q = (t.x, t.y, -1)
-// with tangents t. On the plane n.p = d, with p = depth * q, the inverse depth is n.q / d, which is affine in
-// t. This gives the exact range derivatives (docs/physics.md 2.3, equation 2), without differences of
-// positions, even for planes seen edge-on.
-inline constexpr char surface_fragment_shader[] = R"glsl(
 flat in vec4 plane;
 #if SHADING != 0
 in vec3 normal_eye;
 #endif
 layout(location = 0) out vec4 surface_sample;
 
-layout(location = 0) uniform vec2 tan_half;  // of the view
-layout(location = 1) uniform vec2 pixel;     // the tangents that one spans
-layout(location = 3) uniform vec2 view_corner;  // its first pixel, column and row
+uniform vec2 tan_half;  // of the view
+uniform vec2 pixel;     // the tangents that one spans
 #if SHADING == 2
 in vec4 tangent_eye;
 in vec2 texcoord;
@@ -157,8 +65,8 @@ vec3 mean_normal(vec2 uv, float level) {
 float map_level(float inverse_depth, vec2 inverse_depth_step) {
   vec2 over_depth = texcoord * inverse_depth;
   vec2 texels_per_step = vec2(map_levels[0].xy) / inverse_depth;
-  vec2 dx = (dFdy(over_depth) - texcoord * inverse_depth_step.x) * texels_per_step;
-  vec2 dy = (dFdx(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
+  vec2 dx = (dFdx(over_depth) - texcoord * inverse_depth_step.x) * texels_per_step;
+  vec2 dy = (dFdy(over_depth) - texcoord * inverse_depth_step.y) * texels_per_step;
   return 0.5 * log2(max(dot(dx, dx), dot(dy, dy)));
 }
 #endif
@@ -201,7 +109,7 @@ float facet_response_of_mean(float cos_phi, float mean_length) {
 #endif
 
 void main() {
-  vec2 t = (gl_FragCoord.yx - view_corner) * pixel - tan_half;
+  vec2 t = gl_FragCoord.xy * pixel - tan_half;
   vec2 slope = plane.xy;  // of the inverse depth, per tangent
 #if BENT  // small, and as a plane only that through its corners
   float inverse_depth = gl_FragCoord.w;
@@ -240,20 +148,3 @@ void main() {
   surface_sample = !(inverse_depth > 0.0) ? vec4(0.0)
                    : isnan(all) || isinf(all) ? vec4(-1.0, 0.0, 0.0, 0.0) : result;
 }
-)glsl";
-
-// Fills pixels without a surface: drawn last, at pixels that still have the initial depth. Clearing all
-// samples instead would take two fifths of the time of drawing.
-inline constexpr char unseen_vertex_shader[] = R"glsl(#version 450 compatibility
-void main() {
-  gl_Position = vec4(vec2(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1), 0.0, 1.0);
-}
-)glsl";
-inline constexpr char unseen_fragment_shader[] = R"glsl(#version 450 compatibility
-layout(location = 0) out vec4 surface_sample;
-void main() {
-  surface_sample = vec4(0.0);
-}
-)glsl";
-
-}  // namespace sonard::render
