@@ -14,6 +14,8 @@ namespace sonard::render {
 
 namespace {
 
+// In wider planar views the pixels are too unequal (docs/physics.md 1.3).
+constexpr double widest_view_rad = std::numbers::pi / 3;
 constexpr double widest_single_view_rad = 2.8;  // a planar view must be narrower than pi
 constexpr double most_samples = 0x1p27;         // 2 GiB of samples
 
@@ -24,10 +26,10 @@ void check(const Sampling& sampling) {
   }
 }
 
-BeamRun even_views(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
+/// Number of views of equal width that span the fan.
+int view_count(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
   check(sampling);
-  const double port = aperture.beam_edges_rad.front();
-  const double width = port - aperture.beam_edges_rad.back();
+  const double width = aperture.beam_edges_rad.front() - aperture.beam_edges_rad.back();
   int count = sampling.views;
   if (options.elevation_mask) {
     count = std::max(count, static_cast<int>(std::ceil(width / widest_view_rad - 1e-9)));
@@ -38,25 +40,21 @@ BeamRun even_views(const Aperture& aperture, const Sampling& sampling, const Gri
   if (samples > most_samples) {
     throw RequestError("sampling: more than 2^27 samples; lower views, columns or rows");
   }
-  BeamRun run{0, aperture.beam_count(), {}, sampling.rows};
-  for (int i = 0; i < count; ++i) {
-    run.views.push_back(
-        {port - width * i / count, port - width * (i + 1) / count, sampling.columns_per_view});
-  }
-  return run;
+  return count;
 }
 
-SubView make_view(const Aperture& aperture, const ViewSpan& span, int rows, const GridOptions& options) {
-  const double half = (span.port_rad - span.starboard_rad) / 2;
+SubView make_view(const Aperture& aperture, double port_rad, double starboard_rad, const Sampling& sampling,
+                  const GridOptions& options) {
+  const double half = (port_rad - starboard_rad) / 2;
   SubView view;
-  view.azimuth_rad = (span.port_rad + span.starboard_rad) / 2;
+  view.azimuth_rad = (port_rad + starboard_rad) / 2;
   view.tan_half_width = std::tan(half);
   // In the plane of the view the elevation limit is highest at the sides. Without the mask the view is the
   // paper's frustum, whose limit holds on the axis only.
   view.tan_half_height =
       std::tan(aperture.elevation_limit_rad()) / (options.elevation_mask ? std::cos(half) : 1.0);
-  view.columns = span.columns;
-  view.rows = rows;
+  view.columns = sampling.columns_per_view;
+  view.rows = sampling.rows;
   return view;
 }
 
@@ -69,15 +67,21 @@ class GridBuilder {
     grid_.beam_parts.push_back(0);
   }
 
-  /// @throws RequestError if a beam gets no column
-  void add_run(const BeamRun& run) {
-    const std::size_t first_view = grid_.views.size();
-    for (const ViewSpan& span : run.views) {
-      grid_.views.push_back(make_view(grid_.aperture, span, run.rows, options_));
+  void add_views(const Sampling& sampling) {
+    const int count = view_count(grid_.aperture, sampling, options_);
+    const double port = grid_.aperture.beam_edges_rad.front();
+    const double width = port - grid_.aperture.beam_edges_rad.back();
+    for (int i = 0; i < count; ++i) {
+      grid_.views.push_back(make_view(grid_.aperture, port - width * i / count,
+                                      port - width * (i + 1) / count, sampling, options_));
     }
-    for (int beam = run.begin; beam < run.end; ++beam) {
+  }
+
+  /// @throws RequestError if a beam gets no column
+  void add_beams() {
+    for (int beam = 0; beam < grid_.aperture.beam_count(); ++beam) {
       const auto b = static_cast<std::size_t>(beam);
-      add_beam(first_view, grid_.aperture.beam_edges_rad[b], grid_.aperture.beam_edges_rad[b + 1]);
+      add_beam(grid_.aperture.beam_edges_rad[b], grid_.aperture.beam_edges_rad[b + 1]);
       if (grid_.beam_parts.back() == *std::prev(grid_.beam_parts.end(), 2)) {
         throw RequestError("sampling: beam " + std::to_string(beam) +
                            " gets no column; raise columns per view");
@@ -86,9 +90,8 @@ class GridBuilder {
   }
 
  private:
-  /// Adds the parts of one beam from the views `first_view` and later.
-  void add_beam(std::size_t first_view, double port_edge_rad, double starboard_edge_rad) {
-    for (std::size_t v = first_view; v < grid_.views.size(); ++v) {
+  void add_beam(double port_edge_rad, double starboard_edge_rad) {
+    for (std::size_t v = 0; v < grid_.views.size(); ++v) {
       const SubView& view = grid_.views[v];
       const double half = std::atan(view.tan_half_width);
       // Azimuth from the view axis, positive to starboard; edges outside the view are clamped to its side.
@@ -166,10 +169,6 @@ class GridBuilder {
   const double tan_limit_;
 };
 
-}  // namespace
-
-namespace {
-
 double azimuth_at(const SubView& view, double x) {
   return view.azimuth_rad - std::atan(x);
 }
@@ -179,11 +178,6 @@ double azimuth_at(const SubView& view, double x) {
 double SampleGrid::middle(const ColumnPart& part) const {
   const SubView& view = views[static_cast<std::size_t>(part.view)];
   return -view.tan_half_width + (part.column + 0.5) * view.pixel_width() + static_cast<double>(part.x_offset);
-}
-
-double SampleGrid::column_rad(const ColumnPart& part) const {
-  return azimuth_at(views[static_cast<std::size_t>(part.view)],
-                    middle(part) - static_cast<double>(part.x_offset));
 }
 
 double SampleGrid::port_rad(const ColumnPart& part) const {
@@ -236,14 +230,6 @@ double CellWeights::sum(std::size_t begin, std::size_t end) const {
                          weights_.begin() + static_cast<std::ptrdiff_t>(first_[end]), 0.0);
 }
 
-double BeamRun::samples() const {
-  double columns = 0;
-  for (const ViewSpan& view : views) {
-    columns += view.columns;
-  }
-  return columns * rows;
-}
-
 bool needs_grid(const SonarSettings& settings) {
   const PaperModel& paper = settings.paper;
   return settings.sampling.preset == Sampling::Preset::grid || !settings.sampling.footprint ||
@@ -272,29 +258,10 @@ GridOptions grid_options(const SonarSettings& settings) {
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling, const GridOptions& options) {
   check_aperture(aperture);
   SampleGrid grid;
-  GridBuilder(aperture, options, grid).add_run(even_views(aperture, sampling, options));
-  return grid;
-}
-
-SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs) {
-  check_aperture(aperture);
-  const GridOptions options;
-  SampleGrid grid;
   GridBuilder builder(aperture, options, grid);
-  for (const BeamRun& run : runs) {
-    builder.add_run(run);
-  }
+  builder.add_views(sampling);
+  builder.add_beams();
   return grid;
-}
-
-SampleGrid part_of(const SampleGrid& grid, int begin, int end) {
-  const auto at = [&](int beam) { return grid.beam_parts[static_cast<std::size_t>(beam)]; };
-  SampleGrid part{
-      grid.aperture, grid.views, {grid.parts.begin() + at(begin), grid.parts.begin() + at(end)}, {}};
-  for (int beam = begin; beam <= end; ++beam) {
-    part.beam_parts.push_back(at(beam) - at(begin));
-  }
-  return part;
 }
 
 }  // namespace sonard::render

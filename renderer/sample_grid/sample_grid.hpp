@@ -3,16 +3,12 @@
 // belong to each beam.
 #pragma once
 
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
-
-/// Widest view; in wider planar views the pixels are too unequal (docs/physics.md 1.3).
-inline constexpr double widest_view_rad = std::numbers::pi / 3;
 
 /// One planar view. A ray of the view is q(x, y) = axis + x * starboard + y * up with tangents x and y;
 /// the axis lies in the sonar's xy plane at azimuth `azimuth_rad`. Pixel (column c, row j) is centred at
@@ -58,7 +54,7 @@ struct ColumnPart {
 
 /// The sampling of one aperture: pure geometry, made once per configuration, the same for CPU and GPU.
 struct SampleGrid {
-  Aperture aperture;  ///< of all beams; the grid may cover only some of them
+  Aperture aperture;
   std::vector<SubView> views;
   std::vector<ColumnPart> parts;  ///< sorted by beam
   std::vector<int> beam_parts;    ///< parts of beam b: [beam_parts[b], beam_parts[b + 1])
@@ -66,8 +62,7 @@ struct SampleGrid {
   int beam_count() const { return static_cast<int>(beam_parts.size()) - 1; }
   /// Tangent x of the middle of a part, in its view.
   double middle(const ColumnPart& part) const;
-  /// Azimuths of the middle of a part's column, and of the two sides of the part.
-  double column_rad(const ColumnPart& part) const;
+  /// Azimuths of the two sides of a part.
   double port_rad(const ColumnPart& part) const;
   double starboard_rad(const ColumnPart& part) const;
   /// Solid angle times elevation pattern of the part's share of the pixel in this row, steradians.
@@ -114,28 +109,5 @@ GridOptions grid_options(const SonarSettings& settings);
 /// @throws RequestError if aperture or sampling are out of range, or if a beam gets no column
 SampleGrid make_sample_grid(const Aperture& aperture, const Sampling& sampling,
                             const GridOptions& options = {});
-
-/// A view between two azimuths.
-struct ViewSpan {
-  double port_rad = 0.0, starboard_rad = 0.0;
-  int columns = 1;
-};
-
-/// Neighbouring beams with views that no other beams share.
-struct BeamRun {
-  int begin = 0, end = 0;       ///< beams [begin, end) of the aperture, at least one
-  std::vector<ViewSpan> views;  ///< from port to starboard; together they span the beams
-  int rows = 1;
-
-  double samples() const;
-};
-
-/// The sampling of some beams only: the beams of the runs, one run after the other.
-/// @param runs in the order of the beams, without repetitions; no view wider than 60 degrees
-/// @throws RequestError if a beam gets no column
-SampleGrid make_sample_grid(const Aperture& aperture, const std::vector<BeamRun>& runs);
-
-/// The beams [begin, end) of a grid, with the same views.
-SampleGrid part_of(const SampleGrid& grid, int begin, int end);
 
 }  // namespace sonard::render
