@@ -17,8 +17,6 @@ struct PartMesh;  // renderer/scene/world.hpp
 struct EchoRequest {
   Pose T_world_sonar;
   const SonarSettings& settings;
-  /// Factors that the caller applies to the lines later, for engines that weigh their errors; empty: all 1.
-  const std::vector<float>& line_weight;
   bool open_water = false;  ///< fill MeanEcho::open_sr; only in mode `physical`
 };
 

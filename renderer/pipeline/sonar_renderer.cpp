@@ -193,18 +193,15 @@ struct SonarRenderer::Impl {
     statistics.pulse_s = watch.lap();
   }
 
-  /// The request to the engine; it refers to the settings and to stored data of the head.
-  EchoRequest engine_request(const SonarSettings& settings, int head, const SonarMotion& motion) {
-    static const std::vector<float> no_loss;
-    const std::vector<float>& line_weight =
-        settings.model == Model::physical ? loss_for(settings, head).of_line : no_loss;
-    return {motion.T_world_sonar, settings, line_weight, has_volume_reverberation(settings)};
+  /// The request to the engine; it refers to the settings.
+  static EchoRequest engine_request(const SonarSettings& settings, const SonarMotion& motion) {
+    return {motion.T_world_sonar, settings, has_volume_reverberation(settings)};
   }
 
   /// The echo as it arrives at the sonar.
   void sample_echo(const SonarSettings& settings, std::uint64_t seed, int head, const SonarMotion& motion,
                    EchoImage& image) {
-    const EchoRequest request = engine_request(settings, head, motion);
+    const EchoRequest request = engine_request(settings, motion);
     MeanEcho echo{std::move(image), {}};
     if (const auto made = begun.find(head); made != begun.end()) {
       echo = std::move(made->second.echo);
@@ -238,7 +235,7 @@ struct SonarRenderer::Impl {
       if (water_echoes) {
         strongest_of_all = strongest_of_lines(image, workers);
       }
-      apply_loss(request.line_weight, image);
+      apply_loss(loss_for(settings, head).of_line, image);
     }
     statistics.binning_s += watch.lap();
   }
@@ -271,8 +268,7 @@ struct SonarRenderer::Impl {
     for (const RangeSpan& span :
          range_spans(request.T_world_sonar, at_end, lines, up_to_end.aperture.receive_beamwidth_rad)) {
       up_to_end.range.count = span.end_line;
-      engine.image({span.T_world_sonar, up_to_end, request.line_weight, request.open_water}, echo,
-                   statistics);
+      engine.image({span.T_world_sonar, up_to_end, request.open_water}, echo, statistics);
       copy_lines(echo.image.intensity, span, beams, joined.image.intensity);
       copy_lines(echo.open_sr, span, beams, joined.open_sr);
     }
@@ -346,7 +342,7 @@ struct SonarRenderer::Impl {
         }
         if (Begun* made = may_begin(ping)) {
           heads.push_back(ping.head);
-          requests.push_back(engine_request(made->sampled, ping.head, made->made_of.motion));
+          requests.push_back(engine_request(made->sampled, made->made_of.motion));
           jobs.push_back({requests.back(), made->echo, made->statistics});
         }
       } catch (const RequestError&) {

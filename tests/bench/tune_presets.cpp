@@ -84,8 +84,7 @@ class SceneBench {
   /// Renders an image and adds its CPU time to `seconds`.
   render::EchoImage image(int pose, const SliceAccuracy& accuracy, double& seconds) {
     const render::SonarSettings& settings = scene_.settings;
-    const std::vector<float> line_weight;
-    const render::EchoRequest request{pose_near(scene_.T_world_sonar, pose), settings, line_weight};
+    const render::EchoRequest request{pose_near(scene_.T_world_sonar, pose), settings};
     const double begin = cpu_s();
     const auto cells =
         slices_.sample(request.T_world_sonar, settings.aperture, settings.range,

@@ -46,7 +46,7 @@ class BothSides {
         world_(ping.bend_per_m == 0.0 ? ping.world : refractable(ping.world, 2 * ping.bend_per_m)),
         surface_(surface_model(ping.settings, ping.skip)),
         accuracy_(slice_accuracy(ping.settings.sampling, ping.settings.model)),
-        options_(binning_options({ping.T_world_sonar, ping.settings, no_weights_, ping.open_water}, ping.skip,
+        options_(binning_options({ping.T_world_sonar, ping.settings, ping.open_water}, ping.skip,
                                  largest_response(world_))),
         fan_(ping.settings.aperture, ping.settings.range.sampled_range_m()),
         weights_(probe_weights(ping.settings.aperture, fan_.tan_limit())),
@@ -154,7 +154,6 @@ class BothSides {
 
   const Ping& ping_;
   const World world_;
-  const std::vector<float> no_weights_;
   const SurfaceModel surface_;
   const SliceAccuracy accuracy_;
   const BinningOptions options_;

@@ -28,9 +28,8 @@ struct View {
   }
 
   const MeanEcho& image() {
-    const std::vector<float> unweighted;
     PingStatistics statistics;
-    engine.image({{}, settings, unweighted}, echo, statistics);
+    engine.image({{}, settings}, echo, statistics);
     return echo;
   }
 
