@@ -13,7 +13,7 @@ namespace sonard::render {
 
 enum class EngineKind {
   automatic,  ///< the faster one, measured by choose_engine() (engine_trial); before that, `cpu`
-  gpu,        ///< OpenSceneGraph and OpenGL 4.5 through EGL
+  gpu,        ///< azimuth slices in compute shaders of OpenGL, through EGL
   cpu,        ///< azimuth slices on the CPU; never opens EGL
 };
 

@@ -14,14 +14,12 @@ namespace sonard::render {
 /// objects only. The thread that makes it current owns it.
 class EglContext : public osg::GraphicsContext {
  public:
+  /// Makes a context and makes it current.
   /// @param device see GpuOptions::device
   /// @throws RendererError, with a list of the devices, if no context can be made
-  explicit EglContext(const std::string& device);
-
-  /// Makes a context and makes it current. @throws RendererError as the constructor
   static osg::ref_ptr<EglContext> made_current(const std::string& device);
 
-  /// "vendor / renderer / version"; valid once realized and current.
+  /// "vendor / renderer / version". The context must be current.
   std::string describe() const;
 
   /// True if OpenGL runs on the CPU, according to the driver.
@@ -61,6 +59,8 @@ class EglContext : public osg::GraphicsContext {
   ~EglContext() override;
 
  private:
+  explicit EglContext(const std::string& device);
+
   void* display_ = nullptr;  // EGLDisplay; opaque, so that includers do not need EGL
   void* context_ = nullptr;  // EGLContext
   bool software_ = false;
