@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,18 @@ struct HeadRequest {
   PingRequest request;
 };
 
+/// Work of engine `gpu` for presets, as the GPU has counted it in the last pass.
+struct GpuWork {
+  std::uint64_t dispatches = 0;  ///< of all passes
+  std::uint64_t triangles = 0;   ///< in the fan
+  std::uint64_t entries = 0;     ///< of these, in the lists of all beams
+  std::uint64_t rounds = 0;      ///< that see slices
+  std::uint64_t slices = 0;      ///< seen or taken over from the slice that they replace
+  std::uint64_t segments = 0;    ///< triangles cut by slices, and sorted
+  std::uint64_t visible = 0;     ///< segments, or parts of segments
+  std::uint64_t additions = 0;   ///< atomic, to 32-bit words of the sums over range
+};
+
 /// Time spent and amount of work, for logs, metrics and the benchmark.
 struct PingStatistics {
   double visibility_s = 0.0;
@@ -92,14 +105,16 @@ struct PingStatistics {
   std::uint64_t synchronisations = 0;
   // GPU engine only, over all its passes:
   std::uint64_t views = 0;
-  std::uint64_t pixels = 0;              ///< of all views, empty pixels included
-  std::uint64_t draw_calls = 0;          ///< chunks of meshes left after culling
-  std::uint64_t triangles = 0;           ///< in these draw calls
-  std::uint64_t atomic_additions = 0;    ///< by binning, modulo 2^32 for each page of the image
-  std::uint64_t bytes_uploaded = 0;      ///< into buffers, including new meshes and normal maps
-  std::uint64_t video_memory_bytes = 0;  ///< meshes and normal maps in video memory after the ping
+  std::uint64_t pixels = 0;            ///< of all views, empty pixels included
+  std::uint64_t draw_calls = 0;        ///< chunks of meshes left after culling
+  std::uint64_t triangles = 0;         ///< in these draw calls
+  std::uint64_t atomic_additions = 0;  ///< by binning, modulo 2^32 for each page of the image
   double preparing_s = 0.0;  ///< CPU time to cull and to lay out grids; part of visibility_s and binning_s
-  SkipCounts skipped;        ///< stages that did not run count nothing
+  GpuWork gpu_work{};
+  std::map<std::string, double> gpu_stages_ms{};  ///< by the file of a shader; see GpuOptions::time_stages
+  std::uint64_t bytes_uploaded = 0;               ///< into buffers, including new meshes and normal maps
+  std::uint64_t video_memory_bytes = 0;           ///< meshes and normal maps in video memory after the ping
+  SkipCounts skipped;                             ///< stages that did not run count nothing
 };
 
 }  // namespace sonard::render

@@ -30,6 +30,10 @@ struct GpuOptions {
   double retry_s = 0.0;
   /// For tests: destroys the OpenGL context in the middle of this image, counted from 1; 0: never.
   std::uint64_t lose_context_at_image = 0;
+  /// For the benchmark: fills PingStatistics::gpu_stages_ms, of one ping at a time.
+  bool time_stages = false;
+  /// For the benchmark: GpuSlices::Options::group and segments; 0: as usual.
+  int group = 0, segments = 0;
 };
 
 struct RendererOptions {

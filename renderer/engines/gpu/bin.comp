@@ -19,7 +19,8 @@ const float least_smear = 1e-3;     // lines; below, a step is sharp
 const float least_spread = 1e-3;    // lines; narrower patches are widened to this
 const float widest_smear = 512.0;   // lines; surfaces seen edge-on carry no energy
 
-shared uint s_samples, s_invalid;
+shared uint s_samples, s_invalid, s_additions;
+uint additions;  // by this invocation, to words of the sums
 uint beam, begin, end;  // of the patches of the slice
 
 // ---- sums ----
@@ -33,10 +34,12 @@ void add(int profile, int order, int line, uvec2 units) {
   uint carry = 0u;
   if (units.x != 0u) {
     uint before = atomicAdd(sums[at], units.x);
+    ++additions;
     carry = before + units.x < before ? 1u : 0u;
   }
   if (units.y + carry != 0u) {
     atomicAdd(sums[at + 1u], units.y + carry);
+    ++additions;
   }
 }
 
@@ -253,15 +256,18 @@ void main() {
   }
   beam = uint(slices[number].beam);
   if (lane_number() == 0u) {
-    s_samples = s_invalid = 0u;
+    s_samples = s_invalid = s_additions = 0u;
   }
+  additions = 0u;
   barrier();
   for (uint i = begin + lane_number(); i <= end; i += GROUP) {
     add_end(i);
   }
+  atomicAdd(s_additions, additions);
   barrier();
   if (lane_number() == 0u) {
     atomicAdd(counts.samples, s_samples);
     atomicAdd(counts.invalid, s_invalid);
+    atomicAdd(counts.additions, s_additions);
   }
 }

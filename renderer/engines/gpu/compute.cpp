@@ -26,11 +26,14 @@ osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* t
         shaders::sides_glsl, shaders::refine_glsl, shaders::ping_glsl}) {
     source += common;
   }
-  return context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source + text)}, name,
-                                {"Ping", "Echo", "Refinement"});
+  osg::ref_ptr<osg::Program> program = context_.build_program(
+      {new osg::Shader(osg::Shader::COMPUTE, source + text)}, name, {"Ping", "Echo", "Refinement"});
+  program->setName(name);
+  return program;
 }
 
 void Compute::use(const osg::ref_ptr<osg::Program>& program, const GpuBuffer& ping) const {
+  stage_ = program->getName();
   program->getPCP(*context_.getState())->useProgram();
   gl_.glBindBufferBase(GL_UNIFORM_BUFFER, 0, ping.name());
 }
@@ -40,7 +43,7 @@ void Compute::dispatch(std::size_t groups) const {
   if (groups > 0) {
     gl_.glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
   }
-  gl_.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  end_dispatch();
 }
 
 void Compute::dispatch_indirect(const GpuBuffer& groups, std::size_t first_byte) const {
@@ -50,7 +53,42 @@ void Compute::dispatch_indirect(const GpuBuffer& groups, std::size_t first_byte)
       reinterpret_cast<DispatchComputeIndirect>(osg::getGLExtensionFuncPtr("glDispatchComputeIndirect"));
   gl_.glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.name());
   run(static_cast<GLintptr>(first_byte));
+  end_dispatch();
+}
+
+void Compute::end_dispatch() const {
   gl_.glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  ++dispatches_;
+  stamp(stage_);
+}
+
+void Compute::begin_stages() const {
+  stamp("");
+}
+
+// Not GL_TIME_ELAPSED: llvmpipe measures 0 with it for compute shaders.
+void Compute::stamp(const std::string& stage) const {
+  if (is_timed_) {
+    stamps_.push_back({stage, 0});
+    gl_.glGenQueries(1, &stamps_.back().query);
+    gl_.glQueryCounter(stamps_.back().query, GL_TIMESTAMP);
+  }
+}
+
+std::map<std::string, double> Compute::take_stages_ms() const {
+  constexpr double ms_per_ns = 1e-6;
+  std::map<std::string, double> stages_ms;
+  GLuint64 last_ns = 0, now_ns = 0;
+  for (const Stamp& stamp : stamps_) {
+    gl_.glGetQueryObjectui64v(stamp.query, GL_QUERY_RESULT, &now_ns);
+    gl_.glDeleteQueries(1, &stamp.query);
+    if (!stamp.stage.empty()) {
+      stages_ms[stamp.stage] += ms_per_ns * static_cast<double>(now_ns - last_ns);
+    }
+    last_ns = now_ns;
+  }
+  stamps_.clear();
+  return stages_ms;
 }
 
 void Compute::read_bytes(const GpuBuffer& buffer, std::span<std::byte> bytes) const {

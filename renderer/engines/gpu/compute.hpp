@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,6 +41,17 @@ class Compute {
   /// Runs it in as many groups as the GPU finds in three words of a buffer.
   void dispatch_indirect(const GpuBuffer& groups, std::size_t first_byte) const;
 
+  std::uint64_t dispatches() const { return dispatches_; }
+
+  /// For the benchmark: from now on, takes the time of every dispatch.
+  void time_stages() { is_timed_ = true; }
+  /// Begins the first stage of a ping. A stage goes from the end of the one before to its own end, so it
+  /// includes what is uploaded and cleared for it.
+  void begin_stages() const;
+  /// Milliseconds of the GPU for each shader's file since the last call. Waits for the GPU. Empty without
+  /// time_stages()
+  std::map<std::string, double> take_stages_ms() const;
+
   /// Waits for the GPU. @throws RendererError if the context is lost
   template <class T>
   std::vector<T> read(const GpuBuffer& buffer, std::size_t count) const {
@@ -48,11 +61,21 @@ class Compute {
   }
 
  private:
+  void end_dispatch() const;
+  void stamp(const std::string& stage) const;
   void read_bytes(const GpuBuffer& buffer, std::span<std::byte> bytes) const;
 
   EglContext& context_;
   osg::GLExtensions& gl_;
   int group_;
+  bool is_timed_ = false;
+  mutable std::uint64_t dispatches_ = 0;
+  mutable std::string stage_;  ///< of the selected program
+  struct Stamp {
+    std::string stage;  ///< that ends here; empty: none
+    GLuint query;
+  };
+  mutable std::vector<Stamp> stamps_;
 };
 
 }  // namespace sonard::render

@@ -17,6 +17,18 @@ namespace sonard::render {
 
 namespace {
 
+GpuSlices::Options slice_options(const GpuOptions& options) {
+  GpuSlices::Options of_slices{.memory_mib = options.memory_mib, .time_stages = options.time_stages};
+  of_slices.group = options.group > 0 ? options.group : of_slices.group;
+  of_slices.segments = options.segments > 0 ? options.segments : of_slices.segments;
+  return of_slices;
+}
+
+GpuWork work_of(const PingCounts& counts, std::uint64_t dispatches) {
+  return {dispatches,    counts.triangles, counts.entries, counts.rounds,
+          counts.slices, counts.segments,  counts.visible, counts.additions};
+}
+
 World drawn_world(const World& world, const RendererOptions& options) {
   return options.ray_curvature_per_m == 0.0 ? world : refractable(world, options.ray_curvature_per_m);
 }
@@ -33,7 +45,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       context_(EglContext::made_current(options.gpu.device)),
       description_("gpu, " + context_->describe()),
       world_(drawn_, slice_switches(options)),
-      slices_(*context_, {.memory_mib = options.gpu.memory_mib}),
+      slices_(*context_, slice_options(options.gpu)),
       echoes_(slices_.compute()) {}
 
 GpuEngine::~GpuEngine() {
@@ -135,6 +147,8 @@ void GpuEngine::begin(Ping& ping) {
   PingStatistics& statistics = ping.job.statistics;
   Stopwatch watch;
   const std::uint64_t uploaded_before = slices_.meshes().bytes_uploaded();
+  const std::uint64_t dispatched_before = slices_.compute().dispatches();
+  slices_.compute().begin_stages();
   world_.place(ping.job.request.T_world_sonar);
   GpuSlices::PingSetting setting = ping.seen(world_.bend());
   setting.may_be_seen = GpuSlices::may_be_seen(world_.parts(), setting);
@@ -145,6 +159,7 @@ void GpuEngine::begin(Ping& ping) {
   statistics.visibility_s += watch.lap();
   echoes_.make(ping.buffers, world_.surfaces(), ping.echoed());
   statistics.binning_s += watch.lap();
+  statistics.gpu_work.dispatches += slices_.compute().dispatches() - dispatched_before;
   statistics.bytes_uploaded += slices_.meshes().bytes_uploaded() - uploaded_before;
   statistics.video_memory_bytes = slices_.meshes().bytes() + echoes_.surfaces().bytes();
 }
@@ -171,6 +186,8 @@ void GpuEngine::finish(Ping& ping) {
   statistics.binning_s += watch.lap();
   statistics.bytes_read_back +=
       sizeof(PingCounts) + (result->echo.size() + result->open_sr.size()) * sizeof(float);
+  statistics.gpu_stages_ms = slices_.compute().take_stages_ms();
+  statistics.gpu_work = work_of(counts, statistics.gpu_work.dispatches);
   statistics.skipped += world_.skipped();
   statistics.skipped.add(SkipRule::culled_clusters, counts.culled_clusters);
   statistics.skipped.add(SkipRule::hidden_faces, counts.hidden_faces);

@@ -125,6 +125,9 @@ struct GpuSlices::Impl {
 
   Impl(EglContext& context, const Options& options)
       : compute(context, options.group), meshes(compute.gl(), options.memory_mib << 20U) {
+    if (options.time_stages) {
+      compute.time_stages();
+    }
     place = compute.build("place.comp", shaders::place_comp);
     scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
     fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
@@ -293,6 +296,7 @@ struct GpuSlices::Impl {
   static void upload_slices(PingBuffers& of_ping, const std::vector<GpuSlice>& slices) {
     CountsRecord record;
     record.counts.slices = static_cast<std::uint32_t>(slices.size());
+    record.counts.rounds = 1;
     record.rounds[0].slices = record.counts.slices;
     record.rounds[0].groups = std::min(record.counts.slices, static_cast<std::uint32_t>(most_groups));
     of_ping.counts.fill(std::vector<CountsRecord>{record}, written_by_gpu);

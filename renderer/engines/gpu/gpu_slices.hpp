@@ -29,6 +29,7 @@ class GpuSlices {
     int group = 0;  ///< invocations of a group, each with a piece of the sweep; 0: as many as suit the device
     int segments = 960;  ///< of a slice that are seen at a time; 960 fit in 32 KiB, which every OpenGL has
     std::uint64_t memory_mib = 4096;  ///< bound of the meshes, GpuOptions::memory_mib
+    bool time_stages = false;         ///< GpuOptions::time_stages
   };
   /// @throws RendererError if a shader does not build
   explicit GpuSlices(EglContext& context);

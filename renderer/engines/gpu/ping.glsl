@@ -98,6 +98,7 @@ struct PingCounts {
   uint overflows;  // of lists that no room helps
   uint longest_slice;
   uint samples, invalid, without_facets, empty_beams;  // see BinningResult
+  uint segments, rounds, additions;                    // see GpuWork
 };
 bool lists_have_room(PingCounts needed) {
   return needed.triangles <= uint(ping.most_triangles) && needed.entries <= uint(ping.most_entries);

@@ -48,6 +48,7 @@ struct PingCounts {
   std::uint32_t overflows;  ///< of lists that no room helps
   std::uint32_t longest_slice;
   std::uint32_t samples, invalid, without_facets, empty_beams;  ///< see BinningResult
+  std::uint32_t segments, rounds, additions;                    ///< see GpuWork
 };
 
 /// One ping in flight. Each stage binds the buffers that its shaders use.

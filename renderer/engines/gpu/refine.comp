@@ -368,6 +368,7 @@ uint take_slices(uint made) {
   rounds[round_number + 1].first_slice = rounds[round_number].first_slice + rounds[round_number].slices;
   uint all = atomicAdd(rounds[round_number + 1].slices, made) + made;
   atomicMax(rounds[round_number + 1].groups, min(all, most_groups));
+  atomicMax(counts.rounds, uint(round_number) + 2u);
   if (all > most_groups) {
     atomicAdd(counts.overflows, 1u);
   }

@@ -541,6 +541,7 @@ uint see_band() {
   if (lane == 0u) {
     s_used = 0u;
     s_base = atomicAdd(counts.scratch, most_seen);
+    atomicAdd(counts.segments, count);
   }
   barrier();
   if (s_base + most_seen > uint(ping.most_scratch)) {
