@@ -3,241 +3,225 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <thread>
 
+#include "protocol/npy/npy_file.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
-#include "tests/bench/gpu_cost.hpp"
+#include "tests/bench/image_error.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/scene_run.hpp"
+#include "tests/bench/timing.hpp"
 
 namespace sonard::bench {
 
 namespace {
 
-constexpr Repetition in_turns{7, 31, 4.0};  // of both engines together
+constexpr double budget_s = 4;  // of the pings of a point
 // `docking` comes first, because mesh files are read in forked processes before other threads exist.
 constexpr const char* report_scenes[] = {"docking",    "plane",      "flat100k", "swell100k",
                                          "ripple100k", "b3_cluster", "swell1m"};
 
-/// One engine in one scene, with its times.
-struct Turns {
+/// An engine with the times of its pings.
+struct Engine {
   std::unique_ptr<render::SonarRenderer> renderer;
-  Timing ping_ms{}, cpu_part_ms{};
+  Timing ping_ms{};
+  std::map<std::string, Timing> stages_ms{};
 
-  void ping(const render::PingRequest& request, bool timed) {
+  void ping(const render::PingRequest& request) {
     const double from_s = now_s();
     renderer->render_echo(request);
-    const double ping_s = now_s() - from_s;
-    if (timed) {
-      ping_ms.add(ms_per_s * ping_s);
-      cpu_part_ms.add(ms_per_s * cpu_part_s(ping_s, renderer->last_statistics()));
+    const double ms = ms_per_s * (now_s() - from_s);
+    const StageTimes& stages = renderer->last_statistics().gpu_stages_ms;
+    ping_ms.add(ms);
+    stages_ms[rest_stage].add(ms - total_ms(stages));
+    for (const auto& [stage, stage_ms] : stages) {
+      stages_ms[stage].add(stage_ms);
     }
   }
 };
 
-std::vector<Turns> make_engines(const test::Scene& scene, GpuReport& report) {
-  std::vector<Turns> engines;
-  const auto make = [&](render::EngineKind kind) {
-    engines.push_back({std::make_unique<render::SonarRenderer>(scene.world, render::RendererOptions{kind})});
-  };
-  make(render::EngineKind::cpu);
-  try {
-    make(render::EngineKind::gpu);
-    report.gpu = engines.back().renderer->engine_description();
-  } catch (const render::RendererError& error) {
-    report.gpu_problem = error.what();
+std::vector<Engine> make_engines(const test::Scene& scene, const GpuReportOptions& of_report,
+                                 GpuReport& report) {
+  std::vector<Engine> engines;
+  for (const auto kind : {render::EngineKind::cpu, render::EngineKind::gpu}) {
+    render::RendererOptions options{kind};
+    options.gpu.time_stages = true;
+    options.gpu.group = of_report.group;
+    options.gpu.segments = of_report.segments;
+    options.skip.turn_off(render::SkipRule::unchanged_scene);  // for check_image()
+    try {
+      if (kind == render::EngineKind::gpu || !of_report.only_gpu) {
+        engines.push_back({std::make_unique<render::SonarRenderer>(scene.world, options)});
+      }
+      report.gpu = kind == render::EngineKind::gpu ? engines.back().renderer->engine_description() : "";
+    } catch (const render::RendererError& error) {
+      if (of_report.only_gpu) {
+        throw;
+      }
+      report.gpu_problem = error.what();
+    }
   }
   return engines;
 }
 
-void add_results(const Subject& subject, const Point& point, Turns& turns, const render::PingRequest& still,
-                 const Reference* reference, Measurements& results) {
-  const render::EchoImage& image = turns.renderer->render_echo(still);
-  results.add(subject, "ping_ms", turns.ping_ms.median(), "ms");
-  results.add(subject, "ping_ms_p10", turns.ping_ms.quantile(0.1), "ms");
-  results.add(subject, "ping_ms_p90", turns.ping_ms.quantile(0.9), "ms");
-  add_work(results, subject, work_of(turns.renderer->last_statistics(), turns.cpu_part_ms.median()));
-  if (reference != nullptr) {
-    add_errors(results, subject, point, image, *reference);
+std::string bytes_of(const render::EchoImage& image) {
+  return {reinterpret_cast<const char*>(image.intensity.data()), image.intensity.size() * sizeof(float)};
+}
+
+/// Repeats an image, writes it, and compares it with the image of another device.
+void check_image(Engine& engine, const render::PingRequest& request, const Subject& subject,
+                 const GpuReportOptions& options, Measurements& results) {
+  const render::EchoImage image = engine.renderer->render_echo(request);
+  const std::string bytes = bytes_of(image), file = subject.scene + "-" + subject.preset + ".npy";
+  int different = 0;
+  for (int i = 0; i < options.repeats; ++i) {
+    different += bytes_of(engine.renderer->render_echo(request)) == bytes ? 0 : 1;
+  }
+  results.add(subject, "different_repeats", different, "count");
+  if (options.repeats > 0) {
+    fmt::print(stderr, "{} {}: {} of {} repeats differ\n", subject.scene, subject.preset, different,
+               options.repeats);
+  }
+  if (!options.images.empty()) {
+    write_text(npy::header("<f4", image.beams, image.lines) + bytes, options.images / file);
+  }
+  if (!options.like.empty()) {
+    const auto error = compare_images(image, read_npy(options.like / file));
+    const double rms = error ? error->bin_rms : 0;
+    results.add(subject, "rms_to_other_device", rms, "1");
+    fmt::print(stderr, "{} {}: RMS to the other device {:.2g}\n", subject.scene, subject.preset, rms);
   }
 }
 
-// ---- the page
-
-std::string three_digits(std::optional<double> value, double scale = 1) {
-  return value ? fmt::format("{:.3g}", scale * *value) : "-";
+/// Geometric mean of both bounds of a prediction.
+StageTimes likely(const GpuReport::Row& row, const GpuCard& card) {
+  return predict(row.work, card, std::sqrt(least_attained * most_attained));
 }
 
-/// The subjects of engine `cpu`, which always runs.
-std::vector<Subject> rows_of(const Measurements& results) {
-  std::vector<Subject> rows;
-  for (const Measurement& measurement : results.all()) {
-    if (measurement.metric == "ping_ms" && measurement.subject.engine == "cpu") {
-      rows.push_back(measurement.subject);
-    }
+GpuReport::Row row_of(const Engine& engine, const Subject& subject, Measurements& results) {
+  GpuReport::Row row{subject.scene, subject.preset, engine.renderer->last_statistics()};
+  for (const auto& [stage, timing] : engine.stages_ms) {
+    row.times[stage] = timing.median();
+    results.add(subject, stage + "_ms", timing.median(), "ms");
   }
-  return rows;
-}
-
-Subject on_gpu(Subject subject) {
-  subject.engine = "gpu";
-  return subject;
-}
-
-std::string time_of(const Measurements& results, const Subject& subject) {
-  const auto value = [&](const char* metric) { return three_digits(results.find(subject, metric)); };
-  return results.find(subject, "ping_ms")
-             ? fmt::format("{} ({}-{})", value("ping_ms"), value("ping_ms_p10"), value("ping_ms_p90"))
-             : "-";
-}
-
-std::string times_table(const Measurements& results) {
-  std::string text =
-      "| scene | preset | `cpu` ms | `gpu` ms | gpu / cpu | RMS of `cpu` % | RMS of `gpu` % |\n"
-      "|---|---|---|---|---|---|---|\n";
-  for (const Subject& cpu : rows_of(results)) {
-    const Subject gpu = on_gpu(cpu);
-    const auto cpu_ms = results.find(cpu, "ping_ms"), gpu_ms = results.find(gpu, "ping_ms");
-    text += fmt::format(
-        "| `{}` | {} | {} | {} | {} | {} | {} |\n", cpu.scene, cpu.preset, time_of(results, cpu),
-        time_of(results, gpu), gpu_ms ? three_digits(*gpu_ms / *cpu_ms) : "-",
-        three_digits(results.find(cpu, "bin_rms"), 100), three_digits(results.find(gpu, "bin_rms"), 100));
+  for (const auto& [name, count] : counts_of(row.work)) {
+    results.add(subject, name, count, "count");
   }
-  return text;
-}
-
-std::string work_table(const Measurements& results) {
-  std::string text =
-      "| scene | preset | passes | waits | views | draw calls | triangles k | pixels k | samples k | atomic "
-      "additions k | up KiB | down KiB | CPU part ms "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-  for (const Subject& row : rows_of(results)) {
-    if (const auto work = find_work(results, on_gpu(row))) {
-      text += fmt::format(
-          "| `{}` | {} | {} | {} | {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.2f} "
-          "|\n",
-          row.scene, row.preset, work->passes, work->synchronisations, work->views, work->draw_calls,
-          work->triangles / 1e3, work->pixels / 1e3, work->samples / 1e3, work->atomic_additions / 1e3,
-          work->uploaded_kib, work->read_back_kib, work->cpu_part_ms);
-    }
+  for (const GpuCard& card : gpu_cards()) {
+    results.add({row.scene, card.name, row.preset}, "predicted_ms", total_ms(likely(row, card)), "ms");
   }
-  return text;
-}
-
-/// @param here whether the measurements ran on this card
-std::string prediction_table(const Measurements& results, const GpuCard& card, bool here) {
-  std::string text =
-      fmt::format("### {}\n\nPublished: {}. Assumed: {}.\n\n", card.name, card.source, card.assumed);
-  text += "| scene | preset | draw | bin | bus | waits | calls | CPU part | predicted ms |";
-  text += here ? " measured ms | measured / predicted |\n|---|---|---|---|---|---|---|---|---|---|---|\n"
-               : "\n|---|---|---|---|---|---|---|---|---|\n";
-  for (const Subject& row : rows_of(results)) {
-    const auto work = find_work(results, on_gpu(row));
-    if (!work) {
-      continue;
-    }
-    const GpuPrediction time = predict(*work, card);
-    text += fmt::format("| `{}` | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |",
-                        row.scene, row.preset, time.drawing_ms, time.binning_ms, time.bus_ms, time.waiting_ms,
-                        time.submitting_ms, time.cpu_part_ms, time.total_ms());
-    const double measured_ms = results.find(on_gpu(row), "ping_ms").value_or(0);
-    text += here ? fmt::format(" {:.2f} | {:.2f} |\n", measured_ms, measured_ms / time.total_ms()) : "\n";
-  }
-  return text;
-}
-
-std::string assumptions() {
-  return fmt::format(
-      "Of each published rate {:.0f} % are taken to be attained. Operations: {} a pixel to draw it, {} to "
-      "bin it "
-      "and to estimate its error. Bytes: {} and {} a pixel, {} a bin and pass. Calls: {} us each that draws, "
-      "{} "
-      "us a view, {} us a pass. The CPU part is measured: a ping less drawing and binning, but with culling "
-      "and laying out "
-      "grids. Parts are added up, as if nothing went on beside anything else.\n",
-      100 * assumed::attained_share, assumed::drawing_flop_per_pixel, assumed::binning_flop_per_pixel,
-      assumed::drawing_bytes_per_pixel, assumed::binning_bytes_per_pixel, assumed::summing_bytes_per_bin,
-      assumed::draw_call_us, assumed::view_us, assumed::pass_us);
-}
-
-void report_progress(const Measurements& results, const Subject& subject) {
-  fmt::print(stderr, "{:<14} {:<8} {:<8} {:>24} ms\n", subject.scene, subject.engine, subject.preset,
-             time_of(results, subject));
+  return row;
 }
 
 }  // namespace
 
-void measure_in_turns(const test::Scene& scene, const std::vector<Point>& points, const Reference* reference,
-                      const Repetition& repetition, GpuReport& report) {
-  std::vector<Turns> engines = make_engines(scene, report);
+void measure_engines(const test::Scene& scene, const std::vector<Point>& points, const Reference* reference,
+                     const GpuReportOptions& options, GpuReport& report) {
+  std::vector<Engine> engines = make_engines(scene, options, report);
+  const Repetition repetition{std::min(7, options.pings), options.pings, budget_s};
   for (const Point& point : points) {
-    const render::Pose start = scene.T_world_sonar;
     render::PingRequest still = scene.request();
     point.apply(still.settings);
     render::PingRequest moving = still;
-    for (Turns& turns : engines) {
-      turns.ping_ms = turns.cpu_part_ms = {};
-    }
-    for (Turns& turns : engines) {
-      turns.ping(still, false);  // uploads the data that stays on the GPU between pings
+    for (Engine& engine : engines) {
+      engine.renderer->render_echo(still);  // uploads the data that stays on the GPU between pings
+      engine.ping_ms = {};
+      engine.stages_ms.clear();
     }
     const double start_s = now_s();
     for (int i = 0; repetition.wants_more(i, start_s); ++i) {
-      move_to_timed_pose(moving, start, i);
-      for (Turns& turns : engines) {
-        turns.ping(moving, true);
+      if (options.rate_hz > 0) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(1 / options.rate_hz));
       }
+      move_to_timed_pose(moving, scene.T_world_sonar, i);
+      std::ranges::for_each(engines, [&](Engine& engine) { engine.ping(moving); });
     }
-    for (Turns& turns : engines) {
-      const std::string engine(render::name_of(turns.renderer->engine()));
-      const Subject subject{scene.name, engine, point.name};
-      add_results(subject, point, turns, still, reference, report.results);
-      report_progress(report.results, subject);
+    for (Engine& engine : engines) {
+      const Subject subject{scene.name, std::string(render::name_of(engine.renderer->engine())), point.name};
+      report.results.add(subject, "ping_ms", engine.ping_ms.median(), "ms");
+      report.results.add(subject, "ping_ms_p10", engine.ping_ms.quantile(0.1), "ms");
+      report.results.add(subject, "ping_ms_p90", engine.ping_ms.quantile(0.9), "ms");
+      if (reference != nullptr) {
+        add_errors(report.results, subject, point, engine.renderer->render_echo(still), *reference);
+      }
+      if (subject.engine == "gpu") {
+        report.rows.push_back(row_of(engine, subject, report.results));
+        check_image(engine, still, subject, options, report.results);
+      } else if (!report.gpu_problem.empty()) {
+        report.rows.push_back({scene.name, point.name});
+      }
+      fmt::print(stderr, "{:<14} {:<4} {:<8} {:>9.3g} ms\n", subject.scene, subject.engine, subject.preset,
+                 engine.ping_ms.median());
     }
   }
 }
 
-GpuReport make_gpu_report(const std::filesystem::path& references, const std::vector<std::string>& only) {
+GpuReport make_gpu_report(const GpuReportOptions& options) {
   GpuReport report;
   report.machine = describe_machine();
-  std::vector<Point> points = preset_points();
-  points.erase(std::remove_if(points.begin(), points.end(),
-                              [](const Point& point) { return point.name == "reference"; }),
-               points.end());
   for (const std::string name : report_scenes) {
-    const bool wanted = only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& start) {
-                          return name.rfind(start, 0) == 0;
-                        });
-    if (wanted) {
+    const auto is_asked_for = [&](const std::string& start) { return name.rfind(start, 0) == 0; };
+    if (options.scenes.empty() || std::ranges::any_of(options.scenes, is_asked_for)) {
       const test::Scene scene = test::make_scene(name);
-      const std::optional<Reference> reference = find_reference(scene, references);
-      measure_in_turns(scene, points, reference ? &*reference : nullptr, in_turns, report);
+      const std::optional<Reference> reference = find_reference(scene, options.references);
+      measure_engines(scene, {preset_points().front(), default_point()}, reference ? &*reference : nullptr,
+                      options, report);
     }
   }
   return report;
 }
 
 std::string format_gpu_report(const GpuReport& report) {
-  const GpuCard* here = find_card(report.gpu);
-  std::string text = "# Engines `cpu` and `gpu` side by side\n\n```\n" + report.machine;
-  text += "engine    " + (report.gpu_problem.empty() ? report.gpu : report.gpu_problem) + "\n```\n\n";
-  text +=
-      "## Times and errors\n\nOne mean echo, the engines in turns: the median, and from where to where 80 % "
-      "of "
-      "the pings lie. RMS: root mean square of image / reference - 1.\n\n";
-  text += times_table(report.results);
-  if (!report.gpu_problem.empty()) {
-    return text + "\nThere is no engine `gpu` here: no work is counted and nothing is predicted.\n";
+  std::string text = fmt::format(
+      "# Engine `gpu`\n\n```\n{}engine    {}\n```\n\nOne mean echo, ms. `cpu` and `gpu`: medians here, and "
+      "where 80 % of the pings lie. Cards: predictions if {:.0f} and {:.0f} % of their instructions are "
+      "attained, and the stages in between. RMS: of image / reference - 1.\n\n"
+      "| scene | preset | where | ping |",
+      report.machine, report.gpu_problem.empty() ? report.gpu : report.gpu_problem, 100 * most_attained,
+      100 * least_attained);
+  std::string rule = "|---|---|---|---|";
+  for (const std::string& stage : gpu_stages()) {
+    text += " " + stage.substr(0, stage.find('.')) + " |";
+    rule += "---|";
   }
-  text += "\n## Work of engine `gpu` a ping\n\n" + work_table(report.results);
-  text += "\n## Predictions\n\n" + assumptions() + "\n";
-  text += here != nullptr
-              ? fmt::format("Engine `gpu` ran on the {}.\n", here->name)
-              : "None of these cards runs here, so no prediction is compared with a measurement.\n";
+  text += " RMS % |\n" + rule + "---|\n";
+  const auto digits = [](std::optional<double> value) { return value ? fmt::format("{:.3g}", *value) : "-"; };
+  for (const GpuReport::Row& row : report.rows) {
+    const auto add = [&](const std::string& where, const std::string& ping, const StageTimes& times,
+                         std::optional<double> rms) {
+      text += fmt::format("| `{}` | {} | {} | {} |", row.scene, row.preset, where, ping);
+      for (const std::string& stage : gpu_stages()) {
+        text += fmt::format(" {} |", times.contains(stage) ? digits(times.at(stage)) : "-");
+      }
+      text += fmt::format(" {} |\n", rms ? digits(100 * *rms) : "-");
+    };
+    for (const std::string engine : {"cpu", "gpu"}) {
+      const auto value = [&](const char* metric) {
+        return report.results.find({row.scene, engine, row.preset}, metric);
+      };
+      if (value("ping_ms")) {
+        add("`" + engine + "`",
+            fmt::format("{} ({}-{})", digits(value("ping_ms")), digits(value("ping_ms_p10")),
+                        digits(value("ping_ms_p90"))),
+            engine == "gpu" ? row.times : StageTimes{}, value("bin_rms"));
+      }
+    }
+    for (const GpuCard& card : gpu_cards()) {
+      if (report.gpu_problem.empty()) {
+        add(card.name,
+            fmt::format("{:.2g}-{:.2g}", total_ms(predict(row.work, card, most_attained)),
+                        total_ms(predict(row.work, card, least_attained))),
+            likely(row, card), {});
+      }
+    }
+  }
   for (const GpuCard& card : gpu_cards()) {
-    text += "\n" + prediction_table(report.results, card, &card == here);
+    text += fmt::format("\n{}: {}\n", card.name, card.source);
   }
   return text;
 }

@@ -14,7 +14,6 @@
 #include "renderer/renderer_options.hpp"
 #include "tests/bench/campaign.hpp"
 #include "tests/bench/demo_ping.hpp"
-#include "tests/bench/gpu_cost.hpp"
 #include "tests/bench/gpu_report.hpp"
 #include "tests/bench/machine.hpp"
 #include "tests/bench/plans.hpp"
@@ -28,7 +27,8 @@ struct Options {
   bool quick = false;
   bool company = false;
   std::string json;
-  std::string gpu_report;
+  std::string gpu_report_file;
+  GpuReportOptions gpu_report;
   std::string engine = "both";
   std::string references = SONARD_SOURCE_DIR "/tests/data/oracle";
   std::vector<std::string> scenes;
@@ -45,8 +45,11 @@ std::vector<render::EngineKind> engines_of(const std::string& name) {
 }
 
 void run_gpu_report(const Options& options) {
-  const GpuReport report = make_gpu_report(options.references, options.scenes);
-  write_text(format_gpu_report(report), options.gpu_report);
+  GpuReportOptions report_options = options.gpu_report;
+  report_options.scenes = options.scenes;
+  report_options.references = options.references;
+  const GpuReport report = make_gpu_report(report_options);
+  write_text(format_gpu_report(report), options.gpu_report_file);
   if (!options.json.empty()) {
     write_json(report.results, options.json);
   }
@@ -96,7 +99,6 @@ void run(const Options& options) {
     }
     fmt::print("{}", format_quick(quick_rows(results, name)));
   }
-  fmt::print("\n{}", format_work(results));
   if (options.scenes.empty()) {
     fmt::print("\n{}", describe_recording(results));
   }
@@ -127,9 +129,32 @@ int main(int argc, char** argv) {
   app.add_option("--engine", options.engine, "Which engines to measure")
       ->check(CLI::IsMember({"both", "gpu", "cpu"}))
       ->capture_default_str();
-  app.add_option("--gpu-report", options.gpu_report,
-                 "Measures both engines in turns, in minutes, and writes a page about them into this file")
-      ->excludes("--quick", "--engine");
+  CLI::Option* const report =
+      app.add_option(
+             "--gpu-report", options.gpu_report_file,
+             "Measures both engines in turns, engine gpu by stages, in minutes, and writes a page about "
+             "them into this file")
+          ->excludes("--quick", "--engine");
+  app.add_flag("--only-gpu", options.gpu_report.only_gpu, "The report leaves out engine cpu")->needs(report);
+  app.add_option("--rate", options.gpu_report.rate_hz, "Pings a second in the report; 0: back to back")
+      ->needs(report)
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--pings", options.gpu_report.pings, "At most so many pings for each median of the report")
+      ->needs(report)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--repeats", options.gpu_report.repeats,
+                 "Repeats each image and counts those with other bits")
+      ->needs(report)
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--group", options.gpu_report.group, "Invocations of a work group: 32, 64, 128; 0: as usual")
+      ->needs(report)
+      ->check(CLI::Range(0, 256));
+  app.add_option("--segments", options.gpu_report.segments, "Segments of a slice seen at a time; 0: as usual")
+      ->needs(report)
+      ->check(CLI::Range(0, 2048));
+  app.add_option("--images", options.gpu_report.images, "Folder for the images of the report")->needs(report);
+  app.add_option("--like", options.gpu_report.like, "Folder of such images to compare with")->needs(report);
   app.add_option("--references", options.references, "Folder of the oracle's images")->capture_default_str();
   app.add_option("--scene", options.scenes, "Only scenes whose name starts so; not with --quick")
       ->excludes("--quick");
@@ -137,7 +162,7 @@ int main(int argc, char** argv) {
   try {
     if (options.company) {
       sonard::bench::run_company();
-    } else if (options.gpu_report.empty()) {
+    } else if (options.gpu_report_file.empty()) {
       sonard::bench::run(options);
     } else {
       sonard::bench::run_gpu_report(options);

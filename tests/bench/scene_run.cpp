@@ -61,7 +61,9 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
   add_times(subject(point), stages, unchanged_ms);
   if (statistics.passes > 0) {  // engine `gpu`
-    add_work(results_, subject(point), work_of(statistics, stages.cpu_part_ms.median()));
+    for (const auto& [name, count] : counts_of(statistics)) {
+      results_.add(subject(point), name, count, "count");
+    }
     results_.add(subject(point), "video_memory", static_cast<double>(statistics.video_memory_bytes) / 0x1p20,
                  "MiB");
   } else {
@@ -94,7 +96,6 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
     stages.visibility_ms.add(ms_per_s * spent.visibility_s);
     stages.binning_ms.add(ms_per_s * spent.binning_s);
     stages.multipath_ms.add(ms_per_s * spent.multipath_s);
-    stages.cpu_part_ms.add(ms_per_s * cpu_part_s(ping_s, spent));
   }
   return stages;
 }

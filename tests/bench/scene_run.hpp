@@ -50,7 +50,7 @@ class SceneRun {
 
  private:
   struct Stages {
-    Timing ping_ms, visibility_ms, binning_ms, multipath_ms, cpu_part_ms;
+    Timing ping_ms, visibility_ms, binning_ms, multipath_ms;
   };
 
   Subject subject(const Point& point) const;

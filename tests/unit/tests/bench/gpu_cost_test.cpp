@@ -8,124 +8,71 @@
 namespace sonard::bench {
 namespace {
 
-constexpr double attained = assumed::attained_share;
-
-/// A card that takes no time, except for the properties that a test slows down.
-GpuCard instant() {
-  return {"instant", "-", 1e30, 1e30, 1e30, 1e30, 1e30, 1e30, 1e30, 0, "nowhere", "everything"};
+const GpuCard& h200() {
+  return gpu_cards().front();
 }
 
-GpuWork million_pixels() {
-  GpuWork work;
-  work.passes = 1;
-  work.pixels = 1e6;
-  work.triangles = 1e6;
-  work.atomic_additions = 4e6;
-  return work;
+// 1000 slices of 200 segments in 5 rounds, 100,000 patches, a million range bins.
+render::PingStatistics round_numbers() {
+  render::PingStatistics ping;
+  ping.gpu_work.dispatches = 31;
+  ping.gpu_work.rounds = 5;
+  ping.gpu_work.slices = 1000;
+  ping.gpu_work.segments = 200'000;
+  ping.gpu_work.additions = 1'000'000;
+  ping.samples = 100'000;
+  ping.bytes_read_back = 4'000'000;
+  ping.synchronisations = ping.passes = 1;
+  return ping;
 }
 
 TEST(GpuCost, NoWorkTakesNoTime) {
   for (const GpuCard& card : gpu_cards()) {
-    EXPECT_EQ(predict({}, card).total_ms(), 0) << card.name;
+    EXPECT_EQ(total_ms(predict({}, card, 0.1)), 0) << card.name;
   }
 }
 
-TEST(GpuCost, DrawingTakesAsLongAsItsSlowestPart) {
-  GpuCard card = instant();
-  card.drawing_flop_per_s = assumed::drawing_flop_per_pixel * 1e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).drawing_ms, 1, 1e-9);
-  card.pixels_per_s = assumed::pixel_words * 0.5e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).drawing_ms, 2, 1e-9);
-  card.triangles_per_s = 0.25e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).drawing_ms, 4, 1e-9);
-  card.memory_bytes_per_s = assumed::drawing_bytes_per_pixel * 0.125e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).drawing_ms, 8, 1e-9);
+// By hand, with 16,896 lanes x 1.98 GHz x 0.1 = 3.3454e12 instructions per second.
+TEST(GpuCost, PredictsWhatOneComputesByHand) {
+  const StageTimes times = predict(round_numbers(), h200(), 0.1);
+  EXPECT_NEAR(times.at("see.comp"), 0.06995 + 0.17677,
+              1e-4);  // (650 + 2.6 x 200) x 200,000; 5 x 70,000 cycles
+  EXPECT_NEAR(times.at("refine.comp"), 0.00628 + 0.10101, 1e-4);  // 21,000 x 1000; 5 x 40,000 cycles
+  EXPECT_NEAR(times.at("pieces.comp"), 0.02391, 1e-4);            // 800 x 100,000
+  EXPECT_NEAR(times.at("patches.comp"), 0.00448, 1e-4);           // 150 x 100,000
+  EXPECT_NEAR(times.at("bin.comp"), 0.01644, 1e-4);               // 550 x 100,000
+  EXPECT_NEAR(times.at("sums.comp"), 0.02391, 1e-4);              // 80 x 1,000,000
+  EXPECT_NEAR(times.at("rest"), 0.0992 + 0.03 + 0.10582 + 0.1, 1e-4);
+  EXPECT_EQ(times.size(), gpu_stages().size());
 }
 
-TEST(GpuCost, BinningTakesAsLongAsItsSlowestPart) {
-  GpuCard card = instant();
-  card.computing_flop_per_s = assumed::binning_flop_per_pixel * 1e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).binning_ms, 1, 1e-9);
-  card.additions_per_s = 2e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).binning_ms, 2, 1e-9);
-  card.memory_bytes_per_s = assumed::binning_bytes_per_pixel * 0.25e9 / attained;
-  EXPECT_NEAR(predict(million_pixels(), card).binning_ms, 4, 1e-9);
+TEST(GpuCost, AtomicsAndMemoryMayTakeLonger) {
+  render::PingStatistics ping = round_numbers();
+  ping.gpu_work.additions = 79'200'000;  // a millisecond at 40 a clock
+  EXPECT_NEAR(predict(ping, h200(), 0.1).at("bin.comp"), 1, 1e-9);
+  GpuCard card = h200();
+  card.memory_gb_per_s = 0.1;  // 60 MB at 0.06 GB/s
+  EXPECT_NEAR(predict(ping, card, 0.1).at("sums.comp"), 1000, 1e-6);
 }
 
-TEST(GpuCost, EveryPassSumsTheImage) {
-  GpuWork work;
-  work.passes = 3;
-  work.read_back_kib = 4;  // 1024 bins
-  GpuCard card = instant();
-  card.memory_bytes_per_s = 3 * 1024 * assumed::summing_bytes_per_bin / attained;
-  EXPECT_NEAR(predict(work, card).binning_ms, 1000, 1e-6);
+// Counts of an instrumented engine `cpu` for `docking`, and its 4.7e9 lane instructions.
+TEST(GpuCost, HasTheInstructionsOfTheDockingStation) {
+  render::PingStatistics ping;
+  ping.gpu_work.slices = 5868;
+  ping.gpu_work.segments = 5868ULL * 360;
+  ping.samples = 786'000;
+  GpuCard card = h200();
+  card.lanes = card.clock_ghz = 1;  // a nanosecond for each instruction
+  card.memory_gb_per_s = card.additions_per_clock = 1e30;
+  const StageTimes times = predict(ping, card, 1);
+  double instructions = 0;
+  for (const char* stage : {"see.comp", "pieces.comp", "patches.comp", "bin.comp"}) {
+    instructions += 1e6 * times.at(stage);
+  }
+  EXPECT_NEAR(instructions / 4.7e9, 1, 0.1);
 }
 
-TEST(GpuCost, BytesWaitsCallsAndTheCpuAddUp) {
-  GpuWork work;
-  work.uploaded_kib = 600;
-  work.read_back_kib = 400;
-  work.synchronisations = 3;
-  work.draw_calls = 1000;
-  work.views = 10;
-  work.passes = 2;
-  work.cpu_part_ms = 0.5;
-  GpuCard card = instant();
-  card.bus_bytes_per_s = 1024e6 / attained;
-  card.wait_us = 100;
-  const GpuPrediction time = predict(work, card);
-  EXPECT_NEAR(time.bus_ms, 1, 1e-9);
-  EXPECT_NEAR(time.waiting_ms, 0.3, 1e-9);
-  EXPECT_NEAR(time.submitting_ms, assumed::draw_call_us + assumed::view_us / 100 + assumed::pass_us / 500,
-              1e-9);
-  EXPECT_NEAR(time.total_ms(), 1 + 0.3 + time.submitting_ms + 0.5, 1e-9);
-}
-
-TEST(GpuCost, OfTheCpuIsWhatIsNeitherDrawnNorBinned) {
-  render::PingStatistics statistics;
-  statistics.visibility_s = 2;
-  statistics.binning_s = 3;
-  statistics.preparing_s = 0.5;
-  EXPECT_DOUBLE_EQ(cpu_part_s(6, statistics), 1.5);
-}
-
-TEST(GpuCost, CardsAreKnownByTheirRendererString) {
-  const GpuCard* card = find_card("gpu, NVIDIA Corporation / NVIDIA GeForce RTX 3060/PCIe/SSE2 / 4.6.0");
-  ASSERT_NE(card, nullptr);
-  EXPECT_EQ(card->name, "GeForce RTX 3060 12 GB");
-  EXPECT_EQ(find_card("gpu, NVIDIA Corporation / NVIDIA GeForce RTX 3060 Ti/PCIe/SSE2 / 4.6.0"), nullptr);
-  EXPECT_EQ(find_card("gpu, Mesa / llvmpipe (LLVM 15.0.6, 256 bits) / 4.5"), nullptr);
-}
-
-TEST(GpuCost, WorkGoesThroughTheListOfMeasurements) {
-  render::PingStatistics statistics;
-  statistics.passes = 2;
-  statistics.pixels = 7000;
-  statistics.bytes_uploaded = 512;
-  statistics.atomic_additions = 9000;
-  Measurements results;
-  const Subject subject{"scene", "gpu", "fast"};
-  add_work(results, subject, work_of(statistics, 1.25));
-  const auto found = find_work(results, subject);
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->passes, 2);
-  EXPECT_EQ(found->pixels, 7000);
-  EXPECT_EQ(found->uploaded_kib, 0.5);
-  EXPECT_EQ(found->atomic_additions, 9000);
-  EXPECT_EQ(found->cpu_part_ms, 1.25);
-  EXPECT_NE(format_work(results).find("scene"), std::string::npos);
-}
-
-TEST(GpuCost, AnEngineWithoutPassesHasNoWork) {
-  Measurements results;
-  const Subject subject{"scene", "cpu", "fast"};
-  add_work(results, subject, work_of({}, 1));
-  EXPECT_TRUE(results.all().empty());
-  EXPECT_FALSE(find_work(results, subject));
-  EXPECT_EQ(format_work(results), "");
-}
-
-// ---- the web page
+// ---- the page
 
 GpuReport report_of(const std::string& gpu) {
   GpuReport report;
@@ -137,7 +84,7 @@ GpuReport report_of(const std::string& gpu) {
     report.results.add(subject, "ping_ms_p10", 1, "ms");
     report.results.add(subject, "ping_ms_p90", 9, "ms");
   }
-  add_work(report.results, {"scene", "gpu", "fast"}, million_pixels());
+  report.rows.push_back({"scene", "fast", round_numbers(), {{"see.comp", 4}, {rest_stage, 2}}});
   return report;
 }
 
@@ -145,33 +92,28 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(GpuReportPage, HasBothEnginesSideBySide) {
+TEST(GpuReportPage, HasPredictionsBesideMeasurements) {
   const std::string page = format_gpu_report(report_of("gpu, Mesa / llvmpipe / 4.5"));
   EXPECT_TRUE(holds(page, "processor of a test"));
   EXPECT_TRUE(holds(page, "llvmpipe"));
-  EXPECT_TRUE(holds(page, "| `scene` | fast | 2 (1-9) | 6 (1-9) | 3 | - | - |")) << page;
-  EXPECT_FALSE(holds(page, "measured / predicted"));
+  EXPECT_TRUE(holds(page, "| `scene` | fast | `cpu` | 2 (1-9) | - |")) << page;
+  EXPECT_TRUE(holds(page, "| `scene` | fast | `gpu` | 6 (1-9) | - | - | - | 4 | - | - | - | - | - | 2 | - |"))
+      << page;
   for (const GpuCard& card : gpu_cards()) {
-    EXPECT_TRUE(holds(page, card.name));
+    EXPECT_TRUE(holds(page, "| `scene` | fast | " + card.name + " | ")) << page;
     EXPECT_TRUE(holds(page, card.source));
   }
-}
-
-TEST(GpuReportPage, ComparesAKnownCardWithItsPrediction) {
-  const std::string page =
-      format_gpu_report(report_of("gpu, NVIDIA Corporation / NVIDIA H200/PCIe/SSE2 / 4.6.0"));
-  EXPECT_TRUE(holds(page, "measured / predicted"));
-  EXPECT_TRUE(holds(page, "Engine `gpu` ran on the H200 SXM."));
 }
 
 TEST(GpuReportPage, SaysWhyThereIsNoEngineOfTheGpu) {
   GpuReport report;
   report.gpu_problem = "EGL: no device";
+  report.rows.push_back({"scene", "fast"});
   report.results.add({"scene", "cpu", "fast"}, "ping_ms", 2, "ms");
   const std::string page = format_gpu_report(report);
   EXPECT_TRUE(holds(page, "EGL: no device"));
-  EXPECT_TRUE(holds(page, "| `scene` | fast | 2 (-"));
-  EXPECT_FALSE(holds(page, "## Predictions"));
+  EXPECT_TRUE(holds(page, "| `cpu` | 2 (---) |")) << page;
+  EXPECT_FALSE(holds(page, "| fast | H200 |"));
 }
 
 }  // namespace
