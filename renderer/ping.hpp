@@ -103,13 +103,6 @@ struct PingStatistics {
   std::uint64_t passes = 0;
   std::uint64_t bytes_read_back = 0;
   std::uint64_t synchronisations = 0;
-  // GPU engine only, over all its passes:
-  std::uint64_t views = 0;
-  std::uint64_t pixels = 0;            ///< of all views, empty pixels included
-  std::uint64_t draw_calls = 0;        ///< chunks of meshes left after culling
-  std::uint64_t triangles = 0;         ///< in these draw calls
-  std::uint64_t atomic_additions = 0;  ///< by binning, modulo 2^32 for each page of the image
-  double preparing_s = 0.0;  ///< CPU time to cull and to lay out grids; part of visibility_s and binning_s
   GpuWork gpu_work{};
   std::map<std::string, double> gpu_stages_ms{};  ///< by the file of a shader; see GpuOptions::time_stages
   std::uint64_t bytes_uploaded = 0;               ///< into buffers, including new meshes and normal maps
