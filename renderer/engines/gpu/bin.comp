@@ -8,11 +8,11 @@
 layout(local_size_x = GROUP) in;
 
 layout(std430, binding = 0) readonly buffer Slices { Slice slices[]; };
-layout(std430, binding = 2) readonly buffer PiecesOfSlices { SlicePieces of_slice[]; };
-layout(std430, binding = 5) buffer Counts { PingCounts counts; };
-layout(std430, binding = 6) readonly buffer Pieces { uvec4 pieces[]; };
+layout(std430, binding = 1) readonly buffer PiecesOfSlices { SlicePieces of_slice[]; };
+layout(std430, binding = 2) buffer Counts { PingCounts counts; };
+layout(std430, binding = 3) readonly buffer Pieces { uvec4 pieces[]; };
 // First differences between the lines, then second differences, of the echo; then of the weights: [beam][line].
-layout(std430, binding = 7) buffer Sums { uint sums[]; };
+layout(std430, binding = 4) buffer Sums { uint sums[]; };
 
 const int profiles = WEIGHED + 1;
 const float least_smear = 1e-3;     // lines; below, a step is sharp

@@ -32,10 +32,19 @@ osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* t
   return program;
 }
 
-void Compute::use(const osg::ref_ptr<osg::Program>& program, const GpuBuffer& ping) const {
+void Compute::use(const osg::ref_ptr<osg::Program>& program, Buffers blocks, Buffers buffers) const {
   stage_ = program->getName();
   program->getPCP(*context_.getState())->useProgram();
-  gl_.glBindBufferBase(GL_UNIFORM_BUFFER, 0, ping.name());
+  const auto bind = [this](GLenum target, Buffers all) {
+    for (GLuint binding = 0; const GpuBuffer* buffer : all) {
+      if (buffer != nullptr) {
+        gl_.glBindBufferBase(target, binding, buffer->name());
+      }
+      ++binding;
+    }
+  };
+  bind(GL_UNIFORM_BUFFER, blocks);
+  bind(GL_SHADER_STORAGE_BUFFER, buffers);
 }
 
 void Compute::dispatch(std::size_t groups) const {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -33,8 +34,9 @@ class Compute {
   osg::ref_ptr<osg::Program> build(const std::string& name, const char* text,
                                    const std::string& defines = "") const;
 
-  /// Selects a program for dispatch(). @param ping its uniform block Ping
-  void use(const osg::ref_ptr<osg::Program>& program, const GpuBuffer& ping) const;
+  using Buffers = std::initializer_list<const GpuBuffer*>;  ///< in the order of their bindings; null: none
+  /// Selects a program for dispatch(), with its uniform blocks and its storage buffers.
+  void use(const osg::ref_ptr<osg::Program>& program, Buffers blocks, Buffers buffers) const;
 
   /// Runs the selected program; later ones see what it has written.
   void dispatch(std::size_t groups) const;

@@ -126,20 +126,6 @@ bool weighs(const BinningOptions& options) {
 }  // namespace
 
 struct GpuEchoes::Impl {
-  enum Binding : unsigned {  // as in the shaders
-    slices_at = 0,
-    solid_angles_at = 0,
-    visible_at = 1,
-    pieces_of_slices_at = 2,
-    surfaces_at = 3,
-    fan_at = 4,
-    counts_at = 5,
-    pieces_at = 6,
-    image_at = 6,
-    world_at = 7,
-    sums_at = 7,
-  };
-
   const Compute& compute;
   std::map<std::string, osg::ref_ptr<osg::Program>> programs;  ///< by name and macros, built when first used
   GpuSurfaces surfaces;
@@ -158,9 +144,9 @@ struct GpuEchoes::Impl {
     return program;
   }
 
-  void run(const osg::ref_ptr<osg::Program>& program, const PingBuffers& ping, std::size_t groups) const {
-    compute.use(program, ping.ping);
-    compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, 1, ping.echo.name());
+  void run(const osg::ref_ptr<osg::Program>& program, const PingBuffers& ping, Compute::Buffers buffers,
+           std::size_t groups) const {
+    compute.use(program, {&ping.ping, &ping.echo}, buffers);
     compute.dispatch(groups);
   }
 
@@ -221,22 +207,17 @@ void GpuEchoes::make(PingBuffers& ping, const std::vector<PartSurface>& placed, 
   using namespace shaders;
   const std::string shading = std::string(patches_glsl) + facets_glsl + echoes_glsl + pieces_glsl;
   const std::string summing = std::string(whole_numbers_glsl) + echoes_glsl;
-  ping.slices.bind(Impl::slices_at);
-  ping.visible.bind(Impl::visible_at);
-  ping.pieces_of_slices.bind(Impl::pieces_of_slices_at);
-  ping.surfaces.bind(Impl::surfaces_at);
-  ping.fan.bind(Impl::fan_at);
-  ping.counts.bind(Impl::counts_at);
-  ping.pieces.bind(Impl::pieces_at);
-  on.surfaces.world().bind(Impl::world_at);
-  on.run(on.program("pieces.comp", of_world, shading + pieces_comp), ping, ping.room.slices);
+  const Compute::Buffers of_pieces = {&ping.slices,   &ping.visible,       &ping.pieces_of_slices,
+                                      &ping.surfaces, &ping.fan,           &ping.counts,
+                                      &ping.pieces,   &on.surfaces.world()};
+  on.run(on.program("pieces.comp", of_world, shading + pieces_comp), ping, of_pieces, ping.room.slices);
   const char* const maps = on.surfaces.any_mapped() ? normal_maps_glsl : "";
-  on.run(on.program("patches.comp", of_world, shading + maps + patches_comp), ping, ping.room.slices);
-  ping.sums.bind(Impl::sums_at);
-  on.run(on.program("bin.comp", weighed, summing + bin_comp), ping, ping.room.slices);
-  ping.solid_angles.bind(Impl::solid_angles_at);
-  ping.image.bind(Impl::image_at);
-  on.run(on.program("sums.comp", weighed, summing + sums_comp), ping, beams_of(setting));
+  on.run(on.program("patches.comp", of_world, shading + maps + patches_comp), ping, of_pieces,
+         ping.room.slices);
+  on.run(on.program("bin.comp", weighed, summing + bin_comp), ping,
+         {&ping.slices, &ping.pieces_of_slices, &ping.counts, &ping.pieces, &ping.sums}, ping.room.slices);
+  on.run(on.program("sums.comp", weighed, summing + sums_comp), ping,
+         {&ping.solid_angles, &ping.counts, &ping.image, &ping.sums}, beams_of(setting));
   on.compute.gl().glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const std::size_t bins = bins_of(setting);
   ping.result.ask({{ping.counts, sizeof(PingCounts)},

@@ -99,10 +99,4 @@ std::uint32_t GpuMeshes::upload(const MeshClusters& mesh) {
   return first;
 }
 
-void GpuMeshes::bind(unsigned first_binding) const {
-  vertices_.bind(first_binding);
-  triangles_.bind(first_binding + 1);
-  clusters_.bind(first_binding + 2);
-}
-
 }  // namespace sonard::render

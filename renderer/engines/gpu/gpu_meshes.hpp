@@ -29,8 +29,9 @@ class GpuMeshes {
   std::uint32_t first_cluster(const std::shared_ptr<const MeshClusters>& mesh) const {
     return held_.at(mesh);
   }
-  /// Binds vertices, triangles and clusters to three bindings.
-  void bind(unsigned first_binding) const;
+  const GpuBuffer& vertices() const { return vertices_; }
+  const GpuBuffer& triangles() const { return triangles_; }
+  const GpuBuffer& clusters() const { return clusters_; }
 
   std::uint64_t bytes() const { return vertices_.bytes() + triangles_.bytes() + clusters_.bytes(); }
   /// Sum since construction, including repeated uploads.

@@ -90,28 +90,6 @@ constexpr std::size_t groups_to_fill = 1024;  // of lists.comp, enough to occupy
 
 constexpr GLenum written_by_gpu = GL_DYNAMIC_COPY;  // so that drivers keep it in video memory
 
-enum Binding : unsigned {  // as in the shaders
-  meshes_at = 0,           // and 1, 2
-  parts_at = 3,
-  fan_at = 4,
-  counts_at = 5,
-  beams_at = 6,
-  hiding_at = 7,
-  slices_at = 0,
-  visible_at = 1,
-  scratch_at = 2,
-  lists_at = 3,
-  sides_at = 7,
-  things_at = 1,
-  edges_at = 2,
-  ends_at = 7,
-  order_at = 1,
-  refined_sides_at = 2,
-  refined_things_at = 3,
-  refined_edges_at = 4,
-  refinement_at = 2,  // a uniform block
-};
-
 std::int32_t as_int(std::size_t number) {
   return static_cast<std::int32_t>(number);
 }
@@ -280,16 +258,9 @@ struct GpuSlices::Impl {
             setting.weights};
   }
 
-  void run_list_things(const PingBuffers& of_ping, const PingSetting& setting) const {
-    compute.use(list_things, of_ping.ping);
-    of_ping.parts.bind(slices_at);
-    of_ping.things.bind(things_at);
-    of_ping.edges.bind(edges_at);
-    of_ping.lists.bind(lists_at);
-    of_ping.fan.bind(fan_at);
-    of_ping.counts.bind(counts_at);
-    of_ping.beams.bind(beams_at);
-    of_ping.ends.bind(ends_at);
+  void run_list_things(const PingBuffers& p, const PingSetting& setting) const {
+    compute.use(list_things, {&p.ping},
+                {&p.parts, &p.things, &p.edges, &p.lists, &p.fan, &p.counts, &p.beams, &p.ends});
     compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
   }
 
@@ -305,33 +276,17 @@ struct GpuSlices::Impl {
     of_ping.slices.write(slices);
   }
 
-  void run_see(const PingBuffers& of_ping, int round) const {
-    compute.use(look, of_ping.ping);
-    compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
-    of_ping.slices.bind(slices_at);
-    of_ping.visible.bind(visible_at);
-    of_ping.scratch.bind(scratch_at);
-    of_ping.lists.bind(lists_at);
-    of_ping.fan.bind(fan_at);
-    of_ping.counts.bind(counts_at);
-    of_ping.beams.bind(beams_at);
-    of_ping.sides.bind(sides_at);
+  void run_see(const PingBuffers& p, int round) const {
+    compute.use(look, {&p.ping, nullptr, &p.refinement},
+                {&p.slices, &p.visible, &p.scratch, &p.lists, &p.fan, &p.counts, &p.beams, &p.sides});
     compute.gl().glUniform1i(0, round);
-    compute.dispatch_indirect(of_ping.counts,
+    compute.dispatch_indirect(p.counts,
                               sizeof(PingCounts) + static_cast<std::size_t>(round) * sizeof(RoundRecord));
   }
 
-  void run_refine(const PingBuffers& of_ping, int round, const PingSetting& setting) const {
-    compute.use(compare, of_ping.ping);
-    compute.gl().glBindBufferBase(GL_UNIFORM_BUFFER, refinement_at, of_ping.refinement.name());
-    of_ping.slices.bind(slices_at);
-    of_ping.order.bind(order_at);
-    of_ping.sides.bind(refined_sides_at);
-    of_ping.things.bind(refined_things_at);
-    of_ping.edges.bind(refined_edges_at);
-    of_ping.counts.bind(counts_at);
-    of_ping.beams.bind(beams_at);
-    of_ping.ends.bind(ends_at);
+  void run_refine(const PingBuffers& p, int round, const PingSetting& setting) const {
+    compute.use(compare, {&p.ping, nullptr, &p.refinement},
+                {&p.slices, &p.order, &p.sides, &p.things, &p.edges, &p.counts, &p.beams, &p.ends});
     compute.gl().glUniform1i(0, round);
     compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
   }
@@ -359,18 +314,14 @@ void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, co
   ping.ping.fill(std::vector<PingRecord>{Impl::record_of(ping, setting, clusters, parts.size())},
                  GL_STREAM_DRAW);
   ping.refinement.fill(std::vector<RefinementRecord>{Impl::refinement_of(setting)}, GL_STREAM_DRAW);
-  on.compute.use(on.place, ping.ping);
-  on.meshes.bind(meshes_at);
-  ping.parts.bind(parts_at);
-  ping.fan.bind(fan_at);
-  ping.counts.bind(counts_at);
-  ping.beams.bind(beams_at);
-  ping.hiding.bind(hiding_at);
+  on.compute.use(on.place, {&ping.ping},
+                 {&on.meshes.vertices(), &on.meshes.triangles(), &on.meshes.clusters(), &ping.parts,
+                  &ping.fan, &ping.counts, &ping.beams, &ping.hiding});
   on.compute.dispatch(clusters);
-  ping.lists.bind(lists_at);
-  on.compute.use(on.scan, ping.ping);
+  const Compute::Buffers of_lists = {&ping.lists, &ping.fan, &ping.counts, &ping.beams};
+  on.compute.use(on.scan, {&ping.ping}, of_lists);
   on.compute.dispatch(1);
-  on.compute.use(on.fill, ping.ping);
+  on.compute.use(on.fill, {&ping.ping}, of_lists);
   on.compute.dispatch(groups_to_fill);
   on.run_list_things(ping, setting);
 }

@@ -2,10 +2,10 @@
 // The lists of triangles of each beam, in any order: SCAN makes room for them, in one group; otherwise they
 // are filled.
 layout(local_size_x = GROUP) in;
-layout(std430, binding = 4) readonly buffer Fan { FanTriangle fan[]; };
-layout(std430, binding = 5) buffer Counts { PingCounts counts; };
-layout(std430, binding = 6) buffer Beams { BeamList beams[]; };
-layout(std430, binding = 3) writeonly buffer Lists { uint lists[]; };
+layout(std430, binding = 1) readonly buffer Fan { FanTriangle fan[]; };
+layout(std430, binding = 2) buffer Counts { PingCounts counts; };
+layout(std430, binding = 3) buffer Beams { BeamList beams[]; };
+layout(std430, binding = 0) writeonly buffer Lists { uint lists[]; };
 
 #if SCAN
 shared uint s_sum[GROUP];

@@ -3,9 +3,9 @@
 // BeamSums::read(). The macro WEIGHED is 1 if the weights are summed too.
 layout(local_size_x = GROUP) in;
 layout(std430, binding = 0) readonly buffer SolidAngles { float solid_angles[]; };  // of the beams, steradians
-layout(std430, binding = 5) buffer Counts { PingCounts counts; };
-layout(std430, binding = 6) coherent buffer Image { float image[]; };  // [beam][line]; then weights, later open water
-layout(std430, binding = 7) readonly buffer Sums { uint sums[]; };     // see bin.comp
+layout(std430, binding = 1) buffer Counts { PingCounts counts; };
+layout(std430, binding = 2) coherent buffer Image { float image[]; };  // [beam][line]; then weights, later open water
+layout(std430, binding = 3) readonly buffer Sums { uint sums[]; };     // see bin.comp
 
 const float least_share = 2.3283064e-10;  // as in binning.hpp
 const float least_open = 2e-3;
