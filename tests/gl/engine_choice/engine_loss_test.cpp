@@ -63,6 +63,19 @@ TEST_F(EngineLoss, LosesNoPingAndSaysItOnce) {
   EXPECT_THAT(losing.engine_description(), HasSubstr("the GPU is lost"));
 }
 
+TEST_F(EngineLoss, LosesNoPingOfAGrid) {
+  render::SonarRenderer losing(wall_and_ball(), losing_at(2));
+  render::SonarRenderer cpu(wall_and_ball(), {EngineKind::cpu});
+  render::PingRequest grid = request(0);
+  grid.settings.sampling = render::Sampling::of_grid(1, 64, 64);
+  losing.render_echo(grid);
+  EXPECT_EQ(losing.engine(), EngineKind::gpu);
+  grid.T_world_sonar.position_m.x = 0.1;
+  EXPECT_EQ(losing.render_echo(grid).intensity, cpu.render_echo(grid).intensity);
+  EXPECT_EQ(losing.engine(), EngineKind::cpu);
+  EXPECT_THAT(lines_, ElementsAre(HasSubstr("the GPU is lost: the OpenGL context is lost")));
+}
+
 TEST_F(EngineLoss, TheGpuComesBackWhereThatIsAskedFor) {
   render::SonarRenderer losing(wall_and_ball(), losing_at(2, 1e-9));
   std::vector<EngineKind> engines;
