@@ -218,7 +218,8 @@ ProbeSet SliceCutter::probes_of_edge(std::size_t begin, std::size_t end) const {
   for (std::size_t k = 0; k < side_probes; ++k) {
     side += sides[k];
     turn += turns[k];
-    probes[k] = side != 0 || std::abs(turn) > sharp_turn_rad;
+    // Modulo a turn: of two normals that point backwards, one may have azimuth pi and the other -pi.
+    probes[k] = side != 0 || std::abs(std::remainder(turn, 2 * slices::half_turn)) > sharp_turn_rad;
   }
   return probes;
 }

@@ -124,17 +124,18 @@ shared uint s_edge[room];   // edge_word()
 shared uint s_order[room];  // by rising azimuth
 shared uint s_bits[side_probes / 32];
 
-// First and last probe, whether the triangle lies to port, and the azimuth of its normal in 8192nds of a turn:
-// whole numbers, whose sums do not depend on their order.
+// First and last probe, whether the triangle lies to port, and the azimuth of its normal in parts of a turn: whole
+// numbers, whose sums do not depend on their order.
+const int parts_of_half_turn = 4095;
 uint edge_word(int first, int last, bool to_port, float facing) {
   return uint(first) | uint(last) << 9 | (to_port ? 1u << 18 : 0u) |
-         uint(clamp(facing / half_turn + 1.0, 0.0, 2.0) * 4095.0) << 19;
+         uint(clamp(facing / half_turn + 1.0, 0.0, 2.0) * float(parts_of_half_turn)) << 19;
 }
 uint first_of(uint edge) { return edge & 0x1ffu; }
 uint last_of(uint edge) { return edge >> 9 & 0x1ffu; }
 int side_of(uint edge) { return (edge >> 18 & 1u) != 0u ? 1 : -1; }
 int facing_of(uint edge) { return int(edge >> 19); }
-const int sharp_turn = int(0.6 / half_turn * 4095.0);
+const int sharp_turn = int(0.6 / half_turn * float(parts_of_half_turn));
 
 // atan(x) for x from -1 to 1, accurate to 1e-7.
 float atan_of(float x) {
@@ -244,7 +245,9 @@ bool ends_at(uint probe, EdgeGroup group) {
     side += touches ? side_of(edge) : 0;
     turned += touches ? side_of(edge) * facing_of(edge) : 0;
   }
-  return side != 0 || abs(turned) > sharp_turn;
+  // Modulo a turn: of two normals that point backwards, one may have azimuth pi and the other -pi.
+  int one_way = abs(turned) % (2 * parts_of_half_turn);
+  return side != 0 || min(one_way, 2 * parts_of_half_turn - one_way) > sharp_turn;
 }
 
 // Writes an edge with the probes of a group. All invocations must call it. @return 1, or 0 if it is not high
