@@ -21,13 +21,18 @@ struct Cell {
 };
 
 /// The echo of `cell` of the pixel at tangents (x, y), spread evenly and independently along its two sides.
+/// If they reached behind the sonar, the surface is seen edge-on and fills little of the cell: it stays at
+/// its range.
 EchoPatch patch_of(const SurfaceSample& sample, float x, float y, const Cell& cell, float weight) {
   RangePlane plane{sample.range_m, sample.range_dx, sample.range_dy};
   if (cell.x_offset != 0 || cell.y_offset != 0) {
     plane.move(x, y, cell.x_offset, cell.y_offset);
   }
-  const float across = std::abs(plane.dx + cell.slope * plane.dy) * cell.width;
-  const float along = std::abs(plane.dy) * cell.height;
+  float across = std::abs(plane.dx + cell.slope * plane.dy) * cell.width;
+  float along = std::abs(plane.dy) * cell.height;
+  if (across + along > 2 * plane.range) {
+    across = along = 0;
+  }
   const float spread = std::max(across, along);
   const float side = x + cell.x_offset;
   const float tangent = (y + cell.y_offset) / std::sqrt(1 + side * side);

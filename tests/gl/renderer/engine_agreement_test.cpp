@@ -6,7 +6,9 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
+#include "tests/scenes/scenes.hpp"
 #include "tests/support/degree.hpp"
 #include "tests/support/engine_test.hpp"
 
@@ -206,6 +208,35 @@ TEST_F(EngineAgreement, S21FarFromTheOriginAndRotated) {
   }
   view.T_world_sonar = T_far_world * view.T_world_sonar;
   expect_agreement_of(view, "far away");
+}
+
+/// First line of a beam with an echo, or the number of lines.
+int first_echo(const EchoImage& image, int beam) {
+  int k = 0;
+  while (k < image.lines && !(image.at(beam, k) > 0)) {
+    ++k;
+  }
+  return k;
+}
+
+// A smooth tube's silhouette is a facet seen edge-on, over which the range changes by more than itself.
+// OpenGL draws it in pixels of which it fills little.
+TEST_F(EngineAgreement, S21NothingEchoesBeforeTheNearestSurface) {
+  const test::Scene scene = test::make_scene("docking");
+  SonarRenderer gpu(scene.world, {EngineKind::gpu, 0});
+  SonarRenderer cpu(scene.world, {EngineKind::cpu, 0});
+  for (const auto& [yaw, pitch] : {std::pair{0, 15}, {0, 30}, {60, 15}, {100, 30}, {135, 10}, {165, 15}}) {
+    PingRequest request = quiet_request(looking(scene.T_world_sonar.position_m, yaw, pitch));
+    request.settings.sampling = Sampling::of_grid(3, 512, 512);
+    const EchoImage drawn = gpu.render_echo(request);
+    const EchoImage traced = cpu.render_echo(request);
+    const float largest = *std::ranges::max_element(traced.intensity);
+    for (int beam = 0; beam < drawn.beams; ++beam) {
+      for (int k = 0; k < first_echo(traced, beam) - 2; ++k) {
+        ASSERT_LT(drawn.at(beam, k), 1e-6F * largest) << "beam " << beam << " at yaw " << yaw;
+      }
+    }
+  }
 }
 
 // An explicit choice of engine is kept, and each engine describes itself.
