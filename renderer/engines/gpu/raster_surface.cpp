@@ -76,7 +76,7 @@ const osg::Texture2D* normal_map_of(const osg::StateSet& state) {
 std::string surface_shader_head(Shading shading, const SurfaceModel& surface, bool bent) {
   // FACETS: 0 no facets, 1 near normal incidence, 2 everywhere.
   return fmt::format(
-      "#version 450 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
+      "#version 430 compatibility\n#define SHADING {}\n#define FACETS {}\n#define PHYSICAL {:d}\n#define "
       "BENT {:d}\n",
       static_cast<int>(shading), static_cast<int>(surface.facets), surface.model == Model::physical, bent);
 }
