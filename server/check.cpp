@@ -330,8 +330,11 @@ void Check::check_recording() {
   }
   const RecordingConfig& recording = *config_.recording;
   try_folder(recording.directory, "recording.directory");
+  const bool has_glf = recording.glf && std::ranges::any_of(config_.heads, [](const HeadConfig& head) {
+                         return type_of(head).writes_glf();
+                       });
   report_.summary.push_back(fmt::format("records  into {}:{}{}{}", recording.directory.string(),
-                                        recording.glf ? " glf" : "", recording.mcap ? " mcap" : "",
+                                        has_glf ? " glf" : "", recording.mcap ? " mcap" : "",
                                         recording.pcapng ? " pcapng" : ""));
 }
 

@@ -69,7 +69,9 @@ void print_report(const std::filesystem::path& file, const CheckReport& report) 
     fmt::print(stderr, "{}\n", printable(problem_text(file, problem)));
   }
   if (report.problems.empty()) {
-    fmt::print("{}: good\n", printable(file.string()));
+    const std::size_t warnings = report.warnings.size();
+    fmt::print("{}: good{}\n", printable(file.string()),
+               warnings == 0 ? "" : ", with " + counted(warnings, "warning"));
   } else {
     fmt::print("{}: {}\n", printable(file.string()), counted(report.problems.size(), "problem"));
   }

@@ -304,6 +304,25 @@ TEST_F(CheckedWorld, WhoseMeshesAreInMillimetresSaysSo) {
                            "body 'plate' is 3000 x 3000 x 20 m: is its mesh in millimetres?"}) {
     EXPECT_THAT(result.err, HasSubstr(text));
   }
+  EXPECT_THAT(result.out, testing::EndsWith("/sonard.yaml: good, with 4 warnings\n"));
+}
+
+TEST_F(CheckedWorld, IsRecordedInLogsThatTheHeadsWrite) {
+  write("world.sdf", "<sdf version=\"1.9\"><world name=\"w\">" + model("box", "<box/>") + "</world></sdf>");
+  for (const auto& [head, logs] :
+       {std::pair{"{name: bow, type: ping360, udp: [{bind: 127.0.0.1:12345}]}", " mcap pcapng"},
+        {"{name: bow, type: gemini_720i, sonar_id: 513, network: {alternate_address: 127.0.0.2, netmask: "
+         "255.0.0.0}}",
+         " glf mcap pcapng"}}) {
+    const ProcessResult result =
+        run_process({SONARD_PROGRAM, "check", "--no-network",
+                     write("sonard.yaml", std::string("world: {file: world.sdf}\nengine: cpu\n"
+                                                      "poses: {initial: {position_m: [0, 0, 0]}}\n"
+                                                      "recording: {directory: logs}\nheads:\n  - ") +
+                                              head + "\n")});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, testing::ContainsRegex(std::string("records  into [^\n]*logs:") + logs + "\n"));
+  }
 }
 
 /// Seabeds and pipelines of kilometres are usual, as are meshes far from each other. Shapes without a file
