@@ -246,7 +246,7 @@ void add_end(uint i) {
 
 void main() {
   uint number = group_number();
-  if (number >= counts.slices || counts.slices > uint(ping.most_slices) || !slices_have_room(counts)) {
+  if (!has_slice(number, counts)) {
     return;
   }
   begin = of_slice[number].first;

@@ -226,7 +226,7 @@ void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options)
   statistics.video_memory_bytes = raster_->bytes();
   statistics.visibility_s += watch.lap();
   ++statistics.passes;
-  ++statistics.synchronisations;
+  statistics.synchronisations += grid_.grid().views.size();  // each view is read when it is drawn
   hand_over(bin_echoes(grid_.grid(), grid_.weights(), samples, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);

@@ -211,7 +211,7 @@ void make_patches(uint i) {
 
 void main() {
   uint number = group_number();
-  if (number >= counts.slices || counts.slices > uint(ping.most_slices) || !slices_have_room(counts)) {
+  if (!has_slice(number, counts)) {
     return;
   }
   slice = slices[number];

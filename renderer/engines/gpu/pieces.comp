@@ -222,7 +222,7 @@ bool divide_pieces() {
 void main() {
   lane = lane_number();
   uint number = group_number();
-  if (number >= counts.slices || counts.slices > uint(ping.most_slices) || !slices_have_room(counts)) {
+  if (!has_slice(number, counts)) {
     return;
   }
   slice = slices[number];

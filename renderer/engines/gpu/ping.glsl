@@ -103,10 +103,14 @@ struct PingCounts {
 bool lists_have_room(PingCounts needed) {
   return needed.triangles <= uint(ping.most_triangles) && needed.entries <= uint(ping.most_entries);
 }
-bool slices_have_room(PingCounts needed) {
+bool visible_have_room(PingCounts needed) {
   return lists_have_room(needed) && needed.visible <= uint(ping.most_visible) &&
          needed.scratch <= uint(ping.most_scratch) && needed.things <= uint(ping.most_things) &&
          needed.edges <= uint(ping.most_edges);
+}
+// Whether a slice is there to be binned.
+bool has_slice(uint number, PingCounts made) {
+  return number < made.slices && made.slices <= uint(ping.most_slices) && visible_have_room(made);
 }
 // A round of refinement: the slices made for it.
 struct Round {

@@ -444,7 +444,7 @@ void keep_order() {
 void main() {
   lane = gl_LocalInvocationID.x;
   beam = group_number();
-  if (rounds[round_number].slices == 0u || !slices_have_room(counts) ||
+  if (rounds[round_number].slices == 0u || !visible_have_room(counts) ||
       rounds[round_number].first_slice + rounds[round_number].slices > uint(ping.most_slices)) {
     return;
   }
