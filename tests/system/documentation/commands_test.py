@@ -135,7 +135,7 @@ RULES = [
     Run(SONARD + r"check configs/ardusub.yaml --listen 5", codes=(2,)),  # no vehicle sends
     Run(SONARD + r"check my.yaml"),
     Run(SONARD + r"check my.yaml --listen 5", codes=(2, 3)),  # no Gazebo runs
-    Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|gemini-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
+    Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|(gemini|oculus)-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
     Run(SONARD + r"run configs/gemini-netns.yaml", until=READY, addresses=VEHICLE),
     Run(SONARD + r"run configs/container.yaml", until=READY, before="ip link add eth0 type veth peer name eth1 && ip link set eth1 up && "
                                                                     "ip address add 10.61.19.201/24 dev eth0 && ip link set eth0 up"),
@@ -155,10 +155,10 @@ RULES = [
     Run(VIEW + r"(micron|ping360) --tty /dev/ttyUSB0 .*", codes=(3,)),  # no such line on this machine
     Run(VIEW + r"micron --(tcp|udp) 10.0.0.7:4001 .*", codes=(3,)),  # the same
     Run(VIEW + r"oculus (--out out|--head ADDRESS)", until=PROGRESS, beside=("configs/demo-oculus.yaml",)),
-    Run(VIEW + r"oculus (--head 127.0.0.3 )?--pings 10 .*", beside=("configs/demo-oculus.yaml",)),
+    Run(VIEW + r"oculus (--head 127.0.0.3 )?--pings 10 .*", beside=("configs/oculus-and-ping360.yaml",)),
     Run(VIEW + r"oculus --frequency high .*", until=PROGRESS, beside=("configs/demo-oculus.yaml",)),
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --out out", until=SCAN, beside=("configs/demo-ping360.yaml",)),
-    Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/demo-ping360.yaml",)),
+    Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/oculus-and-ping360.yaml",)),
     Run(VIEW + r"compare out/.*", before=MAKE_LOG + " && mkdir -p out other && cp made/ping_000000.png out/polar-last.png && "
                                                     "cp made/ping_000001.png other/polar-last.png"),
     Run(VIEW + r"compare dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),
