@@ -16,6 +16,7 @@
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/clock/clock.hpp"
+#include "server/config/device_settings.hpp"
 #include "server/config/head_type.hpp"
 #include "server/devices/survey.hpp"
 #include "server/logs/log_reader.hpp"
@@ -105,7 +106,7 @@ class DeviceType : public HeadType {
 
 /// The type of a head; every head of this program has a DeviceType.
 inline const DeviceType& type_of(const HeadConfig& head) {
-  return static_cast<const DeviceType&>(*head.type);
+  return checked_cast<DeviceType>(head.type);
 }
 
 /// Where a SocketError of a head lies.

@@ -79,7 +79,7 @@ void aim_micron(View& view, const server::HeadConfig& head, const Vehicle& vehic
   job.native_bins = micron_bins;
   job.native_bin_m = range_m / micron_bins;
   job.sound_speed_mps = sound_speed_mps;
-  job.gain_db = server::micron_config(head).nominal_gain_db;
+  job.gain_db = server::device_settings<server::MicronConfig>(head).nominal_gain_db;
   view.settings = server::micron_type().sonar_settings(job, head);
   view.scan_step = micron_step;
   for (int i = 0; i < micron::units_per_turn / micron_step; ++i) {

@@ -20,7 +20,10 @@ namespace sonard::test {
 class MicronClient {
  public:
   explicit MicronClient(const server::HeadConfig& head, double bin_m = 0.05, int bin_count = 500)
-      : gain_db(server::micron_config(head).nominal_gain_db), head_(head), bin_m_(bin_m), bins_(bin_count) {}
+      : gain_db(server::device_settings<server::MicronConfig>(head).nominal_gain_db),
+        head_(head),
+        bin_m_(bin_m),
+        bins_(bin_count) {}
 
   double gain_db;  ///< of the client; 80 dB are 100 %
 

@@ -8,6 +8,7 @@
 
 #include "protocol/gemini/device_config.hpp"
 #include "server/config/config.hpp"
+#include "server/config/device_settings.hpp"
 #include "server/config/status_destination.hpp"
 #include "server/net/faulty_link.hpp"
 
@@ -34,11 +35,6 @@ struct GeminiConfig final : DeviceSettings {
   /// A UDP socket on which every datagram counts as one edge of the external trigger (run mode 2).
   std::optional<Endpoint> trigger;
 };
-
-/// The configuration of a head of this type.
-inline const GeminiConfig& gemini_config(const HeadConfig& head) {
-  return static_cast<const GeminiConfig&>(*head.device);
-}
 
 /// Default acoustics of such a head.
 render::SonarSettings gemini_acoustics();

@@ -22,7 +22,7 @@ class ConnectedGemini final : public ConnectedDevice {
  public:
   ConnectedGemini(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
       : name_(head.name),
-        config_(gemini_config(head)),
+        config_(device_settings<GeminiConfig>(head)),
         device_(config_.device, clock.now()),
         transport_(io, clock, {{config_.bind_address, config_.command_port}, config_.allow, config_.link}),
         addresses_(device_.addresses()),

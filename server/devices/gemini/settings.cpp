@@ -30,7 +30,7 @@ std::vector<double> beam_edges_rad(double steering) {
 }
 
 double steering(const PingJob& job, const HeadConfig& head) {
-  return gemini_config(head).steering_error && job.assumed_sound_speed_mps > 0.0
+  return device_settings<GeminiConfig>(head).steering_error && job.assumed_sound_speed_mps > 0.0
              ? job.sound_speed_mps / job.assumed_sound_speed_mps
              : 1.0;
 }

@@ -35,7 +35,7 @@ gemini::PingSettings client_settings(const SurveyOptions& options) {
 class GeminiSurvey final : public Survey {
  public:
   GeminiSurvey(const HeadConfig& head, const SurveyOptions& options)
-      : config_(gemini_config(head)),
+      : config_(device_settings<GeminiConfig>(head)),
         asked_(client_settings(options)),
         // Every output of make_ping_config() is valid for plan_ping().
         plan_(gemini::plan_ping(gemini::make_ping_config(asked_), config_.device).value()) {}

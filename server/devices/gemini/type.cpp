@@ -59,12 +59,12 @@ class GeminiType final : public DeviceType {
   }
 
   std::uint16_t device_id(const HeadConfig& head) const override {
-    return gemini_config(head).device.sonar_id;
+    return device_settings<GeminiConfig>(head).device.sonar_id;
   }
 
   std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
     using Transport = PlannedSocket::Transport;
-    const GeminiConfig& config = gemini_config(head);
+    const GeminiConfig& config = device_settings<GeminiConfig>(head);
     std::vector<PlannedSocket> sockets{
         {Transport::udp, {config.bind_address, config.command_port}, "network.bind"}};
     if (config.trigger) {
@@ -75,13 +75,13 @@ class GeminiType final : public DeviceType {
   std::string socket_key() const override { return "network.bind"; }
 
   std::vector<Identity> identities(const HeadConfig& head) const override {
-    const gemini::DeviceConfig& device = gemini_config(head).device;
+    const gemini::DeviceConfig& device = device_settings<GeminiConfig>(head).device;
     return {{"sonar_id", std::to_string(device.sonar_id)},
             {"network.alternate_address", address_text(device.alternate_address)}};
   }
 
   std::string summary(const HeadConfig& head) const override {
-    const GeminiConfig& config = gemini_config(head);
+    const GeminiConfig& config = device_settings<GeminiConfig>(head);
     return fmt::format("ID {}, commands to {}, status {}", config.device.sonar_id,
                        endpoint_text({config.bind_address, config.command_port}),
                        status_text(config.status, config.device.alternate_address, config.device.netmask));
@@ -89,7 +89,7 @@ class GeminiType final : public DeviceType {
 
   // Newer clients send nothing to a head if its mask differs from the mask of their own interface.
   std::vector<ConfigWarning> network_warnings(const HeadConfig& head) const override {
-    const GeminiConfig& config = gemini_config(head);
+    const GeminiConfig& config = device_settings<GeminiConfig>(head);
     const gemini::DeviceConfig& device = config.device;
     const auto owner = owner_of(device.alternate_address, interface_addresses());
     if (owner && owner->netmask != device.netmask) {
@@ -115,7 +115,9 @@ class GeminiType final : public DeviceType {
 
   PingJob usual_job(const HeadConfig& head) const override {
     // Every output of make_ping_config() is valid for plan_ping().
-    return gemini::plan_ping(gemini::make_ping_config({}), gemini_config(head).device).value().job;
+    return gemini::plan_ping(gemini::make_ping_config({}), device_settings<GeminiConfig>(head).device)
+        .value()
+        .job;
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {
@@ -194,7 +196,7 @@ class GeminiType final : public DeviceType {
   }
 
   HeadConfig held_to_recording(HeadConfig head) const override {
-    auto config = std::make_shared<GeminiConfig>(gemini_config(head));
+    auto config = std::make_shared<GeminiConfig>(device_settings<GeminiConfig>(head));
     config->device.plays_back = true;
     config->device.simulated_time = false;
     config->device.min_ping_period = std::chrono::milliseconds{1};

@@ -4,6 +4,7 @@
 
 #include "protocol/micron/device_config.hpp"
 #include "server/config/config.hpp"
+#include "server/config/device_settings.hpp"
 #include "server/net/serial_port.hpp"
 
 namespace sonard::server {
@@ -16,11 +17,6 @@ struct MicronConfig final : DeviceSettings {
   double nominal_gain_db = 36.0;          ///< client's gain at which levels are as in the acoustics; [0, 80]
   double chirp_bandwidth_hz = 100'000.0;  ///< sets the range cell; 0: a pulse of no length
 };
-
-/// The configuration of a head of this type.
-inline const MicronConfig& micron_config(const HeadConfig& head) {
-  return static_cast<const MicronConfig&>(*head.device);
-}
 
 /// Default acoustics of such a head.
 render::SonarSettings micron_acoustics();

@@ -6,7 +6,7 @@
 namespace sonard::server {
 
 render::SonarSettings micron_sonar_settings(const PingJob& job, const HeadConfig& head) {
-  const MicronConfig& config = micron_config(head);
+  const MicronConfig& config = device_settings<MicronConfig>(head);
   render::SonarSettings settings = head.acoustics;
   settings.range = {.count = std::max(1, job.native_bins),
                     .step_m = job.native_bins > 0 ? job.native_bin_m : 0.01,

@@ -71,7 +71,9 @@ int first_bearing(const micron::ScanSettings& settings) {
 class MicronSurvey final : public Survey {
  public:
   MicronSurvey(const HeadConfig& head, const SurveyOptions& options)
-      : config_(micron_config(head)), asked_(scan_settings(options)), command_(make_head_command(asked_)) {}
+      : config_(device_settings<MicronConfig>(head)),
+        asked_(scan_settings(options)),
+        command_(make_head_command(asked_)) {}
 
   std::chrono::nanoseconds natural_period() const override {
     const micron::DeviceConfig& device = config_.device;

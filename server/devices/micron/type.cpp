@@ -58,19 +58,21 @@ class MicronType final : public DeviceType {
     return head;
   }
 
-  std::uint16_t device_id(const HeadConfig& head) const override { return micron_config(head).device.node; }
+  std::uint16_t device_id(const HeadConfig& head) const override {
+    return device_settings<MicronConfig>(head).device.node;
+  }
 
   std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
-    return serial_sockets(micron_config(head).serial, "serial");
+    return serial_sockets(device_settings<MicronConfig>(head).serial, "serial");
   }
   std::string socket_key() const override { return "serial"; }
 
   std::vector<Identity> identities(const HeadConfig& head) const override {
-    return serial_identities(micron_config(head).serial, "serial");
+    return serial_identities(device_settings<MicronConfig>(head).serial, "serial");
   }
 
   std::string summary(const HeadConfig& head) const override {
-    const MicronConfig& config = micron_config(head);
+    const MicronConfig& config = device_settings<MicronConfig>(head);
     return fmt::format("node {}, {} duplex, line by {}", config.device.node,
                        config.device.half_duplex ? "half" : "full", serial_text(config.serial));
   }
@@ -79,11 +81,11 @@ class MicronType final : public DeviceType {
 
   std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                            const Clock& clock) const override {
-    return std::make_unique<ConnectedMicron>(micron_config(head), io, clock);
+    return std::make_unique<ConnectedMicron>(device_settings<MicronConfig>(head), io, clock);
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    return micron::make_line_job(micron::make_head_command({}), micron_config(head).device,
+    return micron::make_line_job(micron::make_head_command({}), device_settings<MicronConfig>(head).device,
                                  micron::bearing_ahead);
   }
 
@@ -120,7 +122,7 @@ class MicronType final : public DeviceType {
   }
 
   HeadConfig held_to_recording(HeadConfig head) const override {
-    auto config = std::make_shared<MicronConfig>(micron_config(head));
+    auto config = std::make_shared<MicronConfig>(device_settings<MicronConfig>(head));
     config->device.plays_back = true;
     config->device.simulated_time = false;
     head.device = std::move(config);

@@ -8,6 +8,7 @@
 
 #include "protocol/oculus/device_config.hpp"
 #include "server/config/config.hpp"
+#include "server/config/device_settings.hpp"
 #include "server/config/status_destination.hpp"
 
 namespace sonard::server {
@@ -36,11 +37,6 @@ struct OculusConfig final : DeviceSettings {
   std::array<OculusModeAcoustics, 2> modes;  ///< low frequency, high frequency
   double gain_db_per_percent = 0.6;          ///< 50 percent is 0 dB
 };
-
-/// Configuration of a head of this type.
-inline const OculusConfig& oculus_config(const HeadConfig& head) {
-  return static_cast<const OculusConfig&>(*head.device);
-}
 
 /// Default acoustics of such a head.
 render::SonarSettings oculus_acoustics();

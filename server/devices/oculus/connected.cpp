@@ -22,7 +22,7 @@ class ConnectedOculus final : public ConnectedDevice {
  public:
   ConnectedOculus(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
       : name_(head.name),
-        config_(oculus_config(head)),
+        config_(device_settings<OculusConfig>(head)),
         address_(config_.device.address),
         netmask_(config_.device.netmask),
         device_(config_.device, clock.now()),

@@ -24,7 +24,7 @@ std::vector<double> beam_edges_rad(int beams, double aperture_deg) {
 }  // namespace
 
 render::SonarSettings oculus_sonar_settings(const PingJob& job, const HeadConfig& head) {
-  const OculusConfig& config = oculus_config(head);
+  const OculusConfig& config = device_settings<OculusConfig>(head);
   const auto index = static_cast<std::size_t>(job.mode);
   const OculusModeAcoustics& low = config.modes[0];
   const OculusModeAcoustics& mode = config.modes.at(index);

@@ -45,7 +45,7 @@ oculus::SimpleFire fire_of(const SurveyOptions& options, const oculus::Model& mo
 class OculusSurvey final : public Survey {
  public:
   OculusSurvey(const HeadConfig& head, const SurveyOptions& options)
-      : config_(oculus_config(head).device.plan),
+      : config_(device_settings<OculusConfig>(head).device.plan),
         plan_(oculus::plan_ping(fire_of(options, config_.model), config_)) {}
 
   std::chrono::nanoseconds natural_period() const override { return plan_.period; }

@@ -49,21 +49,23 @@ class OculusType final : public DeviceType {
     return head;
   }
 
-  std::uint16_t device_id(const HeadConfig& head) const override { return oculus_config(head).device.id; }
+  std::uint16_t device_id(const HeadConfig& head) const override {
+    return device_settings<OculusConfig>(head).device.id;
+  }
 
   std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
-    const OculusConfig& config = oculus_config(head);
+    const OculusConfig& config = device_settings<OculusConfig>(head);
     return {{PlannedSocket::Transport::tcp, {config.device.address, config.tcp_port}, "network.address"}};
   }
   std::string socket_key() const override { return "network.address"; }
 
   std::vector<Identity> identities(const HeadConfig& head) const override {
-    const oculus::DeviceConfig& device = oculus_config(head).device;
+    const oculus::DeviceConfig& device = device_settings<OculusConfig>(head).device;
     return {{"device_id", std::to_string(device.id)}, {"network.address", address_text(device.address)}};
   }
 
   std::string summary(const HeadConfig& head) const override {
-    const OculusConfig& config = oculus_config(head);
+    const OculusConfig& config = device_settings<OculusConfig>(head);
     const oculus::DeviceConfig& device = config.device;
     return fmt::format("ID {}, part {}, TCP {}, status {}, port {}", device.id, device.plan.model.part_number,
                        endpoint_text({device.address, config.tcp_port}),
@@ -83,7 +85,7 @@ class OculusType final : public DeviceType {
     fire.fire.range = 20.0;
     fire.fire.sound_speed_mps = 1500.0;
     fire.fire.flags |= oculus::fire_flags::beams_512;
-    const oculus::PlanConfig& plan = oculus_config(head).device.plan;
+    const oculus::PlanConfig& plan = device_settings<OculusConfig>(head).device.plan;
     return oculus::job_of(oculus::plan_ping(fire, plan), plan);
   }
 
@@ -103,7 +105,7 @@ class OculusType final : public DeviceType {
 
   HeadConfig on_loopback(const LoggedHead& logged, Ipv4 address) const override {
     HeadConfig head = make_default();
-    auto config = std::make_shared<OculusConfig>(oculus_config(head));
+    auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
     config->device.id = std::max<std::uint16_t>(logged.device_id, 1);
     config->device.address = address;
     config->device.netmask = 0xFF000000;
@@ -115,7 +117,7 @@ class OculusType final : public DeviceType {
   }
 
   HeadConfig held_to_recording(HeadConfig head) const override {
-    auto config = std::make_shared<OculusConfig>(oculus_config(head));
+    auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
     config->device.plays_back = true;
     config->device.simulated_time = false;
     head.device = std::move(config);

@@ -11,6 +11,7 @@
 #include "renderer/acoustics/transducer.hpp"
 #include "renderer/acoustics/water.hpp"
 #include "server/config/config.hpp"
+#include "server/config/device_settings.hpp"
 #include "server/net/serial_port.hpp"
 #include "server/net/udp_transport.hpp"
 
@@ -43,11 +44,6 @@ struct Ping360Config final : DeviceSettings {
   /// Sets absorption by frequency; nullopt: the configuration sets the absorption.
   std::optional<render::Water> water = render::Water{};
 };
-
-/// Configuration of a head of this type.
-inline const Ping360Config& ping360_config(const HeadConfig& head) {
-  return static_cast<const Ping360Config&>(*head.device);
-}
 
 /// Default acoustics of such a head.
 render::SonarSettings ping360_acoustics();

@@ -70,7 +70,7 @@ class Discovery {
 class ConnectedPing360 final : public ConnectedDevice {
  public:
   ConnectedPing360(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
-      : config_(ping360_config(head)),
+      : config_(device_settings<Ping360Config>(head)),
         device_(config_.device, clock.now()),
         transport_(open_transports(config_, io, clock)) {
     if (const auto& discovery = config_.discovery) {

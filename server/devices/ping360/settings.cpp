@@ -30,7 +30,7 @@ void follow_frequency(double frequency_hz, const Ping360Config& config, render::
 }  // namespace
 
 render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfig& head) {
-  const Ping360Config& config = ping360_config(head);
+  const Ping360Config& config = device_settings<Ping360Config>(head);
   render::SonarSettings settings = head.acoustics;
   settings.range = {.count = std::max(1, job.native_bins),
                     .step_m = job.native_bins > 0 ? job.native_bin_m : 0.01,

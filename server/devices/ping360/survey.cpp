@@ -88,7 +88,7 @@ Asked asked_of(const SurveyOptions& options, const ping360::DeviceConfig& device
 class Ping360Survey final : public Survey {
  public:
   Ping360Survey(const HeadConfig& head, const SurveyOptions& options)
-      : device_(ping360_config(head).device), asked_(asked_of(options, device_)) {}
+      : device_(device_settings<Ping360Config>(head).device), asked_(asked_of(options, device_)) {}
 
   std::chrono::nanoseconds natural_period() const override {
     const auto listening = ping360::listening_time(asked_.scan.number_of_samples, asked_.scan.sample_period);

@@ -41,10 +41,12 @@ class Ping360Type final : public DeviceType {
     return head;
   }
 
-  std::uint16_t device_id(const HeadConfig& head) const override { return ping360_config(head).device.id; }
+  std::uint16_t device_id(const HeadConfig& head) const override {
+    return device_settings<Ping360Config>(head).device.id;
+  }
 
   std::vector<PlannedSocket> sockets(const HeadConfig& head) const override {
-    const Ping360Config& config = ping360_config(head);
+    const Ping360Config& config = device_settings<Ping360Config>(head);
     std::vector<PlannedSocket> sockets = serial_sockets(config.serial, "serial");
     for (std::size_t i = 0; i < config.udp.size(); ++i) {
       sockets.push_back({PlannedSocket::Transport::udp, config.udp[i].bind, fmt::format("udp[{}].bind", i)});
@@ -54,11 +56,11 @@ class Ping360Type final : public DeviceType {
   std::string socket_key() const override { return "udp"; }
 
   std::vector<Identity> identities(const HeadConfig& head) const override {
-    return serial_identities(ping360_config(head).serial, "serial");
+    return serial_identities(device_settings<Ping360Config>(head).serial, "serial");
   }
 
   std::string summary(const HeadConfig& head) const override {
-    const Ping360Config& config = ping360_config(head);
+    const Ping360Config& config = device_settings<Ping360Config>(head);
     std::vector<std::string> ways;
     for (const UdpTransportConfig& udp : config.udp) {
       ways.push_back("UDP " + endpoint_text(udp.bind));
@@ -78,7 +80,7 @@ class Ping360Type final : public DeviceType {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    const ping360::DeviceConfig& device = ping360_config(head).device;
+    const ping360::DeviceConfig& device = device_settings<Ping360Config>(head).device;
     ping360::AutoTransmit scan =
         ping360::usual_scan(10.0, std::nullopt, 1500.0, device.bearing_offset).value();
     scan.gain_setting = 1;
@@ -112,7 +114,7 @@ class Ping360Type final : public DeviceType {
   }
 
   HeadConfig held_to_recording(HeadConfig head) const override {
-    auto config = std::make_shared<Ping360Config>(ping360_config(head));
+    auto config = std::make_shared<Ping360Config>(device_settings<Ping360Config>(head));
     config->device.plays_back = true;
     config->device.simulated_time = false;
     head.device = std::move(config);

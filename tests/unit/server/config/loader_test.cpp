@@ -40,7 +40,7 @@ class Loader : public ConfigFolder {};
 
 /// The first head, which must be a Gemini.
 const GeminiConfig& gemini_of(const DaemonConfig& config) {
-  return gemini_config(config.heads.at(0));
+  return device_settings<GeminiConfig>(config.heads.at(0));
 }
 
 TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
@@ -62,7 +62,7 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(head.name, "front");
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_FALSE(head.dump_directory);
-  const GeminiConfig& gemini = gemini_config(head);
+  const GeminiConfig& gemini = device_settings<GeminiConfig>(head);
   EXPECT_EQ(gemini.device.sonar_id, 513);
   EXPECT_EQ(gemini.device.alternate_address, 0x7F000002U);
   EXPECT_EQ(gemini.device.netmask, 0xFF000000U);

@@ -81,9 +81,9 @@ void expect_demo_head(const DaemonConfig& config) {
   ASSERT_EQ(config.heads.size(), 1U);
   const HeadConfig& head = config.heads[0];
   ASSERT_EQ(head.type, &gemini_type());
-  EXPECT_EQ(gemini_config(head).device.sonar_id, 513);
-  EXPECT_EQ(gemini_config(head).command_port, 52901);
-  EXPECT_EQ(gemini_config(head).device.client_port, 52900);
+  EXPECT_EQ(device_settings<GeminiConfig>(head).device.sonar_id, 513);
+  EXPECT_EQ(device_settings<GeminiConfig>(head).command_port, 52901);
+  EXPECT_EQ(device_settings<GeminiConfig>(head).device.client_port, 52900);
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
   EXPECT_EQ(config.poses.udp->bind, (Endpoint{0x7F000001, 14600}));
   EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());
@@ -106,7 +106,7 @@ TEST(ShippedConfigs, DemoStartsWhereItsTrajectoryStarts) {
 TEST(ShippedConfigs, DemoServesLoopback) {
   const DaemonConfig config = shipped("demo.yaml");
   expect_demo_head(config);
-  const GeminiConfig& head = gemini_config(config.heads[0]);
+  const GeminiConfig& head = device_settings<GeminiConfig>(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x7F000002U);
   EXPECT_EQ(head.device.alternate_address, 0x7F000002U);
   EXPECT_EQ(head.device.netmask, 0xFF000000U);
@@ -117,7 +117,7 @@ TEST(ShippedConfigs, DemoServesLoopback) {
 TEST(ShippedConfigs, GeminiNetnsIsFoundByBroadcast) {
   const DaemonConfig config = shipped("gemini-netns.yaml");
   expect_demo_head(config);
-  const GeminiConfig& head = gemini_config(config.heads[0]);
+  const GeminiConfig& head = device_settings<GeminiConfig>(config.heads[0]);
   EXPECT_EQ(head.bind_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.alternate_address, 0x0A3D13C8U);
   EXPECT_EQ(head.device.netmask, 0xFFFFFF00U);
@@ -131,8 +131,8 @@ TEST(ShippedConfigs, TwoVehiclesRunSideBySide) {
   ASSERT_EQ(a.heads.size(), 2U);
   ASSERT_EQ(b.heads.size(), 1U);
   EXPECT_NE(a.poses.udp->bind, b.poses.udp->bind);
-  const GeminiConfig& gemini_a = gemini_config(a.heads[0]);
-  const GeminiConfig& gemini_b = gemini_config(b.heads[0]);
+  const GeminiConfig& gemini_a = device_settings<GeminiConfig>(a.heads[0]);
+  const GeminiConfig& gemini_b = device_settings<GeminiConfig>(b.heads[0]);
   EXPECT_NE(gemini_a.device.sonar_id, gemini_b.device.sonar_id);
   EXPECT_NE(gemini_a.bind_address, gemini_b.bind_address);
   EXPECT_NE(gemini_a.status.hosts, gemini_b.status.hosts);

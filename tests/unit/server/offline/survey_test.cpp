@@ -190,7 +190,7 @@ TEST(MicronSurvey, DoesWhatAClientWouldAskFor) {
 
 TEST(MicronSurvey, AHeadThatIsMountedBootDownLooksToTheOtherSide) {
   HeadConfig head = micron_type().make_default();
-  auto config = std::make_shared<MicronConfig>(micron_config(head));
+  auto config = std::make_shared<MicronConfig>(device_settings<MicronConfig>(head));
   config->device.mounted_inverted = true;
   head.device = config;
   const std::unique_ptr<Survey> survey =

@@ -51,7 +51,7 @@ LoggedHead fan(std::uint16_t device_id, const std::string& name = "") {
 HeadConfig gemini(const std::string& name, std::uint16_t id) {
   HeadConfig head = gemini_type().make_default();
   head.name = name;
-  auto config = std::make_shared<GeminiConfig>(gemini_config(head));
+  auto config = std::make_shared<GeminiConfig>(device_settings<GeminiConfig>(head));
   config->device.sonar_id = id;
   config->device.simulated_time = true;
   config->device.render_lead = std::chrono::milliseconds{5};
@@ -128,14 +128,15 @@ TEST_F(ReplayConfigTest, HeadsAreHeldToTheirRecordingAndKeepTheRest) {
   const ReplayConfig replay = this->replay({fan(600), fan(601)});
   ASSERT_EQ(replay.daemon.heads.size(), 2U);
   for (const HeadConfig& head : replay.daemon.heads) {
-    const gemini::DeviceConfig& device = gemini_config(head).device;
+    const gemini::DeviceConfig& device = device_settings<GeminiConfig>(head).device;
     EXPECT_TRUE(device.plays_back);
     EXPECT_FALSE(device.simulated_time);
     EXPECT_EQ(device.min_ping_period, std::chrono::milliseconds{1});
     EXPECT_EQ(device.render_lead, std::chrono::nanoseconds{0});
   }
-  EXPECT_EQ(gemini_config(replay.daemon.heads[1]).device.sonar_id, 601);
-  EXPECT_FALSE(gemini_config(config.heads[0]).device.plays_back) << "that of others is not changed";
+  EXPECT_EQ(device_settings<GeminiConfig>(replay.daemon.heads[1]).device.sonar_id, 601);
+  EXPECT_FALSE(device_settings<GeminiConfig>(config.heads[0]).device.plays_back)
+      << "that of others is not changed";
   EXPECT_FALSE(replay.daemon.poses.udp) << "nothing is rendered";
   EXPECT_TRUE(replay.daemon.poses.T_world_vehicle_initial);
 }
@@ -145,7 +146,7 @@ TEST_F(ReplayConfigTest, OneHeadPlaysOneRecordingWhateverTheIds) {
   const std::vector<LoggedHead> logged{fan(513)};
   const ReplayConfig replay = this->replay(logged);
   EXPECT_EQ(replay.played.at(0).logged, &logged[0]);
-  EXPECT_EQ(gemini_config(replay.daemon.heads.at(0)).device.sonar_id, 600);
+  EXPECT_EQ(device_settings<GeminiConfig>(replay.daemon.heads.at(0)).device.sonar_id, 600);
 }
 
 TEST_F(ReplayConfigTest, NoHeadAtAllIsAnError) {
@@ -191,7 +192,7 @@ LoggedHead scan(const std::string& name, std::uint16_t node) {
 HeadConfig micron(const std::string& name, std::uint8_t node) {
   HeadConfig head = micron_type().make_default();
   head.name = name;
-  auto config = std::make_shared<MicronConfig>(micron_config(head));
+  auto config = std::make_shared<MicronConfig>(device_settings<MicronConfig>(head));
   config->device.node = node;
   config->device.simulated_time = true;
   head.device = config;
@@ -206,8 +207,8 @@ TEST_F(ReplayConfigTest, MicronsFindTheirRecordingByNameAndElseByNode) {
   EXPECT_EQ(replay.played[0].logged, &logged[1]);
   EXPECT_EQ(replay.played[1].logged, &logged[0]);
   EXPECT_EQ(replay.played[2].logged, &logged[2]);
-  EXPECT_TRUE(micron_config(replay.daemon.heads[2]).device.plays_back);
-  EXPECT_FALSE(micron_config(replay.daemon.heads[2]).device.simulated_time);
+  EXPECT_TRUE(device_settings<MicronConfig>(replay.daemon.heads[2]).device.plays_back);
+  EXPECT_FALSE(device_settings<MicronConfig>(replay.daemon.heads[2]).device.simulated_time);
 }
 
 TEST_F(ReplayConfigTest, OneOfEachKindPlayOneOfEachKind) {
@@ -237,7 +238,7 @@ TEST_F(ReplayConfigTest, WithoutAConfigurationMicronsAreBehindTheGeminisOnLoopba
 
   ASSERT_EQ(loopback.heads[0].type, &gemini_type());
   EXPECT_EQ(loopback.heads[0].name, "gemini-513");
-  const GeminiConfig& first = gemini_config(loopback.heads[0]);
+  const GeminiConfig& first = device_settings<GeminiConfig>(loopback.heads[0]);
   EXPECT_EQ(first.device.sonar_id, 513);
   EXPECT_EQ(first.device.mac, (std::array<std::uint8_t, 6>{0x00, 0x12, 0x34, 0x00, 0x02, 0x01}));
   EXPECT_EQ(first.device.alternate_address, 0x7F000002U);
@@ -247,19 +248,21 @@ TEST_F(ReplayConfigTest, WithoutAConfigurationMicronsAreBehindTheGeminisOnLoopba
   EXPECT_THAT(first.status.hosts, ElementsAre(0x7F000001U));
   EXPECT_THAT(first.allow, ElementsAre(Cidr{0x7F000000, 8}));
   EXPECT_EQ(loopback.heads[1].name, "bow");
-  EXPECT_EQ(gemini_config(loopback.heads[1]).bind_address, 0x7F000003U);
-  EXPECT_EQ(gemini_config(loopback.heads[1]).device.sonar_id, 2) << "clients send nothing to 1";
+  EXPECT_EQ(device_settings<GeminiConfig>(loopback.heads[1]).bind_address, 0x7F000003U);
+  EXPECT_EQ(device_settings<GeminiConfig>(loopback.heads[1]).device.sonar_id, 2)
+      << "clients send nothing to 1";
 
   ASSERT_EQ(loopback.heads[2].type, &micron_type());
   EXPECT_EQ(loopback.heads[2].name, "micron-7");
-  const MicronConfig& third = micron_config(loopback.heads[2]);
+  const MicronConfig& third = device_settings<MicronConfig>(loopback.heads[2]);
   EXPECT_EQ(third.device.node, 7);
   ASSERT_EQ(third.serial.tcp.size(), 1U);
   EXPECT_EQ(third.serial.tcp[0].bind.address, 0x7F000004U);
   EXPECT_EQ(third.serial.tcp[0].bind.port, 4001);
   EXPECT_THAT(third.serial.tcp[0].allow, ElementsAre(Cidr{0x7F000000, 8}));
   EXPECT_EQ(loopback.heads[3].name, "mast");
-  EXPECT_EQ(micron_config(loopback.heads[3]).device.node, micron::DeviceConfig{}.node) << "255 is the host";
+  EXPECT_EQ(device_settings<MicronConfig>(loopback.heads[3]).device.node, micron::DeviceConfig{}.node)
+      << "255 is the host";
 }
 
 TEST_F(ReplayConfigTest, LinesThatDoNotSayHowTheyTravelledAreAnError) {

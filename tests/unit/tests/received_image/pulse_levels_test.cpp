@@ -34,7 +34,7 @@ render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double r
   gemini::PingConfig config = gemini::make_ping_config(wanted);
   config.tx_length = cycles;
   return server::gemini_type().sonar_settings(
-      gemini::plan_ping(config, server::gemini_config(head).device)->job, head);
+      gemini::plan_ping(config, server::device_settings<server::GeminiConfig>(head).device)->job, head);
 }
 
 /// Settings of a client's ping of a Ping360.
@@ -47,7 +47,9 @@ render::SonarSettings ping360_with(std::uint16_t pulse_us, std::uint16_t sample_
   command.transmit_duration_us = pulse_us;
   command.transmit_frequency_khz = frequency_khz;
   return server::ping360_type().sonar_settings(
-      ping360::make_job(ping360::form_of(command), server::ping360_config(head).device), head);
+      ping360::make_job(ping360::form_of(command),
+                        server::device_settings<server::Ping360Config>(head).device),
+      head);
 }
 
 /// The echo alone, with the same level at any range.

@@ -77,7 +77,7 @@ class Scan {
  public:
   explicit Scan(HeadConfig config)
       : config_(std::move(config)),
-        device_(micron_config(config_).device, 0ns),
+        device_(device_settings<MicronConfig>(config_).device, 0ns),
         client_({}, 0ns),
         renderer_(render::load_world(SONARD_SOURCE_DIR "/configs/worlds/tank.sdf"),
                   {render::EngineKind::cpu, 0}) {}

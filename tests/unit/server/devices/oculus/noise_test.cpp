@@ -22,7 +22,7 @@ namespace {
 
 HeadConfig m1200d() {
   HeadConfig head = oculus_type().make_default();
-  auto config = std::make_shared<OculusConfig>(oculus_config(head));
+  auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
   config->device.plan.model = oculus::m1200d;
   config->modes = oculus_modes(oculus::m1200d);
   head.device = std::move(config);
@@ -37,7 +37,7 @@ render::PingSamples ping(std::uint8_t gamma, bool sixteen_bit, float intensity =
   fire.fire.gamma = gamma;
   fire.fire.sound_speed_mps = 1500.0;
   fire.fire.flags |= sixteen_bit ? oculus::fire_flags::sixteen_bit : 0;
-  const oculus::PlanConfig& plan = oculus_config(head).device.plan;
+  const oculus::PlanConfig& plan = device_settings<OculusConfig>(head).device.plan;
   render::PingRequest request;
   request.settings = oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
   const int beams = request.settings.aperture.beam_count();

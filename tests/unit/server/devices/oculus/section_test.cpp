@@ -39,7 +39,7 @@ TEST_F(OculusSection, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_THAT(loaded.warning_lines(), ElementsAre(HasSubstr("1200 kHz is not within 0.2 to 1000 kHz")));
   const HeadConfig& head = loaded.config.heads.at(0);
   EXPECT_EQ(head.type, &oculus_type());
-  const OculusConfig& config = oculus_config(head);
+  const OculusConfig& config = device_settings<OculusConfig>(head);
   EXPECT_EQ(config.device.plan.model.part_number, 1032);
   EXPECT_EQ(config.device.id, 7892);
   EXPECT_EQ(address_text(config.device.address), "127.0.0.3");
@@ -74,7 +74,7 @@ TEST_F(OculusSection, ReadsWhatIsWritten) {
       "{vertical_beamwidth_deg: 19, receive_beamwidth_deg: 0.7, aperture_deg: 120, range_cell_mm: 3, "
       "gain_db_per_percent: 0.5, high_frequency: {aperture_deg: 50, vertical_beamwidth_deg: 11, "
       "receive_beamwidth_deg: 0.3, range_cell_mm: 2}}");
-  const OculusConfig& config = oculus_config(head);
+  const OculusConfig& config = device_settings<OculusConfig>(head);
   EXPECT_EQ(config.device.id, 9);
   EXPECT_EQ(config.tcp_port, 1);
   EXPECT_EQ(config.status_port, 2);
@@ -109,7 +109,7 @@ TEST_F(OculusSection, TheHighFrequencyMayHaveAnAbsorptionOfItsOwn) {
   const LoadedConfig loaded =
       load(document(with_network("acoustics: {high_frequency: {absorption_db_per_km: 480}}")));
   EXPECT_THAT(loaded.warning_lines(), IsEmpty()) << "the formula is valid at 750 kHz";
-  const OculusConfig& config = oculus_config(loaded.config.heads.at(0));
+  const OculusConfig& config = device_settings<OculusConfig>(loaded.config.heads.at(0));
   EXPECT_NEAR(config.modes[1].absorption_db_per_m, 0.48, 1e-12);
   EXPECT_NEAR(config.modes[0].absorption_db_per_m, 0.2167, 0.0005);  // Francois and Garrison, by hand
 }
@@ -118,9 +118,9 @@ TEST_F(OculusSection, AnAbsorptionThatIsSetHoldsAtBothFrequencies) {
   std::string text = document(with_network());
   text.replace(text.find("depth_m: 30"), 11, "depth_m: 30, absorption_db_per_km: 150");
   const HeadConfig head = load(text).config.heads.at(0);
-  EXPECT_NEAR(oculus_config(head).modes[0].absorption_db_per_m, 0.15, 1e-12);
-  EXPECT_NEAR(oculus_config(head).modes[1].absorption_db_per_m, 0.15, 1e-12);
-  const OculusConfig computed = oculus_config(read(with_network()));
+  EXPECT_NEAR(device_settings<OculusConfig>(head).modes[0].absorption_db_per_m, 0.15, 1e-12);
+  EXPECT_NEAR(device_settings<OculusConfig>(head).modes[1].absorption_db_per_m, 0.15, 1e-12);
+  const OculusConfig computed = device_settings<OculusConfig>(read(with_network()));
   EXPECT_GT(computed.modes[1].absorption_db_per_m, 1.5 * computed.modes[0].absorption_db_per_m);
 }
 

@@ -26,7 +26,7 @@ oculus::SimpleFire fire_with(int mode, int beams) {
 
 render::SonarSettings settings_of(const oculus::SimpleFire& fire,
                                   const HeadConfig& head = oculus_type().make_default()) {
-  const oculus::PlanConfig& plan = oculus_config(head).device.plan;
+  const oculus::PlanConfig& plan = device_settings<OculusConfig>(head).device.plan;
   return oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
 }
 
@@ -55,7 +55,7 @@ TEST(OculusSettings, RowsAreThoseOfThePing) {
 
 TEST(OculusSettings, RowsKeepTheirTimeInWaterOfAnotherSpeed) {
   HeadConfig head = oculus_type().make_default();
-  auto config = std::make_shared<OculusConfig>(oculus_config(head));
+  auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
   config->device.plan.water_sound_speed_mps = 1450.0;
   head.device = config;
   EXPECT_NEAR(settings_of(fire_with(1, 512), head).range.step_m, 5 * 1450.0 / (2 * 37.5e6 / 143), 1e-12);

@@ -25,7 +25,7 @@ class Ping360Section : public ConfigFolder {
   }
   static std::string item(const std::string& head) { return "  - {type: ping360, " + head + "}\n"; }
   Ping360Config read(const std::string& head) const {
-    return ping360_config(load(document(head)).config.heads.at(0));
+    return device_settings<Ping360Config>(load(document(head)).config.heads.at(0));
   }
 };
 
@@ -34,7 +34,7 @@ TEST_F(Ping360Section, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   const HeadConfig& head = loaded.config.heads.at(0);
   EXPECT_EQ(head.type, &ping360_type());
-  const Ping360Config& config = ping360_config(head);
+  const Ping360Config& config = device_settings<Ping360Config>(head);
   ASSERT_EQ(config.udp.size(), 1U);
   EXPECT_EQ(endpoint_text(config.udp[0].bind), "127.0.0.1:12345");
   EXPECT_EQ(config.device.id, 2);

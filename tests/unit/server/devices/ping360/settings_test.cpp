@@ -13,8 +13,8 @@ namespace {
 
 render::SonarSettings settings_of(const ping360::Transducer& command) {
   const HeadConfig head = ping360_type().make_default();
-  return ping360_sonar_settings(ping360::make_job(ping360::form_of(command), ping360_config(head).device),
-                                head);
+  return ping360_sonar_settings(
+      ping360::make_job(ping360::form_of(command), device_settings<Ping360Config>(head).device), head);
 }
 
 ping360::Transducer usual_command() {

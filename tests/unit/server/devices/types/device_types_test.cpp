@@ -3,10 +3,13 @@
 #include "server/devices/types/types.hpp"
 
 #include <set>
+#include <stdexcept>
 #include <string>
+#include <typeinfo>
 
 #include <gtest/gtest.h>
 #include <boost/asio/io_context.hpp>
+#include <boost/core/demangle.hpp>
 
 #include "renderer/sonar_settings.hpp"
 #include "server/net/pty_port.hpp"
@@ -69,6 +72,26 @@ TEST(DeviceTypes, UsualPulsesAreThoseOfTheDocuments) {
   };
   EXPECT_NEAR(pulse_s("gemini_720i"), 11 / 723e3, 1e-8);
   EXPECT_NEAR(pulse_s("ping360"), 53e-6, 1e-9);
+}
+
+TEST(DeviceTypes, RefuseTheSettingsOfAnotherType) {
+  const auto types = device_types();
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    HeadConfig head = types[i]->make_default();
+    const DeviceSettings& own = *head.device;
+    const std::string own_name = boost::core::demangle(typeid(own).name());
+    head.device = types[(i + 1) % types.size()]->make_default().device;
+    const DeviceSettings& other = *head.device;
+    const std::string other_name = boost::core::demangle(typeid(other).name());
+    try {
+      types[i]->device_id(head);
+      ADD_FAILURE() << types[i]->name();
+    } catch (const std::logic_error& error) {
+      EXPECT_EQ(error.what(), "expected " + own_name + ", got " + other_name);
+    }
+    head.device = nullptr;
+    EXPECT_THROW(types[i]->device_id(head), std::logic_error) << types[i]->name();
+  }
 }
 
 TEST(DeviceTypes, NameThePtyLinkThatCannotBeMade) {
