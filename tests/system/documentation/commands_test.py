@@ -37,7 +37,7 @@ PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.y
 
 # Files from the text: name -> (document, index of the block among the blocks of that language).
 FILES = {"harbour.sdf": ("docs/worlds.md", "xml", 0), "harbour.yaml": ("docs/worlds.md", "yaml", 0),
-         "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 0)}
+         "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 0)}
 # Files of the reader, and similar files of the repository.
 LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/ssiv_demo.tum",
         "dive.csv": "configs/trajectories/docking_demo.csv"}
@@ -53,6 +53,11 @@ heads:
   - {name: b, type: gemini_720i, sonar_id: 514,
      network: {bind: 127.0.0.3, alternate_address: 127.0.0.3, netmask: 255.0.0.0, status: [127.0.0.1]}}
 """
+# A mesh of the reader: a pyramid of 12 x 3 x 4 m in millimetres, with y up.
+CORNERS = [(-6000, 0, -2000), (6000, 0, -2000), (6000, 0, 2000), (-6000, 0, 2000), (0, 3000, 0)]
+WRECK = "solid wreck\n" + "".join(
+    "facet normal 0 0 0\nouter loop\n" + "".join("vertex %d %d %d\n" % CORNERS[k] for k in facet) + "endloop\nendfacet\n"
+    for facet in ((0, 1, 2), (0, 2, 3), (0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0))) + "endsolid wreck\n"
 DUMP = """
 engine: cpu
 world: {file: harbour.sdf}
@@ -168,6 +173,7 @@ RULES = [
     Run(CAST + r"dive.csv --tcp --to 127.0.0.1:14601 .*", before=TAKE_POSES),
     # Scripts
     Run(r"sonard check harbour.yaml\nsonard run harbour.yaml &\n.*"),
+    Run(r"sed 's/harbour.sdf/wreck.sdf/' harbour.yaml > wreck.yaml\n.*"),
     Run(r"unshare --map-root-user --net .*"),
     Run(r"sonard run configs/lock-step.yaml &\nPYTHONPATH=.*"),
 ]
@@ -272,6 +278,8 @@ class Documentation(unittest.TestCase):
         for name, original in LIKE.items():
             text = (ROOT / original).read_text(encoding="utf-8")
             (place / name).write_text(text.replace("file: worlds/", "file: configs/worlds/"), encoding="utf-8")
+        (place / "meshes").mkdir()
+        (place / "meshes" / "wreck.stl").write_text(WRECK, encoding="utf-8")
         (place / "two-heads.yaml").write_text(TWO_HEADS, encoding="utf-8")
         (place / "dump.yaml").write_text(DUMP, encoding="utf-8")
         (place / "command.sh").write_text(filled_in(command.text) + "\n", encoding="utf-8")
