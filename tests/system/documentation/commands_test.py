@@ -37,7 +37,7 @@ PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.y
 
 # Files from the text: name -> (document, index of the block among the blocks of that language).
 FILES = {"harbour.sdf": ("docs/worlds.md", "xml", 0), "harbour.yaml": ("docs/worlds.md", "yaml", 0),
-         "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 0)}
+         "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 1)}
 # Files of the reader, and similar files of the repository.
 LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/ssiv_demo.tum",
         "dive.csv": "configs/trajectories/docking_demo.csv"}
@@ -141,6 +141,7 @@ RULES = [
     Run(SONARD + r"check my.yaml"),
     Run(SONARD + r"check my.yaml --listen 5", codes=(2, 3)),  # no Gazebo runs
     Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|(gemini|oculus)-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
+    Run(SONARD + r"run ~/sonar/demo-oculus.yaml", until=READY, before="ln -s $PWD/configs ~/sonar"),
     Run(SONARD + r"run configs/gemini-netns.yaml", until=READY, addresses=VEHICLE),
     Run(SONARD + r"run configs/container.yaml", until=READY, before="ip link add eth0 type veth peer name eth1 && ip link set eth1 up && "
                                                                     "ip address add 10.61.19.201/24 dev eth0 && ip link set eth0 up"),
