@@ -146,7 +146,7 @@ RULES = [
     Run(SONARD + r"run configs/container.yaml", until=READY, before="ip link add eth0 type veth peer name eth1 && ip link set eth1 up && "
                                                                     "ip address add 10.61.19.201/24 dev eth0 && ip link set eth0 up"),
     Run(SONARD + r"render configs/\w+.yaml .*", until=FRAME, codes=(0, 143)),  # goes on where it was ended
-    Run(SONARD + r"render harbour.yaml .*", until=FRAME, codes=(0, 143)),
+    Run(SONARD + r"render (harbour|clean).yaml .*", until=FRAME, codes=(0, 143)),
     Run(SONARD + r"info LOG( --png out| \[--json\])?", before=MAKE_LOG),
     Run(SONARD + r"replay LOG( \[--config CONFIG\])?", before=MAKE_LOG, until=READY),
     # clients
@@ -279,6 +279,7 @@ class Documentation(unittest.TestCase):
         for name, original in LIKE.items():
             text = (ROOT / original).read_text(encoding="utf-8")
             (place / name).write_text(text.replace("file: worlds/", "file: configs/worlds/"), encoding="utf-8")
+        (place / "clean.yaml").write_text(block_of(*FILES["harbour.yaml"]) + block_of("docs/offline.md", "yaml", 0), encoding="utf-8")
         (place / "meshes").mkdir()
         (place / "meshes" / "wreck.stl").write_text(WRECK, encoding="utf-8")
         (place / "two-heads.yaml").write_text(TWO_HEADS, encoding="utf-8")
