@@ -49,6 +49,10 @@ ExitStatus LineViewer::run() {
     }
   });
   begin(started_);
+  if (!options_.quiet) {
+    fmt::print(stderr, "sonarview: waiting up to {:.1f} s for {}\n", seconds(options_.wait),
+               printable(awaited_text()));
+  }
   advance();
   io_.run();
   return end_status();
@@ -57,6 +61,7 @@ ExitStatus LineViewer::run() {
 // ---- The line
 
 void LineViewer::open_line(const LineAddress& address) {
+  lost_at_ = now();
   line_text_ = address.text();
   line_.emplace(io_, address,
                 SerialLine::Events{.opened = [this] { line_opened(); },
@@ -169,13 +174,13 @@ void LineViewer::check_limits(TimePoint at) {
     stop();
   } else if (line_ && !line_is_open() && lost_at_ && over(*lost_at_, options_.wait)) {
     const std::string why =
-        fmt::format("within {:.1f} s{}{}", wait_s, trouble_.empty() ? "" : ": ", trouble_);
+        fmt::format("within {:.1f} s: {}", wait_s, trouble_.empty() ? "no answer" : trouble_);
     if (spoke_) {
       give_up(ExitStatus::incomplete, line_text_ + " did not open again " + why);
     } else {
       give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why + not_open_advice());
     }
-  } else if (!met_at_ && over(started_, options_.wait)) {
+  } else if (!met_at_ && (!line_ || line_is_open()) && over(waiting_since_, options_.wait)) {
     give_up(ExitStatus::no_head, no_head_text(wait_s));
   } else if (met_at_ && line_is_open() && over(waiting_since_, options_.ping_wait)) {
     give_up(ExitStatus::incomplete, no_ping_text(seconds(options_.ping_wait)));
@@ -230,8 +235,8 @@ void LineViewer::arm_timer() {
     earlier(retry_due_.has_value(), retry_due_.value_or(wake));
     earlier(met, progress_due_);
     at_limit(met, met_at_.value_or(wake), options_.duration);
-    at_limit(!met, started_, options_.wait);
-    at_limit(!open && lost_at_, lost_at_.value_or(wake), options_.wait);
+    at_limit(!met && (!line_ || open), waiting_since_, options_.wait);
+    at_limit(line_ && !open && lost_at_, lost_at_.value_or(wake), options_.wait);
     at_limit(met && open, waiting_since_, options_.ping_wait);
   }
   timer_.expires_at(std::chrono::steady_clock::time_point(wake));

@@ -74,6 +74,8 @@ class LineViewer {
 
   /// The progress line of each second. @param fresh pings since the previous line
   virtual std::string progress_text(std::uint64_t fresh) const = 0;
+  /// What the viewer waits for after begin(): "head 2 on tcp 127.0.0.1:4001".
+  virtual std::string awaited_text() const = 0;
   /// Why no head was found within `wait_s`, if the line is open or no address is known yet.
   virtual std::string no_head_text(double wait_s) const = 0;
   /// Advice if the line cannot be opened: "; ..." or "".
@@ -122,13 +124,13 @@ class LineViewer {
 
   const TimePoint started_;
   std::optional<TimePoint> met_at_;
-  std::optional<TimePoint> lost_at_ = started_;  ///< nullopt: bytes have arrived since the last loss
-  bool spoke_ = false;                           ///< whether bytes ever arrived
-  std::optional<TimePoint> retry_due_;           ///< nullopt: the line is open, or being opened
-  std::string trouble_;                          ///< why the line was lost, or could not be opened
+  std::optional<TimePoint> lost_at_;    ///< nullopt: no line yet, or bytes have arrived since the last loss
+  bool spoke_ = false;                  ///< whether bytes ever arrived
+  std::optional<TimePoint> retry_due_;  ///< nullopt: the line is open, or being opened
+  std::string trouble_;                 ///< why the line was lost, or could not be opened
   TimePoint first_ping_at_{};
   TimePoint last_ping_at_{};
-  TimePoint waiting_since_{};  ///< start of the wait for the next ping
+  TimePoint waiting_since_ = started_;  ///< start of the wait for the head, or for the next ping
   TimePoint progress_due_{};
   std::uint64_t pings_at_progress_ = 0;
   std::optional<TimePoint> stopping_until_;

@@ -51,6 +51,11 @@ WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
 
 void WatchedHead::start(TimePoint at) {
   started_ = at;
+  if (!options_.run.quiet) {
+    fmt::print(stderr, "{}waiting up to {:.1f} s for the status packet of {} on UDP port {}\n", says_,
+               std::chrono::duration<double>(options_.run.wait).count(),
+               sonar_id_ != 0 ? fmt::format("head {}", sonar_id_) : "a head", gemini::client_port);
+  }
   client_.start(at, make_ping_config(options_.settings), options_.run.pings);
 }
 

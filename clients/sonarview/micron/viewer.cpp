@@ -53,6 +53,7 @@ class Viewer final : public LineViewer {
   void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to, sweeps_.current()); }
   void finish_pictures(ImageWriter& to) override { pictures_.finish(to, sweeps_.current()); }
   std::string progress_text(std::uint64_t fresh) const override;
+  std::string awaited_text() const override;
   std::string no_head_text(double wait_s) const override;
   std::string no_ping_text(double wait_s) const override;
   bool sum_up(const RunCounters& counters) override;
@@ -183,6 +184,10 @@ std::string Viewer::progress_text(std::uint64_t fresh) const {
                       : "turning to the first limit";
   return fmt::format("bearing {:+.1f} deg, {} lines, {} in the last second; {}",
                      micron::bearing_deg(last_bearing_), lines, fresh, done);
+}
+
+std::string Viewer::awaited_text() const {
+  return fmt::format("head {} on {}", options_.client.node, options_.line.text());
 }
 
 std::string Viewer::no_head_text(double wait_s) const {

@@ -51,6 +51,7 @@ class Viewer final : public LineViewer {
   void refresh_pictures(ImageWriter& to) override;
   void finish_pictures(ImageWriter& to) override;
   std::string progress_text(std::uint64_t fresh) const override;
+  std::string awaited_text() const override;
   std::string no_head_text(double wait_s) const override;
   std::string not_open_advice() const override;
   std::string no_ping_text(double wait_s) const override;
@@ -162,6 +163,12 @@ void Viewer::finish_pictures(ImageWriter& to) {
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; {} missed", pings(), fresh,
                      client_.statistics().pings_missed);
+}
+
+std::string Viewer::awaited_text() const {
+  return options_.head.empty()
+             ? fmt::format("the status packet of a head on UDP port {}", options_.status_port)
+             : fmt::format("a connection to tcp {}:{}", options_.head, options_.port);
 }
 
 std::string Viewer::no_head_text(double wait_s) const {

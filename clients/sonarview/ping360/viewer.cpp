@@ -70,6 +70,7 @@ class Viewer final : public LineViewer {
   void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to, sweeps_.current()); }
   void finish_pictures(ImageWriter& to) override { pictures_.finish(to, sweeps_.current()); }
   std::string progress_text(std::uint64_t fresh) const override;
+  std::string awaited_text() const override;
   std::string no_head_text(double wait_s) const override;
   std::string no_ping_text(double wait_s) const override;
   bool sum_up(const RunCounters& counters) override;
@@ -174,6 +175,10 @@ void Viewer::greet_head() {
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; turn {} has {} pings", pings(), fresh,
                      sweeps_.current().number, sweeps_.current().lines.size());
+}
+
+std::string Viewer::awaited_text() const {
+  return fmt::format("a head on {}", options_.line.text());
 }
 
 std::string Viewer::no_head_text(double wait_s) const {
