@@ -49,11 +49,21 @@ namespace {
 constexpr const char* exit_code_help =
     "Exit codes:\n"
     "  0   success: ended by SIGINT, SIGTERM or the end of the recording, or no problem found\n"
-    "  2   invalid or unreadable configuration, world, trajectory or log, or check --listen received no "
-    "pose\n"
+    "  2   invalid or unreadable configuration, world, trajectory or log\n"
     "  3   an address or port is not available, or an interface has no address (yet)\n"
     "  4   the engine is not available or failed its self-test, or the renderer failed while serving\n"
     "  5   sonard cannot write to a file or folder\n"
+    "  64  invalid command line\n"
+    "  70  a defect in sonard\n"
+    "  71  no more file descriptors, threads or memory";
+
+constexpr const char* check_exit_code_help =
+    "Exit codes:\n"
+    "  0   no problem found; with --listen: also a pose of the vehicle arrived\n"
+    "  2   a problem found, in a file or because an address or port is not available; with --listen: no pose "
+    "of the vehicle arrived\n"
+    "  3   the only problem is an interface that is missing or has no address (yet); with --listen: a pose "
+    "input cannot be opened\n"
     "  64  invalid command line\n"
     "  70  a defect in sonard\n"
     "  71  no more file descriptors, threads or memory";
@@ -360,8 +370,7 @@ int main_program(int argc, char** argv) {
                           "Do not test whether the addresses can be bound here");
   check_command
       ->add_option("--listen", arguments.listen_s,
-                   "Then listen to the pose inputs for this many seconds and report the poses that arrive; "
-                   "exit code 0 if a pose of the vehicle arrived")
+                   "Then listen to the pose inputs for this many seconds and report the poses that arrive")
       ->check(CLI::Range(0.1, 86'400.0))
       ->excludes(check_command->add_flag(
           "--json", arguments.json, "Print one JSON object on stdout (docs/deploy.md); not with --listen"));
@@ -423,10 +432,11 @@ int main_program(int argc, char** argv) {
                    "Hours that the clock of a .glf was ahead of UTC; default: this machine's time zone")
       ->check(CLI::Range(-14.0, 14.0));
 
-  for (CLI::App* command : {run_command, demo_command, check_command, render_command, replay_command,
-                            info_command, selftest_command}) {
+  for (CLI::App* command :
+       {run_command, demo_command, render_command, replay_command, info_command, selftest_command}) {
     command->footer(exit_code_help);
   }
+  check_command->footer(check_exit_code_help);
 
   try {
     app.parse(argc, argv);
