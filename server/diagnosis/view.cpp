@@ -206,8 +206,8 @@ std::string bed_text(const std::optional<BedView>& view, double range_m) {
     return "nothing is below it";
   }
   if (!view->nearest_m) {
-    return fmt::format("the bed below ('{}', {:.3g} m down) is outside the beam within {:.4g} m", view->body,
-                       view->below_m, range_m);
+    return fmt::format("the bed below ('{}', {:.3g} m down) is outside the beam (-3 dB) within {:.4g} m",
+                       view->body, view->below_m, range_m);
   }
   return fmt::format("the bed below ('{}') is visible from {:.3g} to {:.3g} m", view->body, *view->nearest_m,
                      *view->farthest_m);

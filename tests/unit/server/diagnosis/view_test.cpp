@@ -93,7 +93,8 @@ TEST(BedWindow, OfALevelBeamBeginsAtItsLowerEdge) {
   const auto beyond = view(mount(0, 0, 0), -10, 50);
   ASSERT_TRUE(beyond);
   EXPECT_FALSE(beyond->nearest_m);
-  EXPECT_EQ(bed_text(beyond, 50), "the bed below ('seabed', 10 m down) is outside the beam within 50 m");
+  EXPECT_EQ(bed_text(beyond, 50),
+            "the bed below ('seabed', 10 m down) is outside the beam (-3 dB) within 50 m");
 }
 
 TEST(BedWindow, StraightDownItBeginsAtTheFoot) {
