@@ -525,8 +525,8 @@ std::vector<Counter> Device::counts() const {
            "{} ping configurations requested unsupported data (I/Q, channels) or run mode 3"},
           {"locked_out", count.locked_out, Shown::warns,
            "{} commands were dropped: another client uses the head (lock_to_first)"},
-          {"topside_changes", count.client_changes},
-          {"topside_timeouts", count.client_timeouts},
+          {"client_changes", count.client_changes},
+          {"client_timeouts", count.client_timeouts},
           {"reboots", count.reboots}};
 }
 

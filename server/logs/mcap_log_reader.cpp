@@ -102,7 +102,7 @@ bool McapLogReader::add_image(std::span<const std::uint8_t> bytes) {
   }
   LoggedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()), false);
   if (head.pings.empty()) {
-    head.type = image->device();
+    head.type = image->type();
     head.bearings_rad.assign(image->bearings_rad().begin(), image->bearings_rad().end());
   }
   head.pings.push_back({.time_ns = image->transmit_time_ns(),
@@ -120,7 +120,7 @@ bool McapLogReader::add_line(std::span<const std::uint8_t> bytes) {
   }
   LoggedHead& head = this->head(line->head(), static_cast<std::uint16_t>(line->device_id()), true);
   if (head.pings.empty()) {
-    head.type = line->device();
+    head.type = line->type();
   }
   head.pings.push_back({.time_ns = line->transmit_time_ns(),
                         .settings = settings_of(*line),

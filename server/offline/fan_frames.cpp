@@ -162,7 +162,7 @@ std::string FanFrames::sidecar(int frame, const render::PingRequest& request) co
       frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(frame), unix_ns(frame)});
   json["device_id"] = head_.type->device_id(head_);
   json["ping_number"] = frame;
-  json["stream"] = place_.head;
+  json["head_index"] = place_.head;
   json["seed"] = head_.seed;
   if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
     json["element_seed"] = *element_seed;

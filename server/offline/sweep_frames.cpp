@@ -194,7 +194,7 @@ std::string SweepFrames::sidecar(int frame) const {
       frame_json({frame, head_.name, std::string(head_.type->name()), times_.at(first), unix_ns(frame)});
   json["device_id"] = head_.type->device_id(head_);
   json["first_ping_number"] = first;
-  json["stream"] = head_index_;
+  json["head_index"] = head_index_;
   json["seed"] = head_.seed;
   if (const auto& element_seed = head_.acoustics.aperture.element_seed) {
     json["element_seed"] = *element_seed;

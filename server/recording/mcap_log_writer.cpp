@@ -28,7 +28,7 @@ log::SonarImage image_message(const PingSent& sent, const HeadToRecord& head, st
   const PingRecord& ping = sent.ping;
   log::SonarImage image;
   image.set_head(head.name);
-  image.set_device(head.type);
+  image.set_type(head.type);
   image.set_device_id(head.device_id);
   image.set_ping_number(ping.number);
   image.set_transmit_time_ns(transmit_ns);
@@ -53,7 +53,7 @@ log::ScanLine line_message(const PingSent& sent, const HeadToRecord& head, std::
   const PingRecord& ping = sent.ping;
   log::ScanLine line;
   line.set_head(head.name);
-  line.set_device(head.type);
+  line.set_type(head.type);
   line.set_device_id(head.device_id);
   line.set_line_number(ping.number);
   line.set_transmit_time_ns(transmit_ns);

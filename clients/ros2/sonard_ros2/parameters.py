@@ -26,7 +26,7 @@ class Parameter:
     def checked(self, value: Value) -> Value:
         """Returns the value in the type of the default. Raises ValueError if it is not allowed."""
         if self.choices and value not in self.choices:
-            raise ValueError(f"parameter {self.name} is '{value}', expected {' or '.join(map(str, self.choices))}")
+            raise ValueError(f"parameter {self.name} is '{value}', expected {' or '.join(str(choice) for choice in self.choices if choice != '')}")
         if self.lowest is not None and self.highest is not None:
             is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not is_number or not self.lowest <= float(value) <= self.highest:
@@ -46,7 +46,8 @@ POSE_BRIDGE = (
 )
 
 SONAR_BRIDGE = (
-    Parameter("device", "gemini", "the type of head", choices=("gemini", "micron")),
+    Parameter("type", "gemini", "the type of head", choices=("gemini", "micron")),
+    Parameter("device", "", "former name of type; it is used if it is set", choices=("", "gemini", "micron")),
     Parameter("frame_id", "sonar", "the head's frame: x ahead, y to port, z up"),
     Parameter("range_m", 20.0, "range of the pings in metres", 1.0, 150.0),
     Parameter("gain_percent", 50.0, "gain of the head in percent", 0.0, 100.0),

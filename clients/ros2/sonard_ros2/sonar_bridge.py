@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node that is a client of one head, emulated or real, and publishes its pings.
 
-    ros2 run sonard_ros2 sonar_bridge --ros-args -p device:=gemini -p range_m:=20.0
+    ros2 run sonard_ros2 sonar_bridge --ros-args -p type:=gemini -p range_m:=20.0
 
 Pings of a Gemini are published on `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `image` (sensor_msgs/Image),
 lines of a Micron on `scan` (sensor_msgs/LaserScan).
@@ -34,7 +34,9 @@ class SonarBridge(Node):
         super().__init__("sonar_bridge")
         self._options = parameters.declare(self, parameters.SONAR_BRIDGE)
         self._beams_frame_id = f"{self._options.frame_id}_beams"
-        if self._options.device == "gemini":
+        if self._options.device:
+            self.get_logger().warning(f"parameter device is now type: use type:={self._options.device}")
+        if (self._options.device or self._options.type) == "gemini":
             self._sonar = self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE)
             self._image = self.create_publisher(Image, "image", _QUEUE)
             self._broadcaster = StaticTransformBroadcaster(self)

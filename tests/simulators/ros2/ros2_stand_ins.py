@@ -99,6 +99,9 @@ class Logger:
     def info(self, text):
         ros.say("info", text)
 
+    def warning(self, text):
+        ros.say("warning", text)
+
     def error(self, text, *, throttle_duration_sec=None):
         ros.say("error", text)
 

@@ -166,6 +166,7 @@ class Parameters(unittest.TestCase):
         self.refused(PoseBridge, "source is 'gps', expected odometry or pose or tf", source="gps")
         self.refused(PoseBridge, "axes is 'flu', expected enu_flu or ned_frd", axes="flu")
         self.refused(PoseBridge, "port is 0, expected a number from 1 to 65535", port=0)
+        self.refused(SonarBridge, "type is 'oculus', expected gemini or micron", type="oculus")
         self.refused(SonarBridge, "device is 'oculus', expected gemini or micron", device="oculus")
         self.refused(SonarBridge, "range_m is far, expected a number from 1 to 150", range_m="far")
         self.refused(SonarBridge, "gain_percent is nan", gain_percent=math.nan)
@@ -175,10 +176,17 @@ class Parameters(unittest.TestCase):
             PoseBridge()
 
     def test_a_whole_number_for_one_with_decimals(self):
-        ros.reset(range_m=30, device="micron")
+        ros.reset(range_m=30, type="micron")
         node = SonarBridge()
         self.addCleanup(node.destroy_node)
         self.assertIs(type(node._options.range_m), float)
+
+    def test_the_former_name_of_type(self):
+        ros.reset(device="micron")
+        node = SonarBridge()
+        self.addCleanup(node.destroy_node)
+        self.assertIn(("warning", "parameter device is now type: use type:=micron"), ros.log)
+        self.assertEqual(list(ros.published), ["scan"])
 
     def test_the_page_lists_them(self):
         with open(os.path.join(SOURCE, "docs", "simulators", "ros2.md"), encoding="utf-8") as file:
@@ -191,7 +199,7 @@ class Parameters(unittest.TestCase):
 class Stamps(unittest.TestCase):
     def stamp(self, now_ns):
         """The stamp of a ping with its last bin at 15 m (20 ms there and back), if it is complete at `now_ns`."""
-        ros.reset(device="micron")
+        ros.reset(type="micron")
         node = SonarBridge()
         self.addCleanup(node.destroy_node)
         node.get_clock = lambda: SimpleNamespace(now=lambda: Time(nanoseconds=now_ns))
@@ -219,7 +227,7 @@ class PackageFiles(unittest.TestCase):
                          [("sonard_ros2", "pose_bridge"), ("sonard_ros2", "sonar_bridge")])
         # Each node gets all its parameters from arguments with the node's own defaults.
         for node, kind in zip(nodes, (PoseBridge, SonarBridge)):
-            ros.reset(device="micron")
+            ros.reset(type="micron")
             kind().destroy_node()
             (values,) = node.parameters
             self.assertEqual({name: value.value.variable_name for name, value in values.items()},
@@ -402,7 +410,7 @@ class Ros2(OwnMachine):
 
     def test_micron(self):
         self.start(MICRON)
-        self.nodes(PoseBridge, SonarBridge, device="micron", range_m=6, bins=300)
+        self.nodes(PoseBridge, SonarBridge, type="micron", range_m=6, bins=300)
         ros.publish("/odom", odometry(0, 0, 0))
         turn = ros.wait(lambda: ros.published["scan"][50:250] if len(ros.published["scan"]) >= 250 else None, 2 * PATIENCE_S)
         steps = numpy.diff([line.angle_min for line in turn]) % (2 * math.pi)
@@ -429,7 +437,7 @@ class Ros2(OwnMachine):
         self.comes_back(GEMINI, "sonar")
 
     def test_a_micron_comes_back(self):
-        self.comes_back(MICRON, "scan", device="micron")
+        self.comes_back(MICRON, "scan", type="micron")
 
     def test_no_head(self):
         self.nodes(SonarBridge)
@@ -448,7 +456,7 @@ class Ros2(OwnMachine):
         self.assertNotIn("Traceback", program.output())
 
     def test_end_without_a_head(self):
-        for arguments in (["pose_bridge"], ["sonar_bridge"], ["sonar_bridge", "device=micron"]):
+        for arguments in (["pose_bridge"], ["sonar_bridge"], ["sonar_bridge", "type=micron"]):
             with self.subTest(arguments):
                 program = self.node(*arguments)
                 if arguments[0] == "pose_bridge":
@@ -480,9 +488,9 @@ class Ros2(OwnMachine):
             self.expect_end(program, signal_number)
 
     def test_a_wrong_parameter_ends_it(self):
-        program = self.node("sonar_bridge", "device=oculus")
+        program = self.node("sonar_bridge", "type=oculus")
         self.assertEqual(program.wait(PATIENCE_S), 1)
-        self.assertEqual(program.output(), "parameter device is 'oculus', expected gemini or micron")
+        self.assertEqual(program.output(), "parameter type is 'oculus', expected gemini or micron")
 
 
 def main():

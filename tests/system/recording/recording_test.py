@@ -581,7 +581,7 @@ class Faults(RecordingTest):
         self.assertGreaterEqual(count, int(head["pings_sent"]))
         self.assertLessEqual(count, int(head["pings_sent"]) + len(vanished))
         self.assertGreater(int(head["lines_resent"]), 100)
-        self.assertEqual(head["topside_timeouts"], "1")
+        self.assertEqual(head["client_timeouts"], "1")
 
         numbers = [int(message["number"]) for message in messages["image"]]
         self.assertLess(numbers[-1], 256)

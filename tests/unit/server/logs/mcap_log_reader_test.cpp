@@ -190,11 +190,11 @@ TEST(McapLogReader, HasEveryScanLineAndHowItTravelled) {
 TEST(McapLogReader, SaysWhichDevicesItsHeadsWere) {
   McapLog log;
   log::SonarImage said = image(0);
-  said.set_device("gemini_720i");
+  said.set_type("gemini_720i");
   log.add(log.images, start_ns, said);
   log::SonarImage other = image(1);
   other.set_head("port");
-  other.set_device("blueview_p900");
+  other.set_type("blueview_p900");
   log.add(log.images, start_ns, other);
   log.add(log.images, start_ns, [] {
     log::SonarImage silent = image(2);
@@ -202,7 +202,7 @@ TEST(McapLogReader, SaysWhichDevicesItsHeadsWere) {
     return silent;
   }());
   log::ScanLine scanned = line(0);
-  scanned.set_device("micron");
+  scanned.set_type("micron");
   log.add(log.lines, start_ns, scanned);
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
   const LogFile file(temporary.path());

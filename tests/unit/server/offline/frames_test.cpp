@@ -258,7 +258,7 @@ TEST(FanFrames, SayWhatTheyAreAndWithWhatTheyAreMade) {
   for (const char* line :
        {"\n  \"frame\": 1,\n", "\n  \"head\": \"bow\",\n", "\n  \"type\": \"gemini_720i\",\n",
         "\n  \"stamp_s\": 100.5,\n", "\n  \"device_id\": 777,\n", "\n  \"ping_number\": 1,\n",
-        "\n  \"stream\": 3,\n", "\n  \"seed\": 5,\n", R"("axes":["line","beam"],"shape":[30,256]})",
+        "\n  \"head_index\": 3,\n", "\n  \"seed\": 5,\n", R"("axes":["line","beam"],"shape":[30,256]})",
         "\n  \"truth\": null\n",
         R"("settings": {"range_m":1.0,"gain_percent":50.0,"sound_speed_mps":1500.0,)"
         R"("compression":2,"bits":8,"native_lines":121,"period_s":0.5},)"}) {
