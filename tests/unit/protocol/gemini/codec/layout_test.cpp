@@ -47,7 +47,8 @@ TEST(Layout, Header) {
   EXPECT_EQ(encode(*decode_command(bytes)), bytes);
 }
 
-TEST(Layout, PingConfigOfSection5) {
+// Section 5.
+TEST(Layout, PingConfig) {
   const Bytes bytes = counting_datagram(MessageType::ping_config, 68);
   const auto config = message_in<PingConfig>(decode_command(bytes));
   EXPECT_EQ(config.idents[0], at(8, 2));
@@ -84,7 +85,8 @@ TEST(Layout, PingConfigOfSection5) {
   EXPECT_EQ(encode(config), bytes);
 }
 
-TEST(Layout, StatusOfSection3_3) {
+// Section 3.3.
+TEST(Layout, Status) {
   const Bytes bytes = counting_datagram(MessageType::status, 110);
   const auto status = message_in<Status>(decode_report(bytes));
   EXPECT_EQ(status.firmware_version, at(8, 2));
@@ -131,7 +133,8 @@ TEST(Layout, StatusOfSection3_3) {
   EXPECT_EQ(encode(status), bytes);
 }
 
-TEST(Layout, PingHeadOfSection6_2) {
+// Section 6.2.
+TEST(Layout, PingHead) {
   Bytes bytes = counting_datagram(MessageType::ping_head, 48);
   const auto head = message_in<PingHead>(decode_report(bytes));
   EXPECT_EQ(head.ping_id, at(8, 2));
@@ -156,7 +159,8 @@ TEST(Layout, PingHeadOfSection6_2) {
   EXPECT_EQ(encode(head), bytes);
 }
 
-TEST(Layout, PingLineAndTailOfSections6_4And6_9) {
+// Sections 6.4 and 6.9.
+TEST(Layout, PingLineAndTail) {
   Bytes line_bytes = counting_datagram(MessageType::ping_line, 16);
   const std::size_t words = at(14, 2) >> 7;
   line_bytes.resize(16 + 4 * words, 0xCD);
@@ -174,7 +178,8 @@ TEST(Layout, PingLineAndTailOfSections6_4And6_9) {
   EXPECT_EQ(tail.flags, 9);
 }
 
-TEST(Layout, NetworkConfigOfSection3_6) {
+// Section 3.6.
+TEST(Layout, NetworkConfig) {
   const Bytes bytes = counting_datagram(MessageType::network_config, 22);
   const auto config = message_in<NetworkConfig>(decode_command(bytes));
   EXPECT_EQ(config.ethernet_ifg, 8);
@@ -189,7 +194,8 @@ TEST(Layout, NetworkConfigOfSection3_6) {
   EXPECT_EQ(encode(config), bytes);
 }
 
-TEST(Layout, RetryRequestOfSection3_5) {
+// Section 3.5.
+TEST(Layout, RetryRequest) {
   const auto retry =
       message_in<RetryRequest>(decode_command(counting_datagram(MessageType::retry_request, 16)));
   EXPECT_EQ(static_cast<std::uint16_t>(retry.kind), at(8, 2)) << "an unknown kind is kept as it came";
@@ -197,7 +203,8 @@ TEST(Layout, RetryRequestOfSection3_5) {
   EXPECT_EQ(retry.line_count, at(12, 2));
 }
 
-TEST(Layout, TestResultOfSection3_10) {
+// Section 3.10.
+TEST(Layout, TestResult) {
   const Bytes bytes = counting_datagram(MessageType::test_result, 54);
   const auto result = message_in<TestResult>(decode_report(bytes));
   EXPECT_EQ(result.marks[0], at(8, 2));

@@ -357,7 +357,7 @@ void expect_one_ping_an_angle(StepLoop loop, std::chrono::nanoseconds render_tim
 // The loop begins at 200 gradians, which it draws straight ahead. The head needs 1.2 s to this angle after
 // boot. The loop waits 6 ms per gradian plus 200 ms for each answer. With a slower renderer it repeats each
 // command.
-TEST(Ping360Clients, PingViewerWithFirmware3_3_0GetsOnePingAnAngle) {
+TEST(Ping360Clients, PingViewerWithFirmware330GetsOnePingAnAngle) {
   for (const int step : {1, 5}) {
     for (const auto render_time : {5ms, 300ms}) {
       Bench bench;
