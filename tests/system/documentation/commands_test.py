@@ -135,7 +135,7 @@ RULES = [
     Run(SONARD + r"demo( <device>)?", until=PROGRESS),
     Run(SONARD + r"selftest( --json| \[--engine E\] \[--gpu-device D\] \[--json\])?"),
     Run(SONARD + r"check (--json )?CONFIG( \[--no-network\] \[--json\])?"),
-    Run(SONARD + r"check --no-network configs/gemini-netns.yaml"),
+    Run(SONARD + r"check --no-network (configs/gemini-netns.yaml|CONFIG)"),
     Run(SONARD + r"check CONFIG --listen (5|SECONDS)", before="posecast configs/trajectories/docking_demo.csv --loop &"),
     Run(SONARD + r"check configs/ardusub.yaml --listen 5", codes=(2,)),  # no vehicle sends
     Run(SONARD + r"check my.yaml"),
