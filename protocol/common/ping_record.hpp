@@ -42,6 +42,19 @@ struct PingRecord {
   std::vector<std::uint8_t> wire;  ///< the message on the wire without its samples; empty: not kept
 };
 
+/// The record of a scanning head's ping, without samples, `wire`, number and transmit time.
+inline PingRecord line_record(const PingJob& job) {
+  PingRecord record;
+  record.settings = {.bins = job.bins(),
+                     .beams = 1,
+                     .bin_m = job.bin_m(),
+                     .sound_speed_mps = job.sound_speed_mps,
+                     .gain_percent = job.gain_percent,
+                     .frequency_hz = job.frequency_hz};
+  record.bearings_rad = {job.bearing_rad};
+  return record;
+}
+
 /// A recorded ping to send again unchanged. A head that plays back ignores a client's settings and sends it.
 struct ReplayedPing {
   std::uint64_t record = 0;  ///< PingJob::record
