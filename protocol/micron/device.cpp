@@ -63,9 +63,8 @@ class Device::Impl {
   Impl(const DeviceConfig& config, TimePoint start)
       : config_(validated(config)),
         warnings_(config_),
-        scanner_(config_, counters_),
+        scanner_(config_, start, counters_),
         input_(max_command_frame_size),
-        power_up_(start),
         clock_zero_(start),
         next_alive_(start) {}
 
@@ -122,7 +121,6 @@ class Device::Impl {
   Scanner scanner_;
   FrameBuffer input_;
 
-  const TimePoint power_up_;
   TimePoint boot_end_{};    ///< in the future while the head boots
   TimePoint clock_zero_{};  ///< time at which the clock of the head was or would have been 0
   TimePoint next_alive_{};
@@ -334,14 +332,7 @@ Actions Device::Impl::actions(TimePoint now) {
     actions.send.push_back({Outgoing::To::everybody, {}, SharedBytes(std::move(frame))});
   }
   actions.notices = std::exchange(notices_, {});
-  actions.record = scanner_.take_record();
-  actions.render = scanner_.take_job();
-  if (actions.render) {
-    actions.render->transmit_us = static_cast<std::uint64_t>((actions.render->transmit_time - power_up_) /
-                                                             std::chrono::microseconds{1});
-  }
-  actions.cancelled = scanner_.cancelled();
-  actions.next_ping = scanner_.next_ping();
+  scanner_.report(actions);
   actions.wake_at = next_deadline();
   return actions;
 }
@@ -386,16 +377,14 @@ Actions Device::step(TimePoint now, const Event& event) {
 
 PingProgress Device::progress() const {
   const DeviceCounters& count = counters();
-  return {.sent = count.lines_sent,
-          .ended = count.lines_sent + count.pings_failed + count.pings_cancelled,
-          .messages = count.lines_sent};
+  return {.sent = count.pings_sent, .ended = count.pings_ended(), .messages = count.pings_sent};
 }
 
 std::vector<Counter> Device::counts() const {
   using Shown = Counter::Shown;
   const DeviceCounters& count = counters();
   return {
-      {"lines_sent", count.lines_sent},
+      {"lines_sent", count.pings_sent},
       {"pings_failed", count.pings_failed},
       {"pings_cancelled", count.pings_cancelled},
       {"commands", count.commands},

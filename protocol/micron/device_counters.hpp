@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
+#include "protocol/common/ping_cycle.hpp"
+
 namespace sonard::micron {
 
-/// All counters only grow, also across reboots of the head.
-struct DeviceCounters {
+/// All counters only grow, also across reboots of the head. A ping is a line.
+struct DeviceCounters : PingCounters {
   std::uint64_t commands = 0;             ///< understood and for this head
   std::uint64_t dropped_bytes = 0;        ///< not part of a frame
   std::uint64_t bad_frames = 0;           ///< with undecodable contents
@@ -19,12 +21,6 @@ struct DeviceCounters {
   std::uint64_t requests_beyond_cap = 0;  ///< requested lines beyond the cap, which are not owed
   std::uint64_t boots = 0;                ///< after the first one
   std::uint64_t alives_sent = 0;
-
-  std::uint64_t pings_started = 0;  ///< given out for rendering
-  std::uint64_t lines_sent = 0;
-  std::uint64_t pings_failed = 0;     ///< could not be rendered, or the line had the wrong size
-  std::uint64_t pings_cancelled = 0;  ///< replaced by new parameters or a reboot
-  std::uint64_t stale_lines = 0;      ///< images of unknown jobs
 };
 
 }  // namespace sonard::micron

@@ -45,7 +45,6 @@ PingJob make_line_job(const ReplayedPing& recorded, const HeadData& line) {
            recorded.settings.sound_speed_mps);
   set_gain(job, line.gain);
   job.transmit = (line.control & control_bits::transmit_off) == 0;
-  job.record = recorded.record;
   job.settings = settings_of(job, line);
   return job;
 }

@@ -13,7 +13,7 @@ namespace sonard::micron {
 /// sets number and transmit time.
 PingJob make_line_job(const HeadCommand& parameters, const DeviceConfig& config, int bearing);
 
-/// The job of a recorded line with the header `line`. The caller sets number and transmit time.
+/// The job of a recorded line with the header `line`. The caller sets number, transmit time and record.
 PingJob make_line_job(const ReplayedPing& recorded, const HeadData& line);
 
 }  // namespace sonard::micron

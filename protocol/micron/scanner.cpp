@@ -19,11 +19,16 @@ constexpr std::chrono::milliseconds lateness_allowed{50};
 
 }  // namespace
 
-Scanner::Scanner(const DeviceConfig& config, DeviceCounters& counters)
-    : config_(config), counters_(counters), motor_(bearing_ahead), sweep_(config.limits_order) {}
+Scanner::Scanner(const DeviceConfig& config, TimePoint power_up, DeviceCounters& counters)
+    : config_(config),
+      counters_(counters),
+      motor_(bearing_ahead),
+      sweep_(config.limits_order),
+      cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, power_up, counters) {
+}
 
 void Scanner::restart(TimePoint now, TimePoint begin) {
-  cancel_ping();
+  cycle_.cancel();
   parameters_.reset();
   motor_error_ = false;
   owed_ = 0;
@@ -40,7 +45,7 @@ void Scanner::restart(TimePoint now, TimePoint begin) {
 void Scanner::configure(TimePoint now, const HeadCommand& parameters) {
   settle(now);
   if (!config_.plays_back) {
-    cancel_ping();  // no line with old parameters may follow the command the command
+    cycle_.cancel();  // no line with old parameters may follow the command
   }
   parameters_ = parameters;
   configured_at_ = now;
@@ -102,28 +107,14 @@ void Scanner::take_up_position(TimePoint begin) {
 // ---- Pings
 
 void Scanner::feed(const std::optional<ReplayedPing>& ping) {
-  const auto line = ping ? recorded_line(ping->wire) : std::nullopt;
-  fed_ = line ? std::optional(FedPing{*ping, *line}) : std::nullopt;
+  cycle_.feed(ping && recorded_line(ping->wire) ? ping : std::nullopt);
 }
 
 std::optional<TimePoint> Scanner::ping_possible() const {
-  if (!placed_ || !parameters_ || owed_ == 0 || ping_ || unanswered_ || (config_.plays_back && !fed_)) {
+  if (!placed_ || !parameters_ || owed_ == 0) {
     return std::nullopt;
   }
-  const TimePoint possible = std::max({ready_at_, owed_since_, free_since_});
-  if (config_.simulated_time) {
-    return possible;  // the server observes the line rate in simulated time
-  }
-  const TimePoint due = std::max(possible, next_ping_at_);
-  return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
-}
-
-std::optional<NextPing> Scanner::next_ping() const {
-  const auto possible = ping_possible();
-  if (!possible) {
-    return std::nullopt;
-  }
-  return NextPing{*possible, wanted_period(), line_timing(*parameters_, config_, 0).listen};
+  return cycle_.next_start(std::max({ready_at_, owed_since_, cycle_.answered_at()}), next_ping_at_);
 }
 
 /// Time from one ping of the sweep to the next.
@@ -133,11 +124,11 @@ nanoseconds Scanner::wanted_period() const {
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return config_.simulated_time && !due_ ? std::nullopt : ping_possible();
+  return cycle_.granted() ? ping_possible() : std::nullopt;
 }
 
 std::optional<TimePoint> Scanner::line_due() const {
-  return ping_ && !ping_->samples.empty() ? std::optional{ping_->line_due} : std::nullopt;
+  return cycle_.rendered() ? std::optional{ping_.line_due} : std::nullopt;
 }
 
 /// When a rendered line may be sent.
@@ -150,87 +141,47 @@ TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) 
 }
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
-  due_ = false;
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
-  if (const auto fed = std::exchange(fed_, std::nullopt)) {
-    repeat(transmit_time, *fed);
-  } else {
-    aim(transmit_time);
-  }
-  keep_settings(*job_);
-  ping_->number = job_->number = next_ping_number_++;
-  ping_->transmit_time = job_->transmit_time = transmit_time;
-  ++counters_.pings_started;
+  const auto& fed = cycle_.fed();
+  cycle_.begin(fed ? repeat(transmit_time, *fed) : aim(transmit_time), transmit_time);
 }
 
 /// Makes a job at the bearing of the sweep with the parameters of the client.
-void Scanner::aim(TimePoint transmit_time) {
-  job_ = make_line_job(*parameters_, config_, sweep_.bearing());
-  job_->period = wanted_period();
+PingJob Scanner::aim(TimePoint transmit_time) {
+  PingJob job = make_line_job(*parameters_, config_, sweep_.bearing());
+  job.period = wanted_period();
   const nanoseconds line_after = line_timing(*parameters_, config_, 0).listen + config_.line_overhead;
-  Ping ping;
-  ping.line = make_line();
-  ping.line_due = line_due_of(transmit_time, line_after);
-  ping_ = std::move(ping);
-}
-
-/// Makes a job for a recorded line. Its line leaves when its echoes have arrived; its due time sets the pace.
-void Scanner::repeat(TimePoint transmit_time, const FedPing& fed) {
-  job_ = make_line_job(fed.ping, fed.line);
-  job_->differences = differences(*parameters_, *job_, fed.line);
-  motor_.place(fed.line.bearing);
-  const nanoseconds listening = job_->listening_time;
-  Ping ping;
-  ping.line = fed.line;
-  ping.line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
-  ping_ = std::move(ping);
-}
-
-void Scanner::keep_settings(const PingJob& job) {
-  ping_->settings = {.bins = job.bins(),
-                     .beams = 1,
-                     .bin_m = job.bin_m(),
-                     .sound_speed_mps = job.sound_speed_mps,
-                     .gain_percent = job.gain_percent,
-                     .frequency_hz = carrier_hz};
-  ping_->bearing_rad = job.bearing_rad;
-}
-
-std::optional<PingJob> Scanner::take_job() {
-  auto job = std::exchange(job_, std::nullopt);
-  if (job) {
-    unanswered_ = job->number;
-  }
+  ping_.line = make_line();
+  ping_.line_due = line_due_of(transmit_time, line_after);
   return job;
 }
 
-/// Marks the job as answered; true if it belongs to the acquired ping.
-bool Scanner::answered(TimePoint now, std::uint64_t number) {
-  if (unanswered_ != number) {
-    ++counters_.stale_lines;
-    return false;
-  }
-  unanswered_.reset();
-  free_since_ = now;
-  return ping_ && ping_->number == number;
+/// Makes a job for a recorded line. Its line leaves when its echoes have arrived; its due time sets the pace.
+PingJob Scanner::repeat(TimePoint transmit_time, const ReplayedPing& fed) {
+  ping_.line = recorded_line(fed.wire).value();
+  PingJob job = make_line_job(fed, ping_.line);
+  job.differences = differences(*parameters_, job, ping_.line);
+  motor_.place(ping_.line.bearing);
+  const nanoseconds listening = job.listening_time;
+  ping_.line_due = transmit_time + std::min(listening, config_.line_period.value_or(listening));
+  return job;
 }
 
 void Scanner::on_image(TimePoint now, const PingImage& image) {
-  if (!answered(now, image.number)) {
+  if (!cycle_.on_image(now, image.number)) {
     return;
   }
-  if (image.u8.size() != static_cast<std::size_t>(ping_->settings.bins)) {
-    ++counters_.pings_failed;
+  if (image.u8.size() != static_cast<std::size_t>(cycle_.job().bins())) {
+    cycle_.fail();
     end_ping();
     return;
   }
-  ping_->samples = image.u8;
-  ping_->line_due = std::max(ping_->line_due, now);
+  ping_.samples = image.u8;
+  ping_.line_due = std::max(ping_.line_due, now);
 }
 
 void Scanner::on_image_failed(TimePoint now, std::uint64_t number) {
-  if (answered(now, number)) {
-    ++counters_.pings_failed;
+  if (cycle_.on_image_failed(now, number)) {
     end_ping();
   }
 }
@@ -259,49 +210,45 @@ HeadData Scanner::make_line() const {
 }
 
 /// The bins with the bit depth of the wire.
-std::vector<std::uint8_t> Scanner::bins_of(const Ping& ping) const {
-  if (ping.line.eight_bit() || config_.plays_back) {
-    return ping.samples;
+std::vector<std::uint8_t> Scanner::bins() const {
+  if (ping_.line.eight_bit() || config_.plays_back) {
+    return ping_.samples;
   }
-  std::vector<std::uint8_t> values(ping.samples.size());
-  std::ranges::transform(ping.samples, values.begin(), [&](std::uint8_t amplitude) {
-    return to_four_bit(amplitude, ping.line.ad_low, ping.line.ad_span);
+  std::vector<std::uint8_t> values(ping_.samples.size());
+  std::ranges::transform(ping_.samples, values.begin(), [&](std::uint8_t amplitude) {
+    return to_four_bit(amplitude, ping_.line.ad_low, ping_.line.ad_span);
   });
   return values;
 }
 
-PingRecord Scanner::record_of(const Ping& ping, const HeadData& line) const {
-  PingRecord record;
-  record.number = ping.number;
-  record.transmit_time = ping.transmit_time;
-  record.settings = ping.settings;
-  record.bearings_rad = {ping.bearing_rad};
+PingRecord Scanner::record_of(const HeadData& line) const {
+  PingRecord record = line_record(cycle_.job());
+  record.settings.frequency_hz = carrier_hz;
   record.bits_per_bin = line.eight_bit() ? 8 : 4;
-  record.samples = bins_of(ping);
+  record.samples = bins();
   record.wire = recorded_wire(line, config_.node);
   return record;
 }
 
 void Scanner::send_line(std::vector<std::vector<std::uint8_t>>& out) {
-  HeadData line = ping_->line;
+  HeadData line = ping_.line;
   if (motor_error_) {
     line.status |= head_status_bits::motor_error;
   }
-  record_ = record_of(*ping_, line);
-  const auto packed =
-      line.eight_bit() ? record_->samples : pack_nibbles(record_->samples, config_.nibble_order);
+  PingRecord record = record_of(line);
+  const auto packed = line.eight_bit() ? record.samples : pack_nibbles(record.samples, config_.nibble_order);
   line.data = packed;
   out.push_back(encode(line, config_.node));
-  ++counters_.lines_sent;
-  link_free_at_ = ping_->line_due + line_timing(*parameters_, config_, 0).send;
+  ++counters_.pings_sent;
+  link_free_at_ = ping_.line_due + line_timing(*parameters_, config_, 0).send;
+  cycle_.put_on_wire(std::move(record));
   end_ping();
 }
 
-/// Ends a sent or failed ping and moves to the next bearing.
+/// Moves to the next bearing, after a sent or failed ping.
 void Scanner::end_ping() {
-  next_ping_at_ = config_.plays_back ? ping_->line_due : time_of_next_ping();
+  next_ping_at_ = config_.plays_back ? ping_.line_due : time_of_next_ping();
   --owed_;
-  ping_.reset();
 }
 
 /// Turns to the next bearing and returns the earliest time of a ping there.
@@ -309,17 +256,9 @@ TimePoint Scanner::time_of_next_ping() {
   const int way = sweep_.step();
   motor_.place(sweep_.bearing());
   const LineTiming timing = line_timing(*parameters_, config_, way);
-  const TimePoint next = ping_->transmit_time + config_.line_period.value_or(timing.period(config_));
+  const TimePoint next = cycle_.job().transmit_time + config_.line_period.value_or(timing.period(config_));
   // In half duplex the next ping waits for a late line.
   return config_.half_duplex && !config_.line_period ? std::max(next, link_free_at_ + timing.turn) : next;
-}
-
-void Scanner::cancel_ping() {
-  if (ping_) {
-    ++counters_.pings_cancelled;
-  }
-  ping_.reset();
-  job_.reset();
 }
 
 // ---- Time
@@ -338,7 +277,14 @@ std::optional<TimePoint> Scanner::next_deadline() const {
   if (!placed_) {
     return centred_at_;
   }
-  return ping_ ? line_due() : ping_due();
+  return cycle_.under_way() ? line_due() : ping_due();
+}
+
+void Scanner::report(Actions& actions) {
+  cycle_.report(actions);
+  if (const auto possible = ping_possible()) {
+    actions.next_ping = NextPing{*possible, wanted_period(), line_timing(*parameters_, config_, 0).listen};
+  }
 }
 
 }  // namespace sonard::micron

@@ -157,7 +157,7 @@ class Bench {
     }
     require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "what is cancelled is out");
     const auto& counters = device_.counters();
-    require(counters.lines_sent + counters.pings_failed + counters.pings_cancelled <= counters.pings_started,
+    require(counters.pings_sent + counters.pings_failed + counters.pings_cancelled <= counters.pings_started,
             "every line has its ping");
     require(!last_.wake_at || *last_.wake_at > now_, "the next deadline is later than now");
   }
