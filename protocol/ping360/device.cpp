@@ -54,7 +54,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
 class Device::Impl {
  public:
   Impl(const DeviceConfig& config, TimePoint start)
-      : config_(validated(config)), scanner_(config_, counters_), power_up_(start), id_(config_.id) {}
+      : config_(validated(config)), scanner_(config_, start, counters_), id_(config_.id) {}
 
   // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
@@ -127,7 +127,6 @@ class Device::Impl {
   DeviceCounters counters_;
   SettingsWarnings warnings_;
   Scanner scanner_;
-  const TimePoint power_up_;
   std::uint8_t id_;
   TimePoint silent_until_ = TimePoint::min();  ///< in the future while the head restarts
   std::vector<Client> clients_;
@@ -433,14 +432,7 @@ Actions Device::Impl::actions() {
   Actions actions;
   actions.send = std::exchange(outgoing_, {});
   actions.notices = std::exchange(notices_, {});
-  actions.record = scanner_.take_record();
-  actions.render = scanner_.take_job();
-  if (actions.render) {
-    actions.render->transmit_us = static_cast<std::uint64_t>((actions.render->transmit_time - power_up_) /
-                                                             std::chrono::microseconds{1});
-  }
-  actions.cancelled = scanner_.cancelled();
-  actions.next_ping = scanner_.next_ping();
+  scanner_.report(actions);
   actions.nobody_there = clients_.empty();
   actions.wake_at = next_deadline();
   return actions;
@@ -470,9 +462,7 @@ Actions Device::step(TimePoint now, const Event& event) {
 
 PingProgress Device::progress() const {
   const DeviceCounters& count = counters();
-  return {.sent = count.pings_sent,
-          .ended = count.pings_sent + count.pings_failed + count.pings_cancelled,
-          .messages = count.pings_sent};
+  return {.sent = count.pings_sent, .ended = count.pings_ended(), .messages = count.pings_sent};
 }
 
 std::vector<Counter> Device::counts() const {

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
+#include "protocol/common/ping_cycle.hpp"
+
 namespace sonard::ping360 {
 
 /// All counters only grow, also across resets of the head.
-struct DeviceCounters {
+struct DeviceCounters : PingCounters {
   std::uint64_t commands = 0;            ///< understood
   std::uint64_t refused = 0;             ///< answered by a nack
   std::uint64_t dropped_bytes = 0;       ///< not part of a frame
@@ -19,12 +21,6 @@ struct DeviceCounters {
   std::uint64_t clients_dropped = 0;     ///< there were too many clients
   std::uint64_t locked_out = 0;          ///< datagrams of other addresses, by DeviceConfig::lock_to_first
   std::uint64_t resets = 0;
-
-  std::uint64_t pings_started = 0;  ///< given out for rendering
-  std::uint64_t pings_sent = 0;
-  std::uint64_t pings_failed = 0;     ///< could not be rendered, or the image had the wrong size
-  std::uint64_t pings_cancelled = 0;  ///< replaced by another command
-  std::uint64_t stale_images = 0;     ///< images of unknown jobs
 };
 
 }  // namespace sonard::ping360

@@ -36,7 +36,6 @@ PingJob make_job(const PingForm& form, const DeviceConfig& config) {
 PingJob make_job(const ReplayedPing& recorded, const PingForm& form, const DeviceConfig& config) {
   PingJob job = job_of(form, config, recorded.settings.bins, recorded.settings.sound_speed_mps);
   job.bearing_rad = recorded.bearing_rad;
-  job.record = recorded.record;
   job.settings = settings_of(job, {form.settings, std::nullopt});
   return job;
 }

@@ -11,7 +11,7 @@ namespace sonard::ping360 {
 /// The job of a ping of this form. The caller sets number and transmit time.
 PingJob make_job(const PingForm& form, const DeviceConfig& config);
 
-/// The job of a recorded ping with this form. The caller sets number and transmit time.
+/// The job of a recorded ping with this form. The caller sets number, transmit time and record.
 PingJob make_job(const ReplayedPing& recorded, const PingForm& form, const DeviceConfig& config);
 
 }  // namespace sonard::ping360

@@ -23,8 +23,11 @@ constexpr std::chrono::milliseconds least_time_of_failed_ping{10};
 
 }  // namespace
 
-Scanner::Scanner(const DeviceConfig& config, DeviceCounters& counters)
-    : config_(config), counters_(counters) {}
+Scanner::Scanner(const DeviceConfig& config, TimePoint power_up, DeviceCounters& counters)
+    : config_(config),
+      counters_(counters),
+      cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, power_up, counters) {
+}
 
 void Scanner::restart(TimePoint now) {
   stop(now);
@@ -81,7 +84,7 @@ void Scanner::scan(TimePoint now, const Peer& starter, const AutoTransmit& comma
 /// In playback a ping that has begun is still sent, because it will not be fed again.
 void Scanner::end_scan(TimePoint now) {
   scan_.reset();
-  if (work_ && work_->form.scan && !(config_.plays_back && ping_)) {
+  if (work_ && work_->form.scan && !(config_.plays_back && cycle_.under_way())) {
     abandon_work(now);
   }
 }
@@ -103,8 +106,7 @@ void Scanner::forget(TimePoint now, const Peer& client) {
 }
 
 void Scanner::feed(const std::optional<ReplayedPing>& ping) {
-  const auto form = ping ? recorded_form(ping->wire) : std::nullopt;
-  fed_ = form ? std::optional(FedPing{*ping, *form}) : std::nullopt;
+  cycle_.feed(ping && recorded_form(ping->wire) ? ping : std::nullopt);
 }
 
 // ---- Angle
@@ -187,19 +189,14 @@ void Scanner::end_work(TimePoint end) {
     }
   }
   work_.reset();
-  ping_.reset();
 }
 
 void Scanner::abandon_work(TimePoint now) {
   if (!work_) {
     return;
   }
-  if (ping_) {
-    ++counters_.pings_cancelled;
-  }
   work_.reset();
-  ping_.reset();
-  job_.reset();
+  cycle_.cancel();
   place(position(now));
   busy_until_ = now;
 }
@@ -207,136 +204,83 @@ void Scanner::abandon_work(TimePoint now) {
 // ---- Pings
 
 std::optional<TimePoint> Scanner::ping_possible() const {
-  if (!work_ || !work_->transmit || ping_ || unanswered_ || (config_.plays_back && !fed_)) {
+  if (!work_ || !work_->transmit) {
     return std::nullopt;
   }
-  const TimePoint possible = std::max(work_->wanted, free_since_);
-  if (config_.simulated_time) {
-    return possible;  // the server observes the ping rate in simulated time
-  }
-  const TimePoint due = std::max(possible, work_->there_at);
-  return fed_ ? std::max(due, fed_->ping.due.value_or(due)) : due;
-}
-
-std::optional<NextPing> Scanner::next_ping() const {
-  const auto possible = ping_possible();
-  if (!possible) {
-    return std::nullopt;
-  }
-  const DeviceData& settings = work_->form.settings;
-  return NextPing{*possible, work_->period,
-                  listening_time(settings.number_of_samples, settings.sample_period)};
+  return cycle_.next_start(std::max(work_->wanted, cycle_.answered_at()), work_->there_at);
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return config_.simulated_time && !due_ ? std::nullopt : ping_possible();
+  return cycle_.granted() ? ping_possible() : std::nullopt;
 }
 
 void Scanner::start_ping(TimePoint now, TimePoint due) {
-  due_ = false;
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
-  const auto fed = std::exchange(fed_, std::nullopt);
-  PingJob job = fed ? repeat(*fed) : make_job(work_->form, config_);
+  const bool fed = cycle_.fed().has_value();
+  PingJob job = fed ? repeat(*cycle_.fed()) : make_job(work_->form, config_);
   job.period = work_->period;
-  Ping ping;
-  ping.number = job.number = next_ping_number_++;
-  ping.transmit_time = job.transmit_time = ping.send_due = transmit_time;
+  ping_.send_due = transmit_time;
   if (!config_.simulated_time) {
     // In playback a ping is sent when its echoes have arrived; its due time sets the rate.
-    ping.send_due += scaled(job.listening_time + (fed ? nanoseconds{0} : config_.ping_overhead));
+    ping_.send_due += scaled(job.listening_time + (fed ? nanoseconds{0} : config_.ping_overhead));
   }
-  ping.settings = {.bins = job.bins(),
-                   .beams = 1,
-                   .bin_m = job.bin_m(),
-                   .sound_speed_mps = job.sound_speed_mps,
-                   .gain_percent = job.gain_percent,
-                   .frequency_hz = 1e3 * settings_.transmit_frequency_khz};
-  ping.bearing_rad = job.bearing_rad;
-  ping_ = std::move(ping);
-  job_ = std::move(job);
-  ++counters_.pings_started;
+  cycle_.begin(std::move(job), transmit_time);
 }
 
 /// Uses the recorded settings, but the client's mode and scan, because clients expect them back.
-PingJob Scanner::repeat(const FedPing& fed) {
-  PingJob job = make_job(fed.ping, fed.form, config_);
-  job.differences = differences(work_->form, job, fed.form);
+PingJob Scanner::repeat(const ReplayedPing& fed) {
+  const PingForm form = recorded_form(fed.wire).value();
+  PingJob job = make_job(fed, form, config_);
+  job.differences = differences(work_->form, job, form);
   const std::uint8_t mode = work_->form.settings.mode;
-  settings_ = fed.form.settings;
+  settings_ = form.settings;
   settings_.mode = mode;
   work_->form.settings = settings_;
   place(wrapped(settings_.angle));
   return job;
 }
 
-std::optional<PingJob> Scanner::take_job() {
-  auto job = std::exchange(job_, std::nullopt);
-  if (job) {
-    unanswered_ = job->number;
-  }
-  return job;
-}
-
-/// Marks the job as answered; true if it belongs to the acquired ping.
-bool Scanner::answered(TimePoint now, std::uint64_t number) {
-  if (unanswered_ != number) {
-    ++counters_.stale_images;
-    return false;
-  }
-  unanswered_.reset();
-  free_since_ = now;
-  return ping_ && ping_->number == number;
-}
-
 void Scanner::on_image(TimePoint now, const PingImage& image) {
-  if (!answered(now, image.number)) {
+  if (!cycle_.on_image(now, image.number)) {
     return;
   }
-  if (image.u8.empty() || image.u8.size() != static_cast<std::size_t>(ping_->settings.bins)) {
-    fail_ping(now);
+  if (image.u8.empty() || image.u8.size() != static_cast<std::size_t>(cycle_.job().bins())) {
+    cycle_.fail();
+    end_failed_work(now);
     return;
   }
-  ping_->samples = image.u8;
+  ping_.samples = image.u8;
 }
 
 void Scanner::on_image_failed(TimePoint now, std::uint64_t number) {
-  if (answered(now, number)) {
-    fail_ping(now);
+  if (cycle_.on_image_failed(now, number)) {
+    end_failed_work(now);
   }
 }
 
-void Scanner::fail_ping(TimePoint now) {
-  ++counters_.pings_failed;
-  end_work(std::max(ping_->send_due, now + least_time_of_failed_ping));
-}
-
-void Scanner::keep_record(std::uint8_t id) {
-  PingRecord record;
-  record.number = ping_->number;
-  record.transmit_time = ping_->transmit_time;
-  record.settings = ping_->settings;
-  record.bearings_rad = {ping_->bearing_rad};
-  record.samples = ping_->samples;
-  record.wire = recorded_wire(work_->form, id);
-  record_ = std::move(record);
+void Scanner::end_failed_work(TimePoint now) {
+  end_work(std::max(ping_.send_due, now + least_time_of_failed_ping));
 }
 
 void Scanner::send_ping(std::uint8_t id, std::vector<Answer>& out) {
-  keep_record(id);
-  out.push_back({work_->asker, encode(message_of(work_->form, ping_->samples), id)});
+  PingRecord record = line_record(cycle_.job());
+  record.samples = ping_.samples;
+  record.wire = recorded_wire(work_->form, id);
+  cycle_.put_on_wire(std::move(record));
+  out.push_back({work_->asker, encode(message_of(work_->form, ping_.samples), id)});
   ++counters_.pings_sent;
   last_settings_ = work_->form.settings;
-  last_samples_ = std::move(ping_->samples);
+  last_samples_ = std::move(ping_.samples);
   if (work_->form.scan && scan_) {
     scan_->has_pinged = true;
   }
-  end_work(ping_->send_due);
+  end_work(ping_.send_due);
 }
 
 // ---- Time
 
 void Scanner::advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out) {
-  if (ping_ && !ping_->samples.empty() && now >= ping_->send_due) {
+  if (cycle_.rendered() && now >= ping_.send_due) {
     send_ping(id, out);
   }
   for (begin_work(); work_ && !work_->transmit && now >= work_->there_at; begin_work()) {
@@ -350,10 +294,19 @@ void Scanner::advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out) 
 }
 
 std::optional<TimePoint> Scanner::next_deadline() const {
-  if (ping_) {
-    return ping_->samples.empty() ? std::nullopt : std::optional{ping_->send_due};
+  if (cycle_.under_way()) {
+    return cycle_.rendered() ? std::optional{ping_.send_due} : std::nullopt;
   }
   return work_ && !work_->transmit ? std::optional{work_->there_at} : ping_due();
+}
+
+void Scanner::report(Actions& actions) {
+  cycle_.report(actions);
+  if (const auto possible = ping_possible()) {
+    const DeviceData& settings = work_->form.settings;
+    actions.next_ping = NextPing{*possible, work_->period,
+                                 listening_time(settings.number_of_samples, settings.sample_period)};
+  }
 }
 
 DeviceData Scanner::state(TimePoint now) const {

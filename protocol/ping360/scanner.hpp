@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "protocol/common/device.hpp"
+#include "protocol/common/ping_cycle.hpp"
 #include "protocol/ping360/device_config.hpp"
 #include "protocol/ping360/device_counters.hpp"
 #include "protocol/ping360/ping_form.hpp"
@@ -19,8 +19,7 @@ namespace sonard::ping360 {
 /// The part of a Device that turns and pings.
 ///
 /// Its *work* is the current command or, if there is no command, the next ping of the scan: the head turns to
-/// the angle, pings there and sends. There is one work at a time. A ping is *acquired* from its transmission
-/// on, when its job is issued.
+/// the angle, pings there and sends. There is one work at a time.
 class Scanner {
  public:
   /// A message for the client that requested it.
@@ -30,7 +29,8 @@ class Scanner {
   };
 
   /// Starts at angle 0 with the settings of a head at boot. `config` and `counters` must outlive the scanner.
-  Scanner(const DeviceConfig& config, DeviceCounters& counters);
+  /// The clock of jobs is 0 at `power_up`.
+  Scanner(const DeviceConfig& config, TimePoint power_up, DeviceCounters& counters);
 
   /// Restores the state at boot; keeps only the unanswered job.
   void restart(TimePoint now);
@@ -48,20 +48,15 @@ class Scanner {
 
   void on_image(TimePoint now, const PingImage& image);
   void on_image_failed(TimePoint now, std::uint64_t number);
-  /// See Actions::next_ping.
-  std::optional<NextPing> next_ping() const;
-  void next_ping_due() { due_ = true; }
+  void next_ping_due() { cycle_.grant(); }
   /// Sets the next recorded ping; a ping without a valid `wire` counts as nullopt.
   void feed(const std::optional<ReplayedPing>& ping);
 
   /// Appends the messages due at `now` to `out`, from the device `id`.
   void advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out);
   std::optional<TimePoint> next_deadline() const;
-  std::optional<PingJob> take_job();
-  /// The ping that was sent since the last call; advance() sends at most one.
-  std::optional<PingRecord> take_record() { return std::exchange(record_, std::nullopt); }
-  /// See Actions::cancelled.
-  std::optional<std::uint64_t> cancelled() const { return ping_ ? std::nullopt : unanswered_; }
+  /// Sets the members of the actions that concern pings. advance() sends at most one ping.
+  void report(Actions& actions);
 
   /// The last ping with its settings and angle. Before the first ping and after a move without a ping: the
   /// current settings and angle without samples. Valid until the next call of another function.
@@ -93,17 +88,10 @@ class Scanner {
     TimePoint there_at{};               ///< when the head has turned to the angle
     std::chrono::nanoseconds period{};  ///< from the last ping to this one
   };
+  /// The ping under way.
   struct Ping {
-    std::uint64_t number = 0;
-    TimePoint transmit_time{};
     TimePoint send_due{};
-    RecordedSettings settings;
-    double bearing_rad = 0.0;
-    std::vector<std::uint8_t> samples;  ///< empty: not rendered yet
-  };
-  struct FedPing {
-    ReplayedPing ping;
-    PingForm form;
+    std::vector<std::uint8_t> samples;  ///< set at the arrival of the image
   };
 
   bool is_repeated(const Peer& asker, const Transducer& command) const;
@@ -118,11 +106,9 @@ class Scanner {
   std::optional<TimePoint> ping_possible() const;
   std::optional<TimePoint> ping_due() const;
   void start_ping(TimePoint now, TimePoint due);
-  PingJob repeat(const FedPing& fed);
-  void fail_ping(TimePoint now);
+  PingJob repeat(const ReplayedPing& fed);
+  void end_failed_work(TimePoint now);
   void send_ping(std::uint8_t id, std::vector<Answer>& out);
-  void keep_record(std::uint8_t id);
-  bool answered(TimePoint now, std::uint64_t number);
 
   const DeviceConfig& config_;
   DeviceCounters& counters_;
@@ -136,21 +122,15 @@ class Scanner {
   // Commands.
   std::deque<Command> queue_;
   std::optional<Scan> scan_;
-  std::optional<FedPing> fed_;
 
   // Work.
   DeviceData settings_;       ///< of the current or last work
   DeviceData last_settings_;  ///< of the last ping
   std::vector<std::uint8_t> last_samples_;
   std::optional<Work> work_;
-  std::optional<Ping> ping_;
-  bool due_ = false;
-  std::uint64_t next_ping_number_ = 0;
-  std::optional<PingRecord> record_;         ///< not yet taken
-  std::optional<PingJob> job_;               ///< not yet taken
-  std::optional<std::uint64_t> unanswered_;  ///< number of the job that is taken but not yet answered
-  TimePoint busy_until_{};                   ///< end of the last work by the timing of the head
-  TimePoint free_since_{};                   ///< when the last job was answered
+  PingCycle cycle_;
+  Ping ping_;
+  TimePoint busy_until_{};  ///< end of the last work by the timing of the head
 };
 
 /// True if two messages are from one client.
