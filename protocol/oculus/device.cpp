@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "protocol/common/ping_cycle.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/frame.hpp"
 #include "protocol/oculus/recorded_form.hpp"
@@ -46,34 +47,37 @@ class Device::Impl {
         next_status_(boot_time),
         address_(octets(config.address)),
         netmask_(octets(config.netmask)),
-        user_config_{address_, netmask_, 0} {}
+        user_config_{address_, netmask_, 0},
+        cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, boot_time,
+               counters_) {}
 
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& received);
   void take(TimePoint now, const ClientCame& came);
   void take(TimePoint now, const ClientGone& gone);
-  void take(TimePoint, const PingRendered& ping);
-  void take(TimePoint, const PingNotRendered& ping);
+  void take(TimePoint now, const PingRendered& ping);
+  void take(TimePoint now, const PingNotRendered& ping) { cycle_.on_image_failed(now, ping.number); }
   void take(TimePoint, const TriggerEdge&) {}   // the model has no trigger input
   void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead& sensors) { depth_m_ = sensors.readings.depth_m; }
-  void take(TimePoint, const PingFed& feed) { fed_ = feed.ping; }
-  void take(TimePoint, const NextPingDue&) { due_ = true; }
+  void take(TimePoint, const PingFed& feed) { cycle_.feed(feed.ping); }
+  void take(TimePoint, const NextPingDue&) { cycle_.grant(); }
 
   void advance(TimePoint now);
   Actions actions();
   void move_to(Ipv4 address, Ipv4 netmask);
-  PingProgress progress() const { return {sent_, sent_ + failed_ + cancelled_count_, sent_}; }
+  PingProgress progress() const {
+    return {counters_.pings_sent, counters_.pings_ended(), counters_.pings_sent};
+  }
   std::vector<Counter> counts() const;
 
  private:
+  /// The ping under way.
   struct Ping {
-    std::uint64_t number = 0;
     PingPlan plan;
-    TimePoint transmit_time{};
     double gain_percent = 0.0;        ///< for logs
     double amplitude_exponent = 1.0;  ///< for logs
-    std::vector<std::uint8_t> image;  ///< empty while it is being rendered
+    std::vector<std::uint8_t> image;  ///< set at the arrival of the image
   };
 
   bool pinging() const { return plan_.has_value(); }
@@ -83,7 +87,6 @@ class Device::Impl {
   }
   bool client_is_idle(TimePoint now) const;
   void forget_client();
-  void stop_ping();
   void read_commands(TimePoint now);
   void handle(TimePoint now, const SimpleFire& fire);
   void handle(TimePoint now, const UserConfig& config);
@@ -92,7 +95,7 @@ class Device::Impl {
   void send_status(TimePoint now);
   void send_dummy(TimePoint now);
   std::optional<TimePoint> next_start() const;
-  std::optional<NextPing> next_ping() const;
+  std::optional<TimePoint> send_due() const;
   void begin_ping(TimePoint now);
   void send_ping(TimePoint now);
 
@@ -110,17 +113,12 @@ class Device::Impl {
   TimePoint newest_command_{};  ///< time of the client's last command, or of its connection
   CommandBuffer input_;
   std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: no fire, or standby
-  std::optional<ReplayedPing> fed_;
-  bool due_ = false;
-  std::optional<Ping> ping_;                ///< in progress
-  std::optional<std::uint64_t> cancelled_;  ///< number of a cancelled job that is not answered yet
-  std::uint64_t next_number_ = 0;
+  PingCounters counters_;
+  PingCycle cycle_;
+  Ping ping_;
   std::uint32_t ping_id_ = 0;
   Actions actions_;
 
-  std::uint64_t sent_ = 0;
-  std::uint64_t failed_ = 0;
-  std::uint64_t cancelled_count_ = 0;
   std::uint64_t commands_ = 0;
   std::uint64_t bad_commands_ = 0;
   std::uint64_t other_clients_ = 0;
@@ -170,7 +168,7 @@ void Device::Impl::forget_client() {
   client_.reset();
   plan_.reset();
   input_.clear();
-  stop_ping();
+  cycle_.cancel();
 }
 
 void Device::Impl::take(TimePoint now, const BytesReceived& received) {
@@ -202,7 +200,7 @@ void Device::Impl::handle(TimePoint now, const SimpleFire& fire) {
   const bool before = pinging();
   plan_ = period_of_rate(fire.fire.ping_rate) ? std::optional(plan_ping(fire, config_.plan)) : std::nullopt;
   if (before && !pinging()) {
-    stop_ping();
+    cycle_.cancel();
     next_dummy_ = now;
   } else if (!before) {
     next_ping_ = std::max(next_ping_, now);
@@ -229,112 +227,73 @@ void Device::Impl::move_to(Ipv4 address, Ipv4 netmask) {
 
 // ---- Pings
 
-void Device::Impl::stop_ping() {
-  if (!ping_) {
+void Device::Impl::take(TimePoint now, const PingRendered& ping) {
+  if (!cycle_.on_image(now, ping.image.number)) {
     return;
   }
-  ++cancelled_count_;
-  if (ping_->image.empty()) {
-    cancelled_ = ping_->number;
-  }
-  ping_.reset();
-}
-
-void Device::Impl::take(TimePoint, const PingRendered& ping) {
-  if (cancelled_ == ping.image.number) {
-    cancelled_.reset();
+  auto image = image_bytes(ping_.plan.result, ping.image.u8, ping.image.u16);
+  if (!image) {
+    cycle_.fail();
     return;
   }
-  if (!ping_ || ping_->number != ping.image.number || !ping_->image.empty()) {
-    return;
-  }
-  auto image = image_bytes(ping_->plan.result, ping.image.u8, ping.image.u16);
-  if (image) {
-    ping_->image = std::move(*image);
-    if (ping.image.readings && !config_.plays_back) {
-      report_readings(*ping.image.readings, config_.plan, ping_->plan.result);
-    }
-  } else {
-    ++failed_;
-    ping_.reset();
+  ping_.image = std::move(*image);
+  if (ping.image.readings && !config_.plays_back) {
+    report_readings(*ping.image.readings, config_.plan, ping_.plan.result);
   }
 }
 
-void Device::Impl::take(TimePoint, const PingNotRendered& ping) {
-  if (cancelled_ == ping.number) {
-    cancelled_.reset();
-  } else if (ping_ && ping_->number == ping.number && ping_->image.empty()) {
-    ++failed_;
-    ping_.reset();
-  }
-}
-
-/// Start of the next ping; nullopt if no ping is wanted, or if an answer or a recorded ping is missing.
+/// Start of the next ping; nullopt if no ping can begin.
 std::optional<TimePoint> Device::Impl::next_start() const {
-  if (!pinging() || ping_ || cancelled_ || (config_.plays_back && !fed_)) {
-    return std::nullopt;
-  }
-  if (config_.simulated_time) {  // the server observes the period in simulated time
-    return boot_time_;
-  }
-  return fed_ && fed_->due ? std::max(next_ping_, *fed_->due) : next_ping_;
+  return pinging() ? cycle_.next_start(boot_time_, next_ping_) : std::nullopt;
 }
 
-std::optional<NextPing> Device::Impl::next_ping() const {
-  const std::optional<TimePoint> start = next_start();
-  return start ? std::optional(NextPing{*start, plan_->period, plan_->listening}) : std::nullopt;
+/// When the image can be sent; nullopt if there is no image.
+std::optional<TimePoint> Device::Impl::send_due() const {
+  return cycle_.rendered() ? std::optional(cycle_.job().transmit_time + ping_.plan.listening) : std::nullopt;
 }
 
 void Device::Impl::begin_ping(TimePoint now) {
   const std::optional<TimePoint> start = next_start();
-  if (!start || now < *start || (config_.simulated_time && !due_)) {
+  if (!start || now < *start || !cycle_.granted()) {
     return;
   }
-  due_ = false;
-  const std::optional<ReplayedPing> fed = std::exchange(fed_, std::nullopt);
-  ping_ = Ping{next_number_++,
-               fed ? held_to(*fed, *plan_) : *plan_,
-               now,
+  const std::optional<ReplayedPing>& fed = cycle_.fed();
+  ping_ = Ping{fed ? held_to(*fed, *plan_) : *plan_,
                plan_->asked.fire.gain_percent,
                gamma_exponent(plan_->asked.fire.gamma),
                {}};
-  const PingPlan& plan = ping_->plan;
+  const PingPlan& plan = ping_.plan;
   // Keeps the phase; after a late call at most one missed period is caught up.
   next_ping_ = std::max(std::max(next_ping_, now - plan.period) + plan.period, now + plan.listening);
   PingJob job = job_of(plan, config_.plan);
-  job.number = ping_->number;
-  job.transmit_time = now;
-  job.transmit_us = static_cast<std::uint64_t>((now - boot_time_) / std::chrono::microseconds{1});
   if (fed) {
-    job.record = fed->record;
     job.differences = differences(*plan_, plan, fed->settings);
-    ping_->amplitude_exponent = fed->settings.amplitude_exponent;
+    ping_.amplitude_exponent = fed->settings.amplitude_exponent;
     if (fed->settings.gain_percent >= 0.0) {
-      ping_->gain_percent = fed->settings.gain_percent;
+      ping_.gain_percent = fed->settings.gain_percent;
     }
   }
-  actions_.render = std::move(job);
+  cycle_.begin(std::move(job), now);
 }
 
 void Device::Impl::send_ping(TimePoint now) {
-  if (!ping_ || ping_->image.empty() || now < ping_->transmit_time + ping_->plan.listening) {
+  const std::optional<TimePoint> due = send_due();
+  if (!due || now < *due) {
     return;
   }
-  PingResult& result = ping_->plan.result;
-  const nanoseconds start = ping_->transmit_time - boot_time_;
+  PingResult& result = ping_.plan.result;
+  const nanoseconds start = cycle_.job().transmit_time - boot_time_;
   result.ping_id = ++ping_id_;
   result.start_time_ns = static_cast<std::uint32_t>(start.count());  // modulo 2^32
   result.start_time_s = static_cast<double>(start.count()) * 1e-9;
-  result.image = ping_->image;
+  result.image = ping_.image;
   std::vector<std::uint8_t> message = encode(result, identity_);
-  actions_.record = record_of(result, message);
-  actions_.record->number = ping_->number;
-  actions_.record->transmit_time = ping_->transmit_time;
-  actions_.record->settings.gain_percent = ping_->gain_percent;
-  actions_.record->settings.amplitude_exponent = ping_->amplitude_exponent;
+  PingRecord record = record_of(result, message);
+  record.settings.gain_percent = ping_.gain_percent;
+  record.settings.amplitude_exponent = ping_.amplitude_exponent;
+  cycle_.put_on_wire(std::move(record));
   send(std::move(message));
-  ++sent_;
-  ping_.reset();
+  ++counters_.pings_sent;
 }
 
 // ---- Time
@@ -374,21 +333,19 @@ void Device::Impl::advance(TimePoint now) {
 
 Actions Device::Impl::actions() {
   Actions actions = std::exchange(actions_, {});
-  actions.cancelled = cancelled_;
+  cycle_.report(actions);
   actions.nobody_there = !client_;
   TimePoint wake = next_status_;
   if (client_ && !pinging()) {
     wake = std::min(wake, next_dummy_);
   }
-  if (ping_ && !ping_->image.empty()) {
-    wake = std::min(wake, ping_->transmit_time + ping_->plan.listening);
-  }
-  const std::optional<TimePoint> start = next_start();
-  if (start && !config_.simulated_time) {
-    wake = std::min(wake, *start);
-  }
-  if (config_.simulated_time) {
-    actions.next_ping = next_ping();
+  wake = std::min(wake, send_due().value_or(wake));
+  if (const std::optional<TimePoint> start = next_start()) {
+    if (config_.simulated_time) {
+      actions.next_ping = NextPing{*start, plan_->period, plan_->listening};
+    } else {
+      wake = std::min(wake, *start);
+    }
   }
   actions.wake_at = wake;
   return actions;
@@ -396,9 +353,9 @@ Actions Device::Impl::actions() {
 
 std::vector<Counter> Device::Impl::counts() const {
   using Shown = Counter::Shown;
-  return {{"pings_sent", sent_},
-          {"pings_failed", failed_, Shown::often},
-          {"pings_cancelled", cancelled_count_},
+  return {{"pings_sent", counters_.pings_sent},
+          {"pings_failed", counters_.pings_failed, Shown::often},
+          {"pings_cancelled", counters_.pings_cancelled},
           {"commands", commands_},
           {"bad_commands", bad_commands_, Shown::warns, "{} commands were too short or too long"},
           {"other_clients", other_clients_, Shown::warns, "{} times a second client connected"}};
