@@ -12,7 +12,7 @@ void PingCycle::reboot(TimePoint boot_time) {
 }
 
 std::optional<TimePoint> PingCycle::next_start(TimePoint wanted, TimePoint by_rate) const {
-  if (under_way_ || unanswered_ || (config_.plays_back && !fed_)) {
+  if (busy() || (config_.plays_back && !fed_)) {
     return std::nullopt;
   }
   if (config_.simulated_time) {

@@ -77,6 +77,8 @@ class PingCycle {
   /// Without effect if no ping is under way.
   void cancel();
 
+  /// True if a ping is under way or a job is unanswered: no ping can begin.
+  bool busy() const { return under_way_ || unanswered_; }
   bool under_way() const { return under_way_; }
   /// True if the ping under way has its image.
   bool rendered() const { return under_way_ && !unanswered_; }

@@ -126,7 +126,7 @@ class Device::Impl {
   void take(TimePoint, const ClientCame&) {}
   void take(TimePoint, const ClientGone&) {}  // unused: the client is the sender of the last command
   void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
-  void take(TimePoint, const PingNotRendered& ping) { pinger_.on_image_failed(ping.number); }
+  void take(TimePoint now, const PingNotRendered& ping) { pinger_.on_image_failed(now, ping.number); }
   void take(TimePoint now, const TriggerEdge&);
   void take(TimePoint, const WaterChanged& water);
   void take(TimePoint, const SensorsRead&) {}  // the head has no such sensors
@@ -457,10 +457,7 @@ void Device::Impl::advance(TimePoint now) {
 Actions Device::Impl::actions() {
   notice_client();
   Actions actions = std::exchange(actions_, {});
-  actions.record = pinger_.take_record();
-  actions.render = pinger_.take_job();
-  actions.cancelled = pinger_.cancelled();
-  actions.next_ping = pinger_.next_ping();
+  pinger_.report(actions);
   actions.nobody_there = client_ == 0;
   actions.wake_at = next_deadline();
   return actions;
@@ -501,7 +498,7 @@ Actions Device::step(TimePoint now, const Event& event) {
 PingProgress Device::progress() const {
   const DeviceCounters& count = counters();
   return {.sent = count.pings_sent,
-          .ended = count.pings_sent + count.pings_failed + count.pings_cancelled,
+          .ended = count.pings_ended(),
           .messages = count.lines_sent + count.lines_resent + count.tails_resent + count.heads_resent +
                       count.retries_received};
 }

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
+#include "protocol/common/ping_cycle.hpp"
+
 namespace sonard::gemini {
 
-/// All counters only grow, also across reboots of the head.
-struct DeviceCounters {
+/// All counters only grow, also across reboots of the head. A ping is sent completely with its original tail.
+struct DeviceCounters : PingCounters {
   std::uint64_t commands = 0;        ///< understood and for this head
   std::uint64_t bad_datagrams = 0;   ///< too short, or with undecodable contents
   std::uint64_t wrong_id = 0;        ///< for another head
@@ -17,16 +19,11 @@ struct DeviceCounters {
   std::uint64_t client_timeouts = 0;
   std::uint64_t reboots = 0;
 
-  std::uint64_t pings_started = 0;    ///< given out for rendering
-  std::uint64_t pings_sent = 0;       ///< up to and including their original tail
-  std::uint64_t pings_failed = 0;     ///< could not be rendered, or the image had the wrong size
-  std::uint64_t pings_cancelled = 0;  ///< ended before their tail: client gone, reboot, replaced by a command
   std::uint64_t pings_suppressed =
       0;  ///< not started: out of the water, or a trigger edge that came too early
   std::uint64_t configs_replaced = 0;  ///< requests of single pings that a newer configuration replaced
   std::uint64_t unsupported_data =
       0;  ///< configurations that request I/Q or channel data, or an unknown run mode
-  std::uint64_t stale_images = 0;  ///< images of unknown or cancelled jobs
 
   std::uint64_t lines_sent = 0;
   std::uint64_t retries_received = 0;

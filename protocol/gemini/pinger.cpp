@@ -29,7 +29,9 @@ Pinger::Pinger(const DeviceConfig& config, DeviceCounters& counters, TimePoint b
       counters_(counters),
       boot_time_(boot_time),
       pacer_(config.line_period, config.burst_lines),
-      earliest_start_(boot_time) {}
+      earliest_start_(boot_time),
+      cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, boot_time,
+             counters) {}
 
 // ---- Wanted
 // -----------------------------------------------------------------------------------------------------
@@ -41,10 +43,10 @@ void Pinger::configure(TimePoint now, const PingConfig& config) {
   single_.reset();
   programme_.reset();
   pings_out_of_water_ = config.pings_out_of_water();
-  if (acquisition_ && acquisition_->transmit_time > now) {
+  if (cycle_.under_way() && cycle_.job().transmit_time > now) {
     // This ping is being rendered ahead of its transmit time. The client has not seen it, so replace it.
-    earliest_start_ = acquisition_->earliest_start_before;
-    cancel_acquisition();
+    earliest_start_ = acquisition_.earliest_start_before;
+    cycle_.cancel();
   }
   const std::optional<PingPlan> plan = plan_ping(config, config_);
   if (!plan) {
@@ -63,7 +65,7 @@ void Pinger::on_trigger(TimePoint now) {
   }
   // A busy head drops the edge and does not ping for it later.
   const bool too_early = now < earliest_start_ && !config_.simulated_time;
-  if (suspended_ || single_ || acquisition_ || unanswered_ || sending() || too_early) {
+  if (suspended_ || single_ || cycle_.busy() || sending() || too_early) {
     ++counters_.pings_suppressed;
     return;
   }
@@ -73,13 +75,13 @@ void Pinger::on_trigger(TimePoint now) {
 void Pinger::stop() {
   single_.reset();
   programme_.reset();
-  cancel_acquisition();
+  cycle_.cancel();
 }
 
 void Pinger::suspend() {
   suspended_ = true;
   single_.reset();
-  cancel_acquisition();
+  cycle_.cancel();
   drop_retries(transmission_ ? transmission_->ping().line_count() : 0);
   if (sending()) {
     ++counters_.pings_cancelled;
@@ -102,6 +104,7 @@ void Pinger::reset(TimePoint boot_time) {
   transmission_.reset();
   drop_retries(0);
   boot_time_ = boot_time;
+  cycle_.reboot(boot_time);
   earliest_start_ = boot_time;
   pacer_ = Pacer(config_.line_period, config_.burst_lines);
 }
@@ -126,54 +129,35 @@ std::chrono::nanoseconds Pinger::wanted_period(const PingPlan& plan) const {
   return single_ ? period_of(plan) : std::max(plan.interval, period_of(plan));
 }
 
-// In the head's time. In simulated time the server observes these rules in simulated time.
-TimePoint Pinger::earliest_by_rate() const {
-  if (config_.simulated_time) {
-    return single_ ? single_->asked_at : boot_time_;
-  }
-  TimePoint wanted_at = single_ ? single_->asked_at : programme_due_;
-  if (fed_) {
-    wanted_at = std::max(wanted_at, fed_->due.value_or(wanted_at));
-  }
-  return std::max(wanted_at, earliest_start_);
-}
-
 // Not before the previous tail was sent. nullopt if no ping can start or is wanted.
 std::optional<TimePoint> Pinger::next_transmit_time() const {
-  if (suspended_ || acquisition_ || unanswered_ || wanted_plan() == nullptr ||
-      (config_.plays_back && !fed_)) {
+  if (suspended_ || wanted_plan() == nullptr) {
     return std::nullopt;
   }
-  const TimePoint time = earliest_by_rate();
+  const TimePoint wanted = single_ ? single_->asked_at : boot_time_;
+  const TimePoint by_rate = single_ ? earliest_start_ : std::max(programme_due_, earliest_start_);
+  const std::optional<TimePoint> time = cycle_.next_start(wanted, by_rate);
+  if (!time || !transmission_) {
+    return time;
+  }
   if (!sending()) {
-    return transmission_ ? std::max(time, transmission_->tail_sent_at().value_or(time)) : time;
+    return std::max(*time, transmission_->tail_sent_at().value_or(*time));
   }
   // Pacing is deterministic, so the end of the ping on the wire is known in advance.
-  return config_.render_lead.count() > 0 ? std::optional(std::max(time, transmission_->predicted_end(pacer_)))
-                                         : std::nullopt;
-}
-
-std::optional<NextPing> Pinger::next_ping() const {
-  const auto transmit_time = next_transmit_time();
-  if (!transmit_time) {
-    return std::nullopt;
-  }
-  const PingPlan& plan = *wanted_plan();
-  return NextPing{*transmit_time - config_.render_lead, wanted_period(plan), plan.job.listening_time};
+  return config_.render_lead.count() > 0
+             ? std::optional(std::max(*time, transmission_->predicted_end(pacer_)))
+             : std::nullopt;
 }
 
 std::optional<TimePoint> Pinger::acquisition_due() const {
-  if (config_.simulated_time && !due_) {
-    return std::nullopt;
-  }
-  const auto transmit_time = next_transmit_time();
+  const auto transmit_time = cycle_.granted() ? next_transmit_time() : std::nullopt;
   return transmit_time ? std::optional(*transmit_time - config_.render_lead) : std::nullopt;
 }
 
 void Pinger::acquire(TimePoint now) {
-  due_ = false;
+  const std::optional<ReplayedPing>& fed = cycle_.fed();
   const PingPlan asked = *wanted_plan();
-  const PingPlan plan = fed_ ? held_to(*fed_, asked, config_) : asked;
+  const PingPlan plan = fed ? held_to(*fed, asked, config_) : asked;
   TimePoint transmit_time = *next_transmit_time();
   if (now - transmit_time > start_slack) {
     transmit_time = now;
@@ -187,80 +171,39 @@ void Pinger::acquire(TimePoint now) {
   }
   if (out_of_water_ && !plan.pings_out_of_water) {
     ++counters_.pings_suppressed;
+    cycle_.skip();
     return;
   }
   acquisition_ = Acquisition{.plan = plan,
-                             .number = next_ping_number_++,
-                             .transmit_time = transmit_time,
                              .asked_at = asked_at,
                              .earliest_start_before = earliest_start_,
                              .gain_percent = asked.job.gain_percent};
   earliest_start_ = transmit_time + period_of(plan);
-  job_ = asked.job;
-  job_->period = period;
-  if (const auto fed = std::exchange(fed_, std::nullopt)) {
-    job_->record = fed->record;
-    job_->differences = differences(asked, plan, fed->settings);
+  PingJob job = asked.job;
+  job.period = period;
+  if (fed) {
+    job.differences = differences(asked, plan, fed->settings);
     if (fed->settings.gain_percent >= 0.0) {
-      acquisition_->gain_percent = fed->settings.gain_percent;
+      acquisition_.gain_percent = fed->settings.gain_percent;
     }
   }
-  job_->number = acquisition_->number;
-  job_->transmit_time = transmit_time;
-  job_->transmit_us = clock_us(transmit_time);
-  ++counters_.pings_started;
-}
-
-std::optional<PingJob> Pinger::take_job() {
-  if (job_) {
-    unanswered_ = job_->number;
-  }
-  return std::exchange(job_, std::nullopt);
+  cycle_.begin(std::move(job), transmit_time);
 }
 
 void Pinger::on_image(TimePoint now, const PingImage& image) {
-  if (unanswered_ != image.number) {
-    ++counters_.stale_images;
+  if (!cycle_.on_image(now, image.number)) {
     return;
   }
-  unanswered_.reset();
-  if (!acquisition_) {
-    ++counters_.stale_images;  // the ping was cancelled meanwhile
+  if (!fits(image, acquisition_.plan.job)) {
+    cycle_.fail();
     return;
   }
-  if (!fits(image, acquisition_->plan.job)) {
-    ++counters_.pings_failed;
-    acquisition_.reset();
-    return;
-  }
-  PingHead head = acquisition_->plan.head;
-  head.ping_id = static_cast<std::uint16_t>(acquisition_->number & 0xFF);  // later clients need 0..255 (6.3)
-  head.transmit_time_us = clock_us(acquisition_->transmit_time);
-  acquisition_->encoded.emplace(head, acquisition_->plan.line_scale, image);
-  acquisition_->record = record_of(head, image);
-  acquisition_->record.number = acquisition_->number;
-  acquisition_->record.transmit_time = acquisition_->transmit_time;
-  acquisition_->record.settings.gain_percent = acquisition_->gain_percent;
-  acquisition_->ready_at = now;
-}
-
-void Pinger::on_image_failed(std::uint64_t number) {
-  if (unanswered_ != number) {
-    return;
-  }
-  unanswered_.reset();
-  if (acquisition_) {
-    ++counters_.pings_failed;
-    acquisition_.reset();
-  }
-}
-
-void Pinger::cancel_acquisition() {
-  if (acquisition_) {
-    ++counters_.pings_cancelled;
-    acquisition_.reset();
-    job_.reset();
-  }
+  PingHead head = acquisition_.plan.head;
+  head.ping_id = static_cast<std::uint16_t>(image.number & 0xFF);  // later clients need 0..255 (6.3)
+  head.transmit_time_us = cycle_.job().transmit_us;
+  acquisition_.encoded.emplace(head, acquisition_.plan.line_scale, image);
+  acquisition_.record = record_of(head, image);
+  acquisition_.record.settings.gain_percent = acquisition_.gain_percent;
 }
 
 // ---- On the wire
@@ -270,10 +213,10 @@ void Pinger::cancel_acquisition() {
 // retry_hold after the last request. If the client requested its next single ping after its last retry
 // request, it has finished the old ping; then the head waits only for the queued requests.
 std::optional<TimePoint> Pinger::head_due() const {
-  if (!acquisition_ || !acquisition_->encoded || sending()) {
+  if (!cycle_.rendered() || sending()) {
     return std::nullopt;
   }
-  TimePoint free = std::max(acquisition_->transmit_time, acquisition_->ready_at);
+  TimePoint free = std::max(cycle_.job().transmit_time, cycle_.answered_at());
   if (!transmission_) {
     return free;
   }
@@ -282,22 +225,21 @@ std::optional<TimePoint> Pinger::head_due() const {
   if (!retries_.empty()) {
     return longest;
   }
-  const bool repairing = last_retry_activity_ &&
-                         !(acquisition_->plan.mode == RunMode::single &&
-                           acquisition_->asked_at >= last_retry_arrival_.value_or(acquisition_->asked_at));
+  const bool repairing =
+      last_retry_activity_ && !(acquisition_.plan.mode == RunMode::single &&
+                                acquisition_.asked_at >= last_retry_arrival_.value_or(acquisition_.asked_at));
   return repairing ? std::clamp(*last_retry_activity_ + config_.retry_hold, free, longest) : free;
 }
 
 void Pinger::put_on_wire() {
   // Requests have no ping ID. Serving one for the old ping now would make the client request all of the new
   // one.
-  drop_retries(acquisition_->encoded->line_count());
+  drop_retries(acquisition_.encoded->line_count());
   last_retry_arrival_.reset();
   last_retry_activity_.reset();
-  record_ = std::move(acquisition_->record);
-  transmission_.emplace(std::move(*acquisition_->encoded), acquisition_->transmit_time,
-                        acquisition_->plan.job.compression_log2);
-  acquisition_.reset();
+  cycle_.put_on_wire(std::move(acquisition_.record));
+  transmission_.emplace(std::move(*acquisition_.encoded), cycle_.job().transmit_time,
+                        acquisition_.plan.job.compression_log2);
 }
 
 void Pinger::send_lines(TimePoint now, std::vector<SharedBytes>& out) {
@@ -376,10 +318,6 @@ void Pinger::advance(TimePoint now, std::vector<SharedBytes>& out) {
   }
 }
 
-std::uint64_t Pinger::clock_us(TimePoint time) const {
-  return static_cast<std::uint64_t>((time - boot_time_) / std::chrono::microseconds{1});
-}
-
 std::optional<TimePoint> Pinger::datagram_due() const {
   if (sending()) {
     return transmission_->next_send(pacer_);
@@ -392,6 +330,15 @@ std::optional<TimePoint> Pinger::datagram_due() const {
 
 std::optional<TimePoint> Pinger::next_deadline() const {
   return earlier(datagram_due(), earlier(acquisition_due(), head_due()));
+}
+
+void Pinger::report(Actions& actions) {
+  cycle_.report(actions);
+  if (const auto transmit_time = next_transmit_time()) {
+    const PingPlan& plan = *wanted_plan();
+    actions.next_ping =
+        NextPing{*transmit_time - config_.render_lead, wanted_period(plan), plan.job.listening_time};
+  }
 }
 
 }  // namespace sonard::gemini

@@ -429,7 +429,7 @@ TEST(Pinging, ImagesNobodyAskedForAreDropped) {
   other.number = 17;
   bench.image(other);
   bench.step(PingNotRendered{17});
-  EXPECT_EQ(bench.device.counters().stale_images, 2U);
+  EXPECT_EQ(bench.device.counters().stale_images, 3U);
   bench.image(test_image(bench.jobs[0]));
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
