@@ -45,7 +45,7 @@ void Pinger::configure(TimePoint now, const PingConfig& config) {
   pings_out_of_water_ = config.pings_out_of_water();
   if (cycle_.under_way() && cycle_.job().transmit_time > now) {
     // This ping is being rendered ahead of its transmit time. The client has not seen it, so replace it.
-    earliest_start_ = acquisition_.earliest_start_before;
+    earliest_start_ = ping_.earliest_start_before;
     cycle_.cancel();
   }
   const std::optional<PingPlan> plan = plan_ping(config, config_);
@@ -109,8 +109,8 @@ void Pinger::reset(TimePoint boot_time) {
   pacer_ = Pacer(config_.line_period, config_.burst_lines);
 }
 
-// ---- Acquired
-// ---------------------------------------------------------------------------------------------------
+// ---- Under way
+// --------------------------------------------------------------------------------------------------
 
 const PingPlan* Pinger::wanted_plan() const {
   if (single_) {
@@ -129,8 +129,9 @@ std::chrono::nanoseconds Pinger::wanted_period(const PingPlan& plan) const {
   return single_ ? period_of(plan) : std::max(plan.interval, period_of(plan));
 }
 
-// Not before the previous tail was sent. nullopt if no ping can start or is wanted.
-std::optional<TimePoint> Pinger::next_transmit_time() const {
+// Transmit time of the next ping, not before the previous tail was sent. nullopt if no ping can start or is
+// wanted.
+std::optional<TimePoint> Pinger::next_start() const {
   if (suspended_ || wanted_plan() == nullptr) {
     return std::nullopt;
   }
@@ -149,16 +150,16 @@ std::optional<TimePoint> Pinger::next_transmit_time() const {
              : std::nullopt;
 }
 
-std::optional<TimePoint> Pinger::acquisition_due() const {
-  const auto transmit_time = cycle_.granted() ? next_transmit_time() : std::nullopt;
-  return transmit_time ? std::optional(*transmit_time - config_.render_lead) : std::nullopt;
+std::optional<TimePoint> Pinger::ping_due() const {
+  const auto start = cycle_.granted() ? next_start() : std::nullopt;
+  return start ? std::optional(*start - config_.render_lead) : std::nullopt;
 }
 
-void Pinger::acquire(TimePoint now) {
+void Pinger::begin_ping(TimePoint now) {
   const std::optional<ReplayedPing>& fed = cycle_.fed();
   const PingPlan asked = *wanted_plan();
   const PingPlan plan = fed ? held_to(*fed, asked, config_) : asked;
-  TimePoint transmit_time = *next_transmit_time();
+  TimePoint transmit_time = *next_start();
   if (now - transmit_time > start_slack) {
     transmit_time = now;
   }
@@ -174,17 +175,17 @@ void Pinger::acquire(TimePoint now) {
     cycle_.skip();
     return;
   }
-  acquisition_ = Acquisition{.plan = plan,
-                             .asked_at = asked_at,
-                             .earliest_start_before = earliest_start_,
-                             .gain_percent = asked.job.gain_percent};
+  ping_ = Ping{.plan = plan,
+               .asked_at = asked_at,
+               .earliest_start_before = earliest_start_,
+               .gain_percent = asked.job.gain_percent};
   earliest_start_ = transmit_time + period_of(plan);
   PingJob job = asked.job;
   job.period = period;
   if (fed) {
     job.differences = differences(asked, plan, fed->settings);
     if (fed->settings.gain_percent >= 0.0) {
-      acquisition_.gain_percent = fed->settings.gain_percent;
+      ping_.gain_percent = fed->settings.gain_percent;
     }
   }
   cycle_.begin(std::move(job), transmit_time);
@@ -194,16 +195,16 @@ void Pinger::on_image(TimePoint now, const PingImage& image) {
   if (!cycle_.on_image(now, image.number)) {
     return;
   }
-  if (!fits(image, acquisition_.plan.job)) {
+  if (!fits(image, ping_.plan.job)) {
     cycle_.fail();
     return;
   }
-  PingHead head = acquisition_.plan.head;
+  PingHead head = ping_.plan.head;
   head.ping_id = static_cast<std::uint16_t>(image.number & 0xFF);  // later clients need 0..255 (6.3)
   head.transmit_time_us = cycle_.job().transmit_us;
-  acquisition_.encoded.emplace(head, acquisition_.plan.line_scale, image);
-  acquisition_.record = record_of(head, image);
-  acquisition_.record.settings.gain_percent = acquisition_.gain_percent;
+  ping_.encoded.emplace(head, ping_.plan.line_scale, image);
+  ping_.record = record_of(head, image);
+  ping_.record.settings.gain_percent = ping_.gain_percent;
 }
 
 // ---- On the wire
@@ -226,20 +227,20 @@ std::optional<TimePoint> Pinger::head_due() const {
     return longest;
   }
   const bool repairing =
-      last_retry_activity_ && !(acquisition_.plan.mode == RunMode::single &&
-                                acquisition_.asked_at >= last_retry_arrival_.value_or(acquisition_.asked_at));
+      last_retry_activity_ &&
+      !(ping_.plan.mode == RunMode::single && ping_.asked_at >= last_retry_arrival_.value_or(ping_.asked_at));
   return repairing ? std::clamp(*last_retry_activity_ + config_.retry_hold, free, longest) : free;
 }
 
 void Pinger::put_on_wire() {
   // Requests have no ping ID. Serving one for the old ping now would make the client request all of the new
   // one.
-  drop_retries(acquisition_.encoded->line_count());
+  drop_retries(ping_.encoded->line_count());
   last_retry_arrival_.reset();
   last_retry_activity_.reset();
-  cycle_.put_on_wire(std::move(acquisition_.record));
-  transmission_.emplace(std::move(*acquisition_.encoded), cycle_.job().transmit_time,
-                        acquisition_.plan.job.compression_log2);
+  cycle_.put_on_wire(std::move(ping_.record));
+  transmission_.emplace(std::move(*ping_.encoded), cycle_.job().transmit_time,
+                        ping_.plan.job.compression_log2);
 }
 
 void Pinger::send_lines(TimePoint now, std::vector<SharedBytes>& out) {
@@ -307,8 +308,8 @@ void Pinger::advance(TimePoint now, std::vector<SharedBytes>& out) {
     progress = false;
     send_lines(now, out);
     serve_retries(now, out);
-    if (due(acquisition_due(), now)) {
-      acquire(now);
+    if (due(ping_due(), now)) {
+      begin_ping(now);
       progress = true;
     }
     if (due(head_due(), now)) {
@@ -329,15 +330,14 @@ std::optional<TimePoint> Pinger::datagram_due() const {
 }
 
 std::optional<TimePoint> Pinger::next_deadline() const {
-  return earlier(datagram_due(), earlier(acquisition_due(), head_due()));
+  return earlier(datagram_due(), earlier(ping_due(), head_due()));
 }
 
 void Pinger::report(Actions& actions) {
   cycle_.report(actions);
-  if (const auto transmit_time = next_transmit_time()) {
+  if (const auto start = next_start()) {
     const PingPlan& plan = *wanted_plan();
-    actions.next_ping =
-        NextPing{*transmit_time - config_.render_lead, wanted_period(plan), plan.job.listening_time};
+    actions.next_ping = NextPing{*start - config_.render_lead, wanted_period(plan), plan.job.listening_time};
   }
 }
 

@@ -22,9 +22,9 @@ namespace sonard::gemini {
 /// The part of a Device that pings. It uses no addresses: the Device sends its datagrams to the client.
 ///
 /// A ping has three stages. *Wanted*: a configuration, the interval or a trigger edge requests it.
-/// *Acquired*, or under way (PingCycle): its transmit time is fixed, its image is pending or waits for the
-/// wire. *On the wire*: from its head on; it serves retries until the next head. A ping may be acquired while
-/// the last one is on the wire (only if DeviceConfig::render_lead allows) or is still being repaired.
+/// *Under way* (PingCycle): its transmit time is fixed, and its image is pending or waits for the wire. *On
+/// the wire*: from its head on; it serves retries until the next head. A ping may be under way while the last
+/// one is on the wire (only if DeviceConfig::render_lead allows) or is still being repaired.
 class Pinger {
  public:
   /// `config` and `counters` must outlive the pinger. The clock of the head is 0 at `boot_time`.
@@ -66,7 +66,7 @@ class Pinger {
     TimePoint asked_at{};
   };
   /// The ping under way.
-  struct Acquisition {
+  struct Ping {
     PingPlan plan;
     TimePoint asked_at{};
     TimePoint earliest_start_before{};  ///< earlier value of earliest_start_, in case this ping never begins
@@ -79,11 +79,11 @@ class Pinger {
   std::chrono::nanoseconds period_of(const PingPlan& plan) const;
   std::chrono::nanoseconds wanted_period(const PingPlan& plan) const;
   bool sending() const { return transmission_ && !transmission_->finished(); }
-  std::optional<TimePoint> next_transmit_time() const;
-  std::optional<TimePoint> acquisition_due() const;
+  std::optional<TimePoint> next_start() const;
+  std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> head_due() const;
   std::optional<TimePoint> datagram_due() const;
-  void acquire(TimePoint now);
+  void begin_ping(TimePoint now);
   void put_on_wire();
   void send_lines(TimePoint now, std::vector<SharedBytes>& out);
   void serve_retries(TimePoint now, std::vector<SharedBytes>& out);
@@ -103,10 +103,10 @@ class Pinger {
   bool out_of_water_ = false;
   bool pings_out_of_water_ = false;  ///< from the newest configuration
 
-  // Acquired.
+  // Under way.
   TimePoint earliest_start_;  ///< earliest start of the next ping by the rate rules
   PingCycle cycle_;
-  Acquisition acquisition_;
+  Ping ping_;
 
   // On the wire.
   std::optional<PingTransmission> transmission_;

@@ -110,7 +110,7 @@ void Scanner::feed(const std::optional<ReplayedPing>& ping) {
   cycle_.feed(ping && recorded_line(ping->wire) ? ping : std::nullopt);
 }
 
-std::optional<TimePoint> Scanner::ping_possible() const {
+std::optional<TimePoint> Scanner::next_start() const {
   if (!placed_ || !parameters_ || owed_ == 0) {
     return std::nullopt;
   }
@@ -124,7 +124,7 @@ nanoseconds Scanner::wanted_period() const {
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return cycle_.granted() ? ping_possible() : std::nullopt;
+  return cycle_.granted() ? next_start() : std::nullopt;
 }
 
 std::optional<TimePoint> Scanner::line_due() const {
@@ -140,7 +140,7 @@ TimePoint Scanner::line_due_of(TimePoint transmit_time, nanoseconds line_after) 
                              : std::max(transmit_time + line_after, link_free_at_);
 }
 
-void Scanner::start_ping(TimePoint now, TimePoint due) {
+void Scanner::begin_ping(TimePoint now, TimePoint due) {
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
   const auto& fed = cycle_.fed();
   cycle_.begin(fed ? repeat(transmit_time, *fed) : aim(transmit_time), transmit_time);
@@ -269,7 +269,7 @@ void Scanner::advance(TimePoint now, std::vector<std::vector<std::uint8_t>>& out
     send_line(out);
   }
   if (const auto due = ping_due(); due && now >= *due) {
-    start_ping(now, *due);
+    begin_ping(now, *due);
   }
 }
 
@@ -282,8 +282,8 @@ std::optional<TimePoint> Scanner::next_deadline() const {
 
 void Scanner::report(Actions& actions) {
   cycle_.report(actions);
-  if (const auto possible = ping_possible()) {
-    actions.next_ping = NextPing{*possible, wanted_period(), line_timing(*parameters_, config_, 0).listen};
+  if (const auto start = next_start()) {
+    actions.next_ping = NextPing{*start, wanted_period(), line_timing(*parameters_, config_, 0).listen};
   }
 }
 

@@ -17,9 +17,9 @@ namespace sonard::micron {
 
 /// The part of a Device that turns and pings.
 ///
-/// A ping is *owed* from its request on and *acquired* from its transmission on, when its job is issued. It
-/// ends when its line is sent, fails, or is cancelled by new parameters. Cancelled ones stay owed. Even in
-/// full duplex a line is complete before the next ping transmits.
+/// A ping is *owed* from its request on and *under way* (PingCycle) from its transmission on. It ends when
+/// its line is sent, fails, or is cancelled by new parameters. Cancelled ones stay owed. Even in full duplex
+/// a line is complete before the next ping transmits.
 class Scanner {
  public:
   /// Starts centred. `config` and `counters` must outlive the scanner. The clock of jobs is 0 at `power_up`.
@@ -64,11 +64,11 @@ class Scanner {
   void settle(TimePoint now);
   void take_up_position(TimePoint begin);
   std::chrono::nanoseconds wanted_period() const;
-  std::optional<TimePoint> ping_possible() const;
+  std::optional<TimePoint> next_start() const;
   std::optional<TimePoint> ping_due() const;
   std::optional<TimePoint> line_due() const;
   TimePoint line_due_of(TimePoint transmit_time, std::chrono::nanoseconds line_after) const;
-  void start_ping(TimePoint now, TimePoint due);
+  void begin_ping(TimePoint now, TimePoint due);
   PingJob aim(TimePoint transmit_time);
   PingJob repeat(TimePoint transmit_time, const ReplayedPing& fed);
   HeadData make_line() const;

@@ -203,7 +203,7 @@ void Scanner::abandon_work(TimePoint now) {
 
 // ---- Pings
 
-std::optional<TimePoint> Scanner::ping_possible() const {
+std::optional<TimePoint> Scanner::next_start() const {
   if (!work_ || !work_->transmit) {
     return std::nullopt;
   }
@@ -211,10 +211,10 @@ std::optional<TimePoint> Scanner::ping_possible() const {
 }
 
 std::optional<TimePoint> Scanner::ping_due() const {
-  return cycle_.granted() ? ping_possible() : std::nullopt;
+  return cycle_.granted() ? next_start() : std::nullopt;
 }
 
-void Scanner::start_ping(TimePoint now, TimePoint due) {
+void Scanner::begin_ping(TimePoint now, TimePoint due) {
   const TimePoint transmit_time = std::max(due, now - lateness_allowed);
   const bool fed = cycle_.fed().has_value();
   PingJob job = fed ? repeat(*cycle_.fed()) : make_job(work_->form, config_);
@@ -289,7 +289,7 @@ void Scanner::advance(TimePoint now, std::uint8_t id, std::vector<Answer>& out) 
     end_work(work_->there_at);
   }
   if (const auto due = ping_due(); due && now >= *due) {
-    start_ping(now, *due);
+    begin_ping(now, *due);
   }
 }
 
@@ -302,10 +302,10 @@ std::optional<TimePoint> Scanner::next_deadline() const {
 
 void Scanner::report(Actions& actions) {
   cycle_.report(actions);
-  if (const auto possible = ping_possible()) {
+  if (const auto start = next_start()) {
     const DeviceData& settings = work_->form.settings;
-    actions.next_ping = NextPing{*possible, work_->period,
-                                 listening_time(settings.number_of_samples, settings.sample_period)};
+    actions.next_ping =
+        NextPing{*start, work_->period, listening_time(settings.number_of_samples, settings.sample_period)};
   }
 }
 

@@ -103,9 +103,9 @@ class Scanner {
   void begin_work();
   void end_work(TimePoint end);
   void abandon_work(TimePoint now);
-  std::optional<TimePoint> ping_possible() const;
+  std::optional<TimePoint> next_start() const;
   std::optional<TimePoint> ping_due() const;
-  void start_ping(TimePoint now, TimePoint due);
+  void begin_ping(TimePoint now, TimePoint due);
   PingJob repeat(const ReplayedPing& fed);
   void end_failed_work(TimePoint now);
   void send_ping(std::uint8_t id, std::vector<Answer>& out);
