@@ -19,10 +19,10 @@ namespace sonard::render {
 /// The part of a mean echo that comes from single points. Its amplitude is steady: speckle does not change
 /// it.
 struct SteadyEcho {
-  std::vector<std::int32_t> row_of_line;  ///< -1: no steady echo in the line; empty: in no line
+  std::vector<std::int32_t> row_of_line;  ///< -1: no steady echo in the range bin; empty: in no bin
   std::vector<float> intensity;           ///< [row * beams + beam], at most EchoImage::intensity
 
-  /// The intensities of a line by beam; nullptr if the line has no steady echo.
+  /// The intensities of a range bin by beam; nullptr if the bin has no steady echo.
   const float* line(int line, int beams) const {
     const std::int32_t row = row_of_line.empty() ? -1 : row_of_line[static_cast<std::size_t>(line)];
     return row < 0 ? nullptr : &intensity[static_cast<std::size_t>(row) * static_cast<std::size_t>(beams)];
@@ -33,11 +33,11 @@ struct SteadyEcho {
 /// Mode `physical`: re the source intensity at 1 m; mode `paper`: the paper's I_bin in [0, 1].
 struct EchoImage {
   int beams = 0;
-  int lines = 0;
+  int lines = 0;                 ///< range bins
   std::vector<float> intensity;  ///< [beam * lines + line]
   SteadyEcho steady{};
-  /// Share of each line's strongest echo that comes from surfaces, in [0, 1]; the rest comes from the water.
-  /// Empty: 1 in all lines.
+  /// Share of each range bin's strongest echo that comes from surfaces, in [0, 1]; the rest comes from the
+  /// water. Empty: 1 in all bins.
   std::vector<float> surface_share{};
 
   float at(int beam, int line) const {
@@ -49,7 +49,7 @@ struct EchoImage {
 /// Output of the receiver, ready for the device to send: line by line, each from port to starboard.
 struct PingSamples {
   int beams = 0;
-  int lines = 0;                   ///< after range compression
+  int lines = 0;                   ///< range bins after range compression
   std::vector<std::uint8_t> u8;    ///< [line * beams + beam], if the output has 8 bits
   std::vector<std::uint16_t> u16;  ///< [line * beams + beam], if the output has 16 bits
 };
@@ -59,7 +59,7 @@ struct PingRequest {
   SonarSettings settings;
   std::uint64_t ping_number = 0;  ///< seeds the random numbers; never wraps
   std::uint64_t seed = 0;
-  /// At the return of the last line's echo, 2 R / c later; nullopt: the sonar is at rest (docs/physics.md
+  /// At the return of the last bin's echo, 2 R / c later; nullopt: the sonar is at rest (docs/physics.md
   /// 2.14).
   std::optional<Pose> T_world_sonar_at_end{};
 };

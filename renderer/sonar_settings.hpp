@@ -65,21 +65,21 @@ std::vector<double> equal_angle_edges(int beam_count, double width_rad);
 /// beam_count beams of equal sine over +-half_width_rad, as a multibeam sonar forms them.
 std::vector<double> equal_sine_edges(int beam_count, double half_width_rad);
 
-/// The range bins of a ping: bin i holds echoes from [i, i+1) * step_m. Output lines are averages (or peaks)
+/// The range bins of a ping: bin i holds echoes from [i, i+1) * step_m. Output bins are averages (or peaks)
 /// of 2^compression_log2 range bins. A remainder is dropped, as in the device.
-struct RangeLines {
+struct RangeBins {
   int count = 1;             ///< range bins, >= 1
   double step_m = 0.01;      ///< > 0
   int compression_log2 = 0;  ///< 0..4
   bool compression_peak = false;
 
   double max_range_m() const { return count * step_m; }
-  /// Range within which surfaces are rendered: a little beyond the last line, so that footprints across it
+  /// Range within which surfaces are rendered: a little beyond the last bin, so that footprints across it
   /// are complete.
   double sampled_range_m() const { return max_range_m() * 1.05; }
   int output_count() const { return count >> compression_log2; }
 
-  bool operator==(const RangeLines&) const = default;
+  bool operator==(const RangeBins&) const = default;
 };
 
 enum class Model {
@@ -136,11 +136,11 @@ struct RingDown {
   bool operator==(const RingDown&) const = default;
 };
 
-/// The pulse and the lines for which levels are stated. A tone of another length has more or less energy
+/// The pulse and the range bins for which levels are stated. A tone of another length has more or less energy
 /// (docs/physics.md 2.6).
 struct UsualPulse {
   double cell_m = 0.0;  ///< its PhysicalModel::range_cell_m; 0: levels do not depend on pulse length
-  double step_m = 0.0;  ///< RangeLines::step_m of the lines; > 0 if cell_m > 0
+  double step_m = 0.0;  ///< RangeBins::step_m of these bins; > 0 if cell_m > 0
 
   bool operator==(const UsualPulse&) const = default;
 };
@@ -278,7 +278,7 @@ enum class OutputScale {
 
 struct SonarSettings {
   Aperture aperture;
-  RangeLines range;
+  RangeBins range;
   Model model = Model::physical;
   PaperModel paper;
   PhysicalModel physical;

@@ -23,7 +23,6 @@ double configured_speed_mps(const PingConfig& config) {
   return std::clamp(config.sound_speed_mps(), grid_base_mps, grid_top_mps);
 }
 
-/// Settings of a job for the log.
 std::vector<Setting> settings_of(const PingJob& job) {
   std::vector<Setting> settings{{"range", fmt::format("{:.2f}m", job.range_m())},
                                 {"lines", fmt::format("{}", job.bins())},

@@ -25,7 +25,6 @@ void write_ci_header(ByteWriter& writer, const Origin& origin, RecordType type, 
   write_fields<Layout<CiHeader>>(writer, header);
 }
 
-/// Reads the header of a record of this type.
 CiHeader read_header_of(RecordType type, ByteReader& reader) {
   const CiHeader header = read_ci_header(reader);
   if (header.type != static_cast<std::uint8_t>(type)) {

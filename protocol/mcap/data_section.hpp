@@ -72,8 +72,8 @@ struct DataSection {
   std::size_t end = 0;  ///< end of the whole records: offset of DataEnd or of the first unreadable record
   bool ended = false;   ///< there is a DataEnd at `end`
   std::size_t last_chunk_end = 0;  ///< without its message indexes; 0 if there is no chunk
-  MessageIndexes last_indexes;     ///< message indexes of the last chunk
-  bool last_chunk_open = false;    ///< the last chunk has no CRC
+  MessageIndexes last_indexes;
+  bool last_chunk_open = false;  ///< the last chunk has no CRC
   /// Why the scan stopped before DataEnd or the end of the bytes. Other readers may be able to read the rest.
   std::optional<WireError> error;
   std::vector<DamagedChunk> damaged;  ///< parts that were skipped (OnDamage::skip)

@@ -12,7 +12,7 @@ namespace sonard::ping360 {
 namespace {
 
 constexpr std::chrono::milliseconds give_up_silence{100};
-constexpr std::size_t length_end = 4;  // end of the length field
+constexpr std::size_t length_end = 4;
 
 std::uint16_t u16le(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<std::uint16_t>(bytes[offset] | bytes[offset + 1] << 8);

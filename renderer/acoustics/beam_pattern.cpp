@@ -283,13 +283,13 @@ std::vector<BeamPattern::Span> BeamPattern::spans_of(const LineSums& sums, int l
   std::vector<Span> spans;
   for (int begin = 0; begin < lines; begin += lines_per_tile) {
     const int end = std::min(lines, begin + lines_per_tile);
-    bool even = skip.on(SkipRule::even_lines);
+    bool even = skip.on(SkipRule::even_bins);
     for (int k = begin; even && k < end; ++k) {
       const auto line = static_cast<std::size_t>(k);
       even = sums.most[line] - sums.least[line] <= linearity * sums.most[line];
     }
     if (even) {
-      skipped.add(SkipRule::even_lines, static_cast<std::uint64_t>(end - begin));
+      skipped.add(SkipRule::even_bins, static_cast<std::uint64_t>(end - begin));
     }
     if (spans.empty() || spans.back().even != even) {
       spans.push_back({begin, end, even});

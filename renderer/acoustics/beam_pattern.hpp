@@ -56,7 +56,7 @@ class BeamPattern {
 
   /// @param fine echo of the fine beams
   /// @param out gets the beams; its memory is reused
-  /// @param skipped counts even_lines and perfect_elements
+  /// @param skipped counts even_bins and perfect_elements
   void apply(const EchoImage& fine, EchoImage& out, WorkerPool& workers, const SkipSwitches& skip,
              SkipCounts& skipped) const;
 

@@ -75,7 +75,7 @@ std::optional<Phasors> FieldReader::unjoined(int bin) {
     if (field_.kept != nullptr) {
       evolve(bin);
     }
-    if (skips(SkipRule::long_lines)) {
+    if (skips(SkipRule::long_bins)) {
       return row(bin);
     }
   }

@@ -43,8 +43,7 @@ float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey
   return static_cast<float>(std::sqrt(decibels_to_power(db)));
 }
 
-InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range,
-                                    RandomKey key) {
+InterferenceBurst draw_interference(const Interference& interference, const RangeBins& range, RandomKey key) {
   if (!(uniform_number(key, 0) < interference.probability)) {
     return {};
   }

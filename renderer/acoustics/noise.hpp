@@ -45,6 +45,6 @@ struct InterferenceBurst {
 
 /// Draws the interference of one ping. First line and raise in dB are uniform; the logarithm of the length is
 /// uniform between half and twice the median.
-InterferenceBurst draw_interference(const Interference& interference, const RangeLines& range, RandomKey key);
+InterferenceBurst draw_interference(const Interference& interference, const RangeBins& range, RandomKey key);
 
 }  // namespace sonard::render

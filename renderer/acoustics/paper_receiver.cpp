@@ -41,8 +41,8 @@ class PaperBins {
   void add_range_bin(int bin, Quantizer& output) {
     const PaperModel& model = ping_.model;
     if (!(model.speckle_floor > 0) && !(block_.strongest(bin) > 0) &&
-        ping_.skip.on(SkipRule::lines_without_echo)) {
-      skipped_.add(SkipRule::lines_without_echo);
+        ping_.skip.on(SkipRule::bins_without_echo)) {
+      skipped_.add(SkipRule::bins_without_echo);
       return;
     }
     std::copy_n(block_.line(bin), beams_, value_.data());

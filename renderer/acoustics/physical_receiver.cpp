@@ -76,7 +76,7 @@ class PhysicalBins {
     const float strongest = block_.strongest(bin);
     note_echo(bin, strongest);
     has_echo_ =
-        strongest > 0 || ring_down != 0 || has_reverberation(bin) || !skips(SkipRule::lines_without_echo);
+        strongest > 0 || ring_down != 0 || has_reverberation(bin) || !skips(SkipRule::bins_without_echo);
     if (const float* steady = block_.steady(bin); steady != nullptr) {
       take_apart(block_.line(bin), steady);
     }
@@ -144,7 +144,7 @@ class PhysicalBins {
     if (!tables.rings) {
       return 0.0F;
     }
-    const bool over = bin >= tables.ring_down_lines && skips(SkipRule::ring_down_over);
+    const bool over = bin >= tables.ring_down_bins && skips(SkipRule::ring_down_over);
     return over ? 0.0F : ping_.ring_down * tables.ring_down[static_cast<std::size_t>(bin)];
   }
 

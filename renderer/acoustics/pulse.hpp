@@ -14,7 +14,7 @@ namespace sonard::render {
 
 /// Energy of a pulse re the usual pulse; for a tone per line. It includes the loss in the transducer's band.
 /// A pulse that is not a tone, without length, or without a usual pulse has only that loss.
-/// @param step_m RangeLines::step_m
+/// @param step_m RangeBins::step_m
 double pulse_energy(const PhysicalModel& model, double step_m);
 
 /// Mean response of a pulse of kind PhysicalModel::Pulse (docs/physics.md 2.6). The mean runs over all places

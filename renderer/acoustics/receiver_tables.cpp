@@ -84,7 +84,7 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       gain(tvg_amplitudes(model, range)),
       profile(noise_profile(settings)),
       ring_down(ring_down_amplitudes(model, range)),
-      ring_down_lines(render::ring_down_lines(model.ring_down, range)),
+      ring_down_bins(render::ring_down_bins(model.ring_down, range)),
       vehicle(vehicle_reverberation(model.ring_down, range)) {
   noise = noise_amplitudes(model, gain);
   const float codes = codes_per_amplitude(settings);

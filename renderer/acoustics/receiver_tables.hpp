@@ -13,7 +13,7 @@ namespace sonard::render {
 /// Tables of mode `physical` that depend on the settings alone; kept until these change.
 struct ReceiverTables {
   Aperture aperture;
-  RangeLines range;
+  RangeBins range;
   PhysicalModel model;
   bool sixteen_bit = false;
   OutputScale output_scale = OutputScale::linear;
@@ -29,8 +29,8 @@ struct ReceiverTables {
   std::vector<float> profile;    ///< per beam: noise amplitude re beams away from broadside
   std::vector<float> noise;      ///< per range bin: amplitude before TVG; 0: off
   std::vector<float> ring_down;  ///< per range bin: amplitude before TVG
-  int ring_down_lines = 0;       ///< lines that the ring-down reaches
-  std::vector<float> vehicle;    ///< per range bin: mean intensity of the vehicle's reverberation
+  int ring_down_bins = 0;
+  std::vector<float> vehicle;  ///< per range bin: mean intensity of the vehicle's reverberation
 
   ReceiverTables() = default;
   explicit ReceiverTables(const SonarSettings& settings);

@@ -26,7 +26,7 @@ double before_peak(const PhysicalModel& model, double range_m) {
 
 }  // namespace
 
-std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeLines& range) {
+std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeBins& range) {
   const RingDown& ring_down = model.ring_down;
   std::vector<float> amplitudes(static_cast<std::size_t>(range.count), 0.0F);
   const double peak = std::sqrt(decibels_to_power(ring_down.level_db));
@@ -39,7 +39,7 @@ std::vector<float> ring_down_amplitudes(const PhysicalModel& model, const RangeL
   return amplitudes;
 }
 
-std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeLines& range) {
+std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeBins& range) {
   std::vector<float> intensities(static_cast<std::size_t>(range.count), 0.0F);
   for (std::size_t k = 0; ring_down.on && k < intensities.size(); ++k) {
     const double range_m = (static_cast<double>(k) + 0.5) * range.step_m;
@@ -52,7 +52,7 @@ std::vector<float> vehicle_reverberation(const RingDown& ring_down, const RangeL
   return intensities;
 }
 
-int ring_down_lines(const RingDown& ring_down, const RangeLines& range) {
+int ring_down_bins(const RingDown& ring_down, const RangeBins& range) {
   return ring_down.on
              ? static_cast<int>(std::min<double>(range.count, std::ceil(ring_down.end_m / range.step_m)))
              : 0;

@@ -15,7 +15,7 @@ double tvg_db(const PhysicalModel& model, double range_m) {
       model.tvg_max_db);
 }
 
-std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range) {
+std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeBins& range) {
   std::vector<float> amplitudes(static_cast<std::size_t>(range.count));
   for (std::size_t k = 0; k < amplitudes.size(); ++k) {
     const double range_m = (static_cast<double>(k) + 0.5) * range.step_m;

@@ -12,6 +12,6 @@ namespace sonard::render {
 double tvg_db(const PhysicalModel& model, double range_m);
 
 /// Time-varying gain and gain setting of mode `physical` per range bin, as amplitude.
-std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeLines& range);
+std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeBins& range);
 
 }  // namespace sonard::render

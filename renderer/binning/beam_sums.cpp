@@ -6,8 +6,8 @@
 
 namespace sonard::render {
 
-BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
-                        WorkerPool& workers, std::vector<float> memory, const FillBeam& fill) {
+BinningResult bin_beams(int beams, const RangeBins& range, const BinningOptions& options, WorkerPool& workers,
+                        std::vector<float> memory, const FillBeam& fill) {
   BinningResult result;
   result.echo = std::move(memory);
   result.beams = beams;
@@ -39,7 +39,7 @@ BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions
   return result;
 }
 
-BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+BinningResult bin_patches(const Aperture& aperture, const RangeBins& range, const BinningOptions& options,
                           WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of) {
   // Upper bound of the weights of a mean, or the exact solid angle of the beam.
   const double height =
@@ -67,7 +67,7 @@ BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, con
   return bin_beams(aperture.beam_count(), range, options, workers, std::move(memory), fill);
 }
 
-BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
+BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeBins& range,
                            const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
   const ConeBearings bearings(*options.cone_aperture, std::move(columns));
   return bin_patches(*options.cone_aperture, range, options, workers, std::move(memory),

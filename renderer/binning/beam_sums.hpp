@@ -22,7 +22,7 @@ class BeamSums {
  public:
   /// @param solid_angle of the beam, steradians
   /// @param most_echo upper bound of the total echo that will be added
-  void reset(const RangeLines& range, double solid_angle, double most_echo, const BinningOptions& options) {
+  void reset(const RangeBins& range, double solid_angle, double most_echo, const BinningOptions& options) {
     lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
     mean_ = options.mean;
@@ -107,19 +107,19 @@ using FillBeam = std::function<bool(std::size_t beam, BeamSums& sums)>;
 /// Fills every beam, each in one job, and collects the sums. One thread owns a beam, so results do not depend
 /// on the number of threads.
 /// @param memory reused for BinningResult::echo, with any contents: saves allocating a megabyte per ping
-BinningResult bin_beams(int beams, const RangeLines& range, const BinningOptions& options,
-                        WorkerPool& workers, std::vector<float> memory, const FillBeam& fill);
+BinningResult bin_beams(int beams, const RangeBins& range, const BinningOptions& options, WorkerPool& workers,
+                        std::vector<float> memory, const FillBeam& fill);
 
 /// Puts the patches of a beam into `patches`, which is empty. Runs on any thread.
 using PatchesOfBeam = std::function<void(std::size_t beam, std::vector<EchoPatch>& patches)>;
 
 /// Makes and sums the patches of each beam in one job, so that they are summed while they are in the cache.
 /// @param memory see bin_beams()
-BinningResult bin_patches(const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+BinningResult bin_patches(const Aperture& aperture, const RangeBins& range, const BinningOptions& options,
                           WorkerPool& workers, std::vector<float> memory, const PatchesOfBeam& patches_of);
 
 /// Bins the patches in `columns`; beams are cones around the array of BinningOptions::cone_aperture.
-BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeLines& range,
+BinningResult bin_by_cones(std::vector<PatchColumn> columns, const RangeBins& range,
                            const BinningOptions& options, WorkerPool& workers, std::vector<float> memory);
 
 }  // namespace sonard::render

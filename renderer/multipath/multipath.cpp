@@ -172,7 +172,7 @@ void Multipath::collect_corners(const std::vector<CornerCandidate>& corners, con
 }
 
 /// Sums are exact (RangeProfile), so they do not depend on the order of patches or on threads.
-void Multipath::sum(const RangeLines& range, std::vector<float>& echo) {
+void Multipath::sum(const RangeBins& range, std::vector<float>& echo) {
   const auto lines = static_cast<std::size_t>(range.count);
   workers_.run(static_cast<int>(patches_of_beam_.size()), [&](int beam) {
     const std::vector<EchoPatch>& patches = patches_of_beam_[static_cast<std::size_t>(beam)];

@@ -43,7 +43,7 @@ class Multipath {
   GhostPaths::Result search_small_parts(const Pose& T_world_sonar, const PathLimits& limits) const;
   void collect_corners(const std::vector<CornerCandidate>& corners, const SonarSettings& settings,
                        const Pose& T_world_sonar, const PathLimits& limits);
-  void sum(const RangeLines& range, std::vector<float>& echo);
+  void sum(const RangeBins& range, std::vector<float>& echo);
 
   const World& world_;  // of the index, with bodies at their last poses
   WorkerPool& workers_;

@@ -40,7 +40,7 @@ double cos4_integral(double u) {
 /// Adds the echo of one azimuth to the lines of its beam (docs/physics.md 3.2, T2). At this azimuth a
 /// perpendicular wall is at range wall / (cos psi cos theta), so each range bounds an elevation. Lines nearer
 /// or farther than the wall within `elevation_limit` stay 0.
-void add_wall_echo(double psi, double width_rad, double elevation_limit, const RangeLines& range,
+void add_wall_echo(double psi, double width_rad, double elevation_limit, const RangeBins& range,
                    std::vector<double>& lines) {
   const double c = std::cos(psi);
   const double scale = 2 * c * c * c / (wall_m * wall_m) * width_rad;

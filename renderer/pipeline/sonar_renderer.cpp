@@ -37,7 +37,7 @@ constexpr double longest_range_m = 1e5;
 
 void check(const SonarSettings& settings) {
   check_aperture(settings.aperture);
-  const RangeLines& range = settings.range;
+  const RangeBins& range = settings.range;
   if (range.count < 1 || range.count > most_range_bins) {
     throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
                        std::to_string(most_range_bins));

@@ -100,7 +100,7 @@ PatchColumn column_of(const SampleGrid& grid, const ColumnPart& part, const std:
 }
 
 BinningResult bin_grid_by_cones(const SampleGrid& grid, const CellWeights& weights,
-                                const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                                const std::vector<const SurfaceSample*>& views, const RangeBins& range,
                                 const BinningOptions& options, WorkerPool& workers,
                                 std::vector<float> memory) {
   std::vector<std::vector<EchoPatch>> patches(grid.parts.size());
@@ -121,7 +121,7 @@ BinningResult bin_grid_by_cones(const SampleGrid& grid, const CellWeights& weigh
 }  // namespace
 
 BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
-                         const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                         const std::vector<const SurfaceSample*>& views, const RangeBins& range,
                          const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
   if (options.cone_aperture != nullptr) {
     return bin_grid_by_cones(grid, weights, views, range, options, workers, std::move(memory));

@@ -16,7 +16,7 @@ namespace sonard::render {
 /// @param views the samples of every view, row after row in the order of SubView
 /// @param memory see bin_beams()
 BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
-                         const std::vector<const SurfaceSample*>& views, const RangeLines& range,
+                         const std::vector<const SurfaceSample*>& views, const RangeBins& range,
                          const BinningOptions& options, WorkerPool& workers, std::vector<float> memory = {});
 
 }  // namespace sonard::render

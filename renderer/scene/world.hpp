@@ -103,7 +103,7 @@ class Terrain;
 struct TerrainParts {
   std::shared_ptr<const Terrain> terrain;
   std::size_t body;
-  std::size_t first_part;  ///< the first part of that body
+  std::size_t first_part;
 };
 
 /// Repairs and drops by a loader; shown by `sonard check`.

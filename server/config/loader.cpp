@@ -407,6 +407,9 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   const std::string expected = fmt::format("one of {}", fmt::join(names, ", "));
   const std::string schema = fmt::format(R"("enum": ["{}"])", fmt::join(names, R"(", ")"));
   std::vector<render::SkipRule> off;
+  section.renamed_value("off", "lines_without_echo", "bins_without_echo");
+  section.renamed_value("off", "long_lines", "long_bins");
+  section.renamed_value("off", "even_lines", "even_bins");
   section.parsed_list("off", off, &render::skip_rule_named, {expected, "rules", schema},
                       "rules that do not apply; sonard does the work that they would skip");
   for (const render::SkipRule rule : off) {

@@ -342,11 +342,27 @@ void YamlSection::renamed(std::string_view former, std::string_view key) {
 
 void YamlSection::renamed_value(std::string_view key, std::string_view former, std::string_view value) {
   const auto found = entry_of_.find(key);
-  if (found == entry_of_.end() || word(key) != former) {
+  if (found == entry_of_.end()) {
     return;
   }
-  warn(key, fmt::format("is '{}', which is a former name; write '{}'", former, value));
-  entries_[found->second].value.reset(YAML::Node(std::string(value)));
+  YAML::Node& node = entries_[found->second].value;
+  const auto is_former = [&](const YAML::Node& item) { return item.IsScalar() && item.Scalar() == former; };
+  const bool given =
+      node.IsSequence() ? std::any_of(node.begin(), node.end(), is_former) : word(key) == former;
+  if (!given) {
+    return;
+  }
+  warn(key, fmt::format("{} '{}', which is a former name; write '{}'", node.IsSequence() ? "has" : "is",
+                        former, value));
+  if (!node.IsSequence()) {
+    node.reset(YAML::Node(std::string(value)));
+    return;
+  }
+  for (YAML::Node item : node) {
+    if (is_former(item)) {
+      item = std::string(value);
+    }
+  }
 }
 
 std::string YamlSection::path_of(std::string_view key) const {

@@ -29,9 +29,9 @@ namespace sonard::server {
 /// Collects problems and the places of keys while one file is read.
 struct YamlFindings {
   std::vector<ConfigProblem> problems;
-  std::set<std::string, std::less<>> keys_with_problems;  ///< keys of `problems`
-  std::size_t problems_left_out = 0;                      ///< beyond the maximum
-  std::vector<UnknownKey> unknown_keys;                   ///< without a similar key in their section
+  std::set<std::string, std::less<>> keys_with_problems;
+  std::size_t problems_left_out = 0;     ///< beyond the maximum
+  std::vector<UnknownKey> unknown_keys;  ///< without a similar key in their section
   std::vector<WordForMapping> words_for_mappings;
   std::vector<ConfigWarning> warnings;  ///< each once
   KeyPositions positions;               ///< of the value of every key that was read
@@ -96,8 +96,8 @@ class YamlSection {
   void foreign(std::string_view key, std::string_view what_to_do) { foreign_.emplace_back(key, what_to_do); }
   /// Reads the key `former`, if a file still has it, as `key`, and warns. Call it before `key` is read.
   void renamed(std::string_view former, std::string_view key);
-  /// Reads the value `former` of a key, if a file still has it, as `value`, and warns. Call it before `key`
-  /// is read.
+  /// Reads the value `former` of a key, or of an item of its list, if a file still has it, as `value`, and
+  /// warns. Call it before `key` is read.
   void renamed_value(std::string_view key, std::string_view former, std::string_view value);
   std::string path_of(std::string_view key) const;
   /// If a key is not given, its place is the place of the key that gives its default.

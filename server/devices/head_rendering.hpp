@@ -88,7 +88,6 @@ class HeadRendering {
   void count_missing_pose() { ++counters_.pings_without_pose; }
 
   const RenderCounters& counters() const { return counters_; }
-  /// Statistics of the newest rendered ping.
   const render::PingStatistics& newest_statistics() const { return newest_; }
 
  private:

@@ -30,7 +30,6 @@ struct LoggedPing {
   std::size_t place = 0;           ///< index in the reader
 };
 
-/// A head of a log.
 struct LoggedHead {
   std::string name;  ///< empty if the log has no name
   std::string type;  ///< its type in the configuration; empty if the log does not have it

@@ -123,7 +123,7 @@ render::SonarRenderer& BodyTruth::renderer_of(std::size_t body) {
 std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& request) {
   render::PingRequest alone = request;
   alone.settings = truth_settings(request.settings);
-  const render::RangeLines& range = request.settings.range;
+  const render::RangeBins& range = request.settings.range;
   const auto bins = static_cast<std::size_t>(range.output_count()) *
                     static_cast<std::size_t>(request.settings.aperture.beam_count());
   const bool paper = request.settings.model == render::Model::paper;

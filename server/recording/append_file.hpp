@@ -19,7 +19,6 @@ class AppendFile {
 
   /// Creates a file that must not exist. On failure the result is not open and `error` has the reason.
   static AppendFile create(const std::filesystem::path& path, std::error_code& error);
-  /// Opens a file to append to it.
   static AppendFile open(const std::filesystem::path& path, std::error_code& error);
 
   bool is_open() const { return fd_ >= 0; }

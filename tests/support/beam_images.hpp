@@ -19,7 +19,7 @@ using BeamEcho = std::function<double(double psi_from, double psi_to, double r1,
 /// Computes `echo` for each bin of the ping, on several threads.
 inline render::EchoImage image_of_beams(const render::SonarSettings& settings, const BeamEcho& echo) {
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
-  const render::RangeLines& range = settings.range;
+  const render::RangeBins& range = settings.range;
   render::EchoImage image{settings.aperture.beam_count(), range.count, {}};
   image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
   std::atomic<int> next_beam{0};

@@ -61,7 +61,7 @@ PatchesOfCells all_patches(Shading& shading, std::span<const SliceCell* const> c
 }
 
 BinningResult bin_slices_by_cones(Shading& shading, std::span<const SliceCell* const> cells,
-                                  const RangeLines& range, const BinningOptions& options, WorkerPool& workers,
+                                  const RangeBins& range, const BinningOptions& options, WorkerPool& workers,
                                   std::vector<float> memory) {
   const PatchesOfCells patches = all_patches(shading, cells, workers);
   std::vector<PatchColumn> columns;
@@ -88,7 +88,7 @@ std::vector<std::span<const SliceCell* const>> cells_by_beam(std::span<const Sli
 }
 
 BinningResult bin_slices_by_beam(Shading& shading, std::span<const SliceCell* const> cells,
-                                 const Aperture& aperture, const RangeLines& range,
+                                 const Aperture& aperture, const RangeBins& range,
                                  const BinningOptions& options, WorkerPool& workers,
                                  std::vector<float> memory) {
   const auto by_beam = cells_by_beam(cells, aperture.beam_count());
@@ -111,7 +111,7 @@ BinningResult bin_slices_by_beam(Shading& shading, std::span<const SliceCell* co
 }  // namespace
 
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
-                         const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+                         const Aperture& aperture, const RangeBins& range, const BinningOptions& options,
                          WorkerPool& workers, std::vector<float> memory) {
   Shading shading(slices);
   BinningResult result =

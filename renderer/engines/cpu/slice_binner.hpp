@@ -14,7 +14,7 @@ namespace sonard::render {
 /// @param cells of `slices`, from port to starboard
 /// @param memory see bin_beams()
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
-                         const Aperture& aperture, const RangeLines& range, const BinningOptions& options,
+                         const Aperture& aperture, const RangeBins& range, const BinningOptions& options,
                          WorkerPool& workers, std::vector<float> memory);
 
 }  // namespace sonard::render

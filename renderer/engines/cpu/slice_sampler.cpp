@@ -48,7 +48,7 @@ void SliceSampler::lay_first_slices(const Setting& setting) {
 }
 
 std::vector<const SliceCell*> SliceSampler::sample(const Pose& T_world_sonar, const Aperture& aperture,
-                                                   const RangeLines& range, double sampled_range_m,
+                                                   const RangeBins& range, double sampled_range_m,
                                                    const SurfaceModel& surface,
                                                    const SliceAccuracy& accuracy) {
   world_.place(T_world_sonar);

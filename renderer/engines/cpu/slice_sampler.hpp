@@ -55,7 +55,7 @@ class SliceSampler {
   /// threads.
   /// @param sampled_range_m range up to which surfaces are found; at least the range of the lines
   std::vector<const SliceCell*> sample(const Pose& T_world_sonar, const Aperture& aperture,
-                                       const RangeLines& range, double sampled_range_m,
+                                       const RangeBins& range, double sampled_range_m,
                                        const SurfaceModel& surface, const SliceAccuracy& accuracy);
 
   /// Makes the patches of one of these cells. Any thread may call it.

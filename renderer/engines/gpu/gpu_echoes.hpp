@@ -38,7 +38,7 @@ class GpuEchoes {
 
   struct Setting {
     const Aperture& aperture;
-    const RangeLines& range;
+    const RangeBins& range;
     const SurfaceModel& surface;
     const SliceAccuracy& accuracy;  ///< without within_facets: masks are made by engine `cpu`
     const BinningOptions& options;  ///< footprints and beams by azimuth only

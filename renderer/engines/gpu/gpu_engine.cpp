@@ -108,7 +108,7 @@ struct GpuEngine::Ping {
         weights(probe_weights(of.request.settings.aperture, fan.tan_limit())) {}
 
   GpuSlices::PingSetting seen(const Refraction& bend) const {
-    const RangeLines& range = job.request.settings.range;
+    const RangeBins& range = job.request.settings.range;
     return {.fan = fan,
             .weights = weights,
             .line_m = static_cast<float>(range.step_m),

@@ -98,7 +98,7 @@ void AccuracyTest::expect_within(const AccuracyLimits& limits, const ImageAccura
   EXPECT_LE(found.centroid_bins, limits.centroid_bins) << what;
 }
 
-Scene forward_looking_scene(std::vector<render::Body> bodies, const render::RangeLines& range) {
+Scene forward_looking_scene(std::vector<render::Body> bodies, const render::RangeBins& range) {
   Scene scene;
   scene.world = make_world(std::move(bodies));
   scene.settings.aperture.beam_edges_rad = render::equal_angle_edges(256, 2 * std::numbers::pi / 3);

@@ -71,6 +71,6 @@ inline std::string case_name(const ::testing::TestParamInfo<AccuracyCase>& info)
 /// The scene of the targets: 256 beams over 120 x 20 degrees, no absorption, mu = 1.
 /// @param range by default 1000 lines of 20 mm
 Scene forward_looking_scene(std::vector<render::Body> bodies,
-                            const render::RangeLines& range = {1000, 0.02, 0, false});
+                            const render::RangeBins& range = {1000, 0.02, 0, false});
 
 }  // namespace sonard::test

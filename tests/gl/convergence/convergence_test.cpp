@@ -22,7 +22,7 @@ Scene narrowed(Scene scene, double psi) {
 
 render::EchoImage truth_of(const Scene& scene) {
   const auto& edges = scene.settings.aperture.beam_edges_rad;
-  const render::RangeLines& range = scene.settings.range;
+  const render::RangeBins& range = scene.settings.range;
   render::EchoImage image{scene.settings.aperture.beam_count(), range.count, {}};
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
     for (int k = 0; k < range.count; ++k) {

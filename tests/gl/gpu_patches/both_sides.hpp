@@ -139,7 +139,7 @@ class BothSides {
  private:
   void bin(const std::vector<EchoPatch>& patches, float EchoPatch::*amount, float EchoPatch::*gradient,
            double largest, float* to) const {
-    const RangeLines& range = ping_.settings.range;
+    const RangeBins& range = ping_.settings.range;
     const double per_m = 1.0 / range.step_m;
     const auto of_smears = static_cast<float>(per_m);
     RangeProfile profile;

@@ -99,7 +99,7 @@ struct PingOnCpu {
   explicit PingOnCpu(const std::string& scene_name) : scene(test::make_scene(scene_name)) {}
 
   GpuSlices::PingSetting setting() const {
-    const RangeLines& range = scene.settings.range;
+    const RangeBins& range = scene.settings.range;
     return {.fan = fan,
             .weights = weights,
             .line_m = static_cast<float>(range.step_m),

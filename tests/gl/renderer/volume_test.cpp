@@ -34,7 +34,7 @@ Body screen(const glm::dvec3& corner, const glm::dvec3& along, const glm::dvec3&
 
 /// s_v times the open solid angle of a beam times dr r^-2 10^(-alpha r / 5), in the middle of a line.
 double expected_echo(const PingRequest& request, double open_sr, int line) {
-  const RangeLines& range = request.settings.range;
+  const RangeBins& range = request.settings.range;
   const double range_m = (line + 0.5) * range.step_m;
   return std::pow(10.0, request.settings.physical.volume_scattering_db / 10) * open_sr * range.step_m /
          (range_m * range_m) * std::pow(10.0, -request.settings.physical.absorption_db_per_m * range_m / 5);

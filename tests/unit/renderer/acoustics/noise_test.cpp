@@ -25,7 +25,7 @@ TEST(Noise, LevelFollowsFromTheSonarEquation) {
 
 TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
   const Interference settings{0.07, 2, 11, 4, 0.1};
-  const RangeLines range{1000, 0.05, 0, false};
+  const RangeBins range{1000, 0.05, 0, false};
   constexpr int pings = 100'000;
   double hit = 0, first = 0, raise_db = 0, longer = 0, to_the_end = 0;
   for (int ping = 0; ping < pings; ++ping) {
@@ -115,7 +115,7 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
   PhysicalModel model;
   model.ring_down = {true, -6, 0.3, 0.9};
   const RingDown& ring_down = model.ring_down;
-  const RangeLines range{2000, 0.001, 0, false};
+  const RangeBins range{2000, 0.001, 0, false};
   const std::vector<float> amplitude = ring_down_amplitudes(model, range);
   const auto level_db = [&](double range_m) {
     return 20 * std::log10(static_cast<double>(amplitude[static_cast<std::size_t>(range_m / 0.001)]));
@@ -125,8 +125,8 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
   EXPECT_NEAR(level_db(0.3), -6, 0.1);
   EXPECT_NEAR(level_db(0.6), -46, 0.1);
   EXPECT_NEAR(level_db(0.9), -86, 0.1);
-  EXPECT_EQ(ring_down_lines(ring_down, range), 900);
-  EXPECT_EQ(ring_down_lines({}, range), 0);
+  EXPECT_EQ(ring_down_bins(ring_down, range), 900);
+  EXPECT_EQ(ring_down_bins({}, range), 0);
 }
 
 // The pulse overdrives the receiver: samples are even from the first line up to the peak, with any TVG.

@@ -96,6 +96,13 @@ TEST_F(SkipSection, EveryRuleIsOnUnlessItIsListed) {
   EXPECT_EQ(skip, SkipSwitches{}.turn_off(SkipRule::unchanged_scene).turn_off(SkipRule::empty_beams));
 }
 
+TEST_F(SkipSection, FormerNamesAreReadWithAWarning) {
+  const auto loaded = load(server::minimal_config + "skip: {off: [empty_beams, even_lines]}\n");
+  EXPECT_EQ(loaded.config.skip, SkipSwitches{}.turn_off(SkipRule::empty_beams).turn_off(SkipRule::even_bins));
+  ASSERT_EQ(loaded.warnings.size(), 1u);
+  EXPECT_EQ(loaded.warnings[0].message, "has 'even_lines', which is a former name; write 'even_bins'");
+}
+
 TEST_F(SkipSection, UnknownRuleIsReportedWithItsPlace) {
   const auto said = complaints(server::minimal_config + "skip:\n  off: [empty_beams, full_beams]\n");
   ASSERT_EQ(said.size(), 1u);

@@ -81,17 +81,17 @@ void expect_within_bound(SkipRule rule, const PingRequest& request, std::uint64_
 }
 
 TEST(ReceiverRules, LinesWithoutEchoGetNoSpeckle) {
-  expect_within_bound(SkipRule::lines_without_echo, request_of(64), lines - lines_with_echo);
+  expect_within_bound(SkipRule::bins_without_echo, request_of(64), lines - lines_with_echo);
 }
 
 TEST(ReceiverRules, LinesWithoutEchoGetNoSpeckleInThePaperEither) {
   PingRequest request = request_of(64);
   request.settings.model = Model::paper;
   request.settings.paper.speckle = PaperModel::Speckle::folded_gaussian;
-  expect_within_bound(SkipRule::lines_without_echo, request, lines - lines_with_echo);
+  expect_within_bound(SkipRule::bins_without_echo, request, lines - lines_with_echo);
   // A floor is present without an echo too.
   request.settings.paper.speckle_floor = 0.03;
-  expect_within_bound(SkipRule::lines_without_echo, request, 0);
+  expect_within_bound(SkipRule::bins_without_echo, request, 0);
 }
 
 TEST(ReceiverRules, NearFieldIsNotWorkedOut) {
@@ -145,10 +145,10 @@ TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
 // A row of speckle for every line with an echo, and one of noise for every line.
 TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
   PingRequest request = request_of(64);
-  expect_within_bound(SkipRule::long_lines, request, lines + lines_with_echo);
+  expect_within_bound(SkipRule::long_bins, request, lines + lines_with_echo);
   request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
   request.settings.physical.range_cell_m = 0.02;
-  expect_within_bound(SkipRule::long_lines, request, 0);
+  expect_within_bound(SkipRule::long_bins, request, 0);
 }
 
 // nu is 30 at 0.4 m and exceeds 20 beyond 0.267 m: in the lines with an echo, from 27 to 49.
@@ -223,8 +223,8 @@ TEST(ReceiverRules, TablesAreMadeOnce) {
 TEST(ReceiverRules, AllOffTogetherTheImageIsTheSameToOneCode) {
   PingRequest request = request_of(64);
   request.settings.physical.near_field_blank_m = 0.3;
-  const Outcome on = two_pings(SkipRule::lines_without_echo, {}, request);
-  const Outcome off = two_pings(SkipRule::lines_without_echo, SkipSwitches::none(), request);
+  const Outcome on = two_pings(SkipRule::bins_without_echo, {}, request);
+  const Outcome off = two_pings(SkipRule::bins_without_echo, SkipSwitches::none(), request);
   for (std::size_t i = 0; i < on.pings[0].size(); ++i) {
     ASSERT_LE(std::abs(on.pings[0][i] - off.pings[0][i]), 1) << i;
   }

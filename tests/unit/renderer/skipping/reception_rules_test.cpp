@@ -107,10 +107,10 @@ TEST(ReceptionRules, BeamsFarWiderThanTheArraysStaySeparate) {
 
 // 96 lines of 100 without an echo, and all from 160 on, are whole tiles of 32.
 TEST(ReceptionRules, EvenLinesAreNotSpreadOverBeams) {
-  expect_within_bound(SkipRule::even_lines, gemini(), 96 + 96);
+  expect_within_bound(SkipRule::even_bins, gemini(), 96 + 96);
   SonarSettings with_errors = gemini();
   with_errors.aperture.element_phase_sd_rad = 0.5;
-  expect_within_bound(SkipRule::even_lines, with_errors, 96 + 96);
+  expect_within_bound(SkipRule::even_bins, with_errors, 96 + 96);
 }
 
 TEST(ReceptionRules, PerfectElementsLeakNothing) {

@@ -34,16 +34,16 @@ struct ByRange {
   int end_range;
 };
 
-class RangeLines : public testing::TestWithParam<ByRange> {};
+class RangeBins : public testing::TestWithParam<ByRange> {};
 
-TEST_P(RangeLines, AreThoseSeenOnTheWire) {
+TEST_P(RangeBins, AreThoseSeenOnTheWire) {
   PingSettings settings;
   settings.range_m = GetParam().range_m;
   settings.sound_speed_mps = GetParam().sound_speed_mps;
   EXPECT_EQ(make_ping_config(settings).end_range, GetParam().end_range);
 }
 
-INSTANTIATE_TEST_SUITE_P(Observed, RangeLines,
+INSTANTIATE_TEST_SUITE_P(Observed, RangeBins,
                          testing::Values(ByRange{1, 1500, 121}, ByRange{5, 1500, 603},
                                          ByRange{10, 1500, 1206}, ByRange{30, 1500, 3617},
                                          ByRange{50, 1500, 6028}, ByRange{75, 1500, 9042},

@@ -51,7 +51,7 @@ TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
   }
 }
 
-TEST(GeminiSettings, RangeLinesAreThoseOfTheJob) {
+TEST(GeminiSettings, RangeBinsAreFromTheJob) {
   const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   EXPECT_EQ(settings.range.count, 2411);
   EXPECT_EQ(settings.range.output_count(), 1205);
