@@ -34,7 +34,7 @@ endif()
 
 # Debian has OpenCVConfig.cmake in libopencv-dev, which depends on desktop packages; a few libraries are enough.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-set(parts core imgproc features2d)
+set(parts core imgproc)
 if(SONARD_TESTS)
   list(APPEND parts imgcodecs)  # tests read written files with it; it depends on GDAL and a hundred libraries more
 endif()

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "clients/sonarview/compare/subcommand.hpp"
 #include "common/command_line/help_formatter.hpp"
 #include "sonard_build_info.hpp"
 
@@ -42,7 +41,6 @@ std::optional<Run> parse_command_line(int argc, const char* const* argv, ExitSta
   for (const Subcommand& device : devices) {
     add(device);
   }
-  add(compare_subcommand());
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sonarview: a client program for sonars that also compares images. Usage: docs/sonarview.md.
+// sonarview: a client program for sonars. Usage: docs/sonarview.md.
 #include <fmt/format.h>
 
 #include <cstdio>

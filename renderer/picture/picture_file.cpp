@@ -8,17 +8,13 @@
 
 #include <csetjmp>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 
 namespace sonard::picture {
 namespace {
-
-constexpr std::uint64_t most_pixels = std::uint64_t{1} << 28;
 
 using Turbo = std::unique_ptr<std::remove_pointer_t<tjhandle>, int (*)(tjhandle)>;
 
@@ -67,41 +63,6 @@ bool write_png(const cv::Mat& picture, int colour_type, int level, std::string& 
   return true;
 }
 
-cv::Mat from_png(std::string_view bytes) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  cv::Mat picture;
-  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) != 0 &&
-      std::uint64_t{image.width} * image.height <= most_pixels) {
-    image.format = PNG_FORMAT_BGRA;
-    image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
-    cv::Mat with_alpha(static_cast<int>(image.height), static_cast<int>(image.width), CV_8UC4);
-    if (png_image_finish_read(&image, nullptr, with_alpha.data, 0, nullptr) != 0) {
-      cv::cvtColor(with_alpha, picture, cv::COLOR_BGRA2BGR);
-    }
-  }
-  png_image_free(&image);
-  return picture;
-}
-
-cv::Mat from_jpeg(std::string_view bytes) {
-  const Turbo turbo(tjInitDecompress(), tjDestroy);
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  int width = 0;
-  int height = 0;
-  int subsampling = 0;
-  int colours = 0;
-  if (!turbo ||
-      tjDecompressHeader3(turbo.get(), data, bytes.size(), &width, &height, &subsampling, &colours) != 0 ||
-      static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) > most_pixels) {
-    return {};
-  }
-  cv::Mat picture(height, width, CV_8UC3);
-  const int failed = tjDecompress2(turbo.get(), data, bytes.size(), picture.data, width, 0, height, TJPF_BGR,
-                                   TJFLAG_ACCURATEDCT);
-  return failed != 0 ? cv::Mat() : picture;
-}
-
 }  // namespace
 
 std::string png_file(const cv::Mat& picture, int level) {
@@ -125,10 +86,6 @@ std::string jpeg_file(const cv::Mat& picture, int quality) {
                                          picture.rows, tjGetErrorStr2(turbo.get())));
   }
   return {reinterpret_cast<const char*>(bytes), size};
-}
-
-cv::Mat from_picture_file(std::string_view bytes) {
-  return bytes.starts_with("\xFF\xD8") ? from_jpeg(bytes) : from_png(bytes);
 }
 
 }  // namespace sonard::picture

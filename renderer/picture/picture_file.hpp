@@ -4,7 +4,6 @@
 
 #include <opencv2/core/mat.hpp>
 #include <string>
-#include <string_view>
 
 namespace sonard::picture {
 
@@ -19,9 +18,5 @@ std::string png_file(const cv::Mat& picture, int level);
 /// @param quality 1 to 100
 /// @throws std::runtime_error if memory runs out, or a side exceeds 65,500 pixels
 std::string jpeg_file(const cv::Mat& picture, int quality);
-
-/// Decodes a PNG or a JPEG to 8-bit BGR, without transparency; 16-bit samples lose their lower half.
-/// @return CV_8UC3; empty if the bytes are not a complete picture of at most 2^28 pixels
-cv::Mat from_picture_file(std::string_view bytes);
 
 }  // namespace sonard::picture

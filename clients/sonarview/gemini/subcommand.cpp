@@ -18,7 +18,6 @@ constexpr const char* footer = R"(Examples:
   sonarview --continuous 100 --pings 200 --log-pings      a ping every 100 ms, one line per ping
   sonarview --drop-rx 0.05 --drop-tx 0.05 --pings 200     a link that loses 5 % in both directions
   sonarview --client-address 10.61.19.1                  a head on another network
-  sonarview compare --help                                compare two images
 
 Exit status: 0 all pings complete; 1 a socket or file could not be opened; 2 invalid command line;
 3 no head; 4 a ping was incomplete, or no ping arrived.)";

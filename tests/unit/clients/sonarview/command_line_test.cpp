@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "clients/sonarview/compare/options.hpp"
 #include "clients/sonarview/gemini/options.hpp"
 #include "clients/sonarview/gemini/sockets.hpp"
 #include "clients/sonarview/micron/options.hpp"
@@ -64,15 +63,6 @@ void expect_refused(const std::vector<const char*>& words, const std::string& me
   EXPECT_FALSE(parsed.command_line);
   EXPECT_EQ(parsed.status, ExitStatus::usage);
   EXPECT_THAT(parsed.err, HasSubstr(message));
-}
-
-TEST(CommandLine, TwoImagesToCompare) {
-  const CompareOptions options =
-      options_of<CompareArguments>("compare", {"a.png", "dump/b.csv#3", "--json", "c.json"});
-  EXPECT_EQ(options.a, "a.png");
-  EXPECT_EQ(options.b, "dump/b.csv#3");
-  EXPECT_EQ(options.json, "c.json");
-  expect_refused({"compare", "a.png"}, "b is required");
 }
 
 TEST(CommandLine, WithoutASubcommandItIsAGemini) {
@@ -191,7 +181,6 @@ TEST(CommandLine, TheWindowBelongsToFourBitLines) {
 
 TEST(CommandLine, OptionsBeforeTheSubcommandAreNotLostInSilence) {
   expect_refused({"--range", "20", "micron", "--tty", "x"}, "--range: is before 'micron'");
-  expect_refused({"--range", "20", "compare", "a", "b"}, "--range: is before 'compare'");
   expect_refused({"micron", "--tty", "x", "--pings", "3"}, "--pings");
 }
 
