@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks docker/kubernetes with the published schemas, and runs its commands as a cluster would.
+"""Checks clients/examples/kubernetes with the published schemas, and runs its commands as a cluster would.
 
     manifests_test.py --programs DIR --npm DIR [TestCase.test_name ...]
 
@@ -24,7 +24,7 @@ from lab import Deadline, OwnMachine, Program  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
 NPM = None  # folder with check_manifests.js and its node_modules
-MANIFESTS = REPOSITORY / "docker" / "kubernetes"
+MANIFESTS = REPOSITORY / "clients" / "examples" / "kubernetes"
 PATIENCE_S = 300
 
 

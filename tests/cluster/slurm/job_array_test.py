@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docker/slurm with Slurm itself: slurmctld, slurmd and munged on loopback, with their own folders and ports.
+"""clients/examples/slurm with Slurm itself: slurmctld, slurmd and munged on loopback, with their own folders and ports.
 
     job_array_test.py --programs DIR [TestCase.test_name ...]
 
@@ -29,7 +29,7 @@ import glf_reader  # noqa: E402
 from data_set import FRAMES, Files, frames, sums  # noqa: E402
 
 PROGRAMS = None  # folder of the programs under test
-RENDER = REPOSITORY / "docker" / "slurm" / "render.sh"
+RENDER = REPOSITORY / "clients" / "examples" / "slurm" / "render.sh"
 PATIENCE_S = 600
 CORES = 4  # of the node, whatever this machine has
 SLURM_CONF = """
