@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares two images of sonars by the five measures of Cerqueira et al. 2017, 4.3 and table 4 (README.md beside
-this package). Needs NumPy and OpenCV (python3-opencv).
+"""Compares two images of sonars by the five measures of Cerqueira et al. 2017, 4.3 and table 4
+(docs/sonarview.md). Needs NumPy and OpenCV (python3-opencv).
 
     python3 -m sonard_client.compare dump/bow.csv#12 dump/bow.csv#13 --json difference.json
 """

@@ -96,6 +96,7 @@ class Mention:
 
 
 SONARD, VIEW, CAST = r"(build/release/bin/)?sonard ", r"(build/release/bin/)?sonarview ", r"(build/release/bin/)?posecast "
+COMPARE = r"PYTHONPATH=clients/python python3 -m sonard_client.compare "
 GEMINI, VEHICLE = ("configs/demo.yaml",), ("10.61.19.200", "10.61.19.10")
 READY, PROGRESS = 'grep -q "sonard ready" output', 'grep -qE "[1-9][0-9]* (pings|lines)" output'
 PICTURE, SCAN = "ls out*/fan-last.png || ls out*/*/fan-last.png", "ls out*/turn-last.png"
@@ -121,7 +122,7 @@ RULES = [
     NotRun(r"(cmake|ctest) .*", "configures, builds or installs"),
     NotRun(r"build/release/bin/(\w+_(test|bench|pictures)|tune_presets)( .*)?", "a test or measurement by itself, of minutes"),
     NotRun(r"tests/bench/.*", "draws the measurements of the command before"),
-    NotRun(r"(docker|kubectl|apt) .*|docker/.*", "needs another host, a cluster or packages; tests/containers and tests/cluster run them"),
+    NotRun(r"(docker|kubectl|apt) .*|docker/.*|clients/examples/slurm/.*", "needs another host, a cluster or packages; tests/containers and tests/cluster run them"),
     NotRun(r"sudo .*", "needs sudo, and interfaces with these names; tests/system/gemini/link_test.py makes the same network"),
     NotRun(r"for n in 1 2; do\n.*", "needs the host's interface enp3s0"),
     NotRun(r"(\S*roscast|roscore|rostopic|ros2|colcon|pip|ln|cd REPOSITORY) .*", "needs ROS; tests/simulators has rosmaster and stand-ins"),
@@ -165,10 +166,10 @@ RULES = [
     Run(VIEW + r"oculus --frequency high .*", until=PROGRESS, beside=("configs/demo-oculus.yaml",)),
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --out out", until=SCAN, beside=("configs/demo-ping360.yaml",)),
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/oculus-and-ping360.yaml",)),
-    Run(VIEW + r"compare out/.*", before=MAKE_LOG + " && mkdir -p out other && cp made/ping_000000.png out/polar-last.png && "
-                                                    "cp made/ping_000001.png other/polar-last.png"),
-    Run(VIEW + r"compare dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),
-    Run(VIEW + r"compare turn.jsonl.*", before=TURNS),
+    Run(COMPARE + r"out/.*", before=MAKE_LOG + " && mkdir -p out other && cp made/ping_000000.png out/polar-last.png && "
+                                               "cp made/ping_000001.png other/polar-last.png"),
+    Run(COMPARE + r"dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),
+    Run(COMPARE + r"turn.jsonl.*", before=TURNS),
     Run(CAST + r"(configs/trajectories/docking_demo.csv( --loop)?|FILE|survey.tum .*)", until=POSES_ARRIVE, beside=GEMINI),
     Run(CAST + r"dive.csv --tcp --to 10.61.19.200:14601 .*", until="test -s taken", addresses=VEHICLE, before=TAKE_POSES),
     Run(CAST + r"dive.csv --tcp --to 127.0.0.1:14601 .*", before=TAKE_POSES),
@@ -285,13 +286,15 @@ class Documentation(unittest.TestCase):
         (place / "two-heads.yaml").write_text(TWO_HEADS, encoding="utf-8")
         (place / "dump.yaml").write_text(DUMP, encoding="utf-8")
         (place / "command.sh").write_text(filled_in(command.text) + "\n", encoding="utf-8")
-        run = "bash command.sh" if "\n" in command.text else filled_in(command.text)
+        is_script = "\n" in command.text or "=" in command.text.split()[0]
+        run = "bash command.sh" if is_script else filled_in(command.text)
         script = SCRIPT.format(addresses="".join(f"ip address add {address}/24 dev lo\n" for address in rule.addresses),
                                servers="".join(SERVER.format(config=config, number=k) for k, config in enumerate(rule.beside)),
                                before=rule.before,
                                command=UNTIL.format(run=run, until=rule.until, shown=re.sub(r"[^\w /.*-]", " ", rule.until))
                                if rule.until else TO_THE_END.format(patience=PATIENCE_S, run=run))
-        environment = {**os.environ, "PATH": f"{PROGRAMS}:{os.environ['PATH']}", "HOME": str(place), "XDG_CACHE_HOME": str(place)}
+        path = f"{PROGRAMS}:{os.path.dirname(sys.executable)}:{os.environ['PATH']}"  # python3 is this one
+        environment = {**os.environ, "PATH": path, "HOME": str(place), "XDG_CACHE_HOME": str(place)}
         done = subprocess.run(["unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc", "bash", "-c", script], cwd=place,
                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
                               errors="replace", timeout=2 * PATIENCE_S, check=False)
