@@ -25,6 +25,7 @@ class BeamSums {
   void reset(const RangeBins& range, double solid_angle, double most_echo, const BinningOptions& options) {
     lines_per_m_ = 1.0 / range.step_m;
     solid_angle_ = static_cast<float>(solid_angle);
+    least_weight_ = static_cast<float>(solid_angle) * (options.footprint ? full_share : full_share_of_points);
     mean_ = options.mean;
     weighs_ = options.mean || options.open_water;
     const auto lines = static_cast<std::size_t>(range.count);
@@ -73,7 +74,7 @@ class BeamSums {
       return;
     }
     for (std::size_t k = 0; k < lines; ++k) {
-      out[k] = weights_[k] > least_share * solid_angle_ ? std::min(1.0F, out[k] / weights_[k]) : 0.0F;
+      out[k] = std::min(1.0F, out[k] / std::max(weights_[k], least_weight_));
     }
   }
 
@@ -96,6 +97,7 @@ class BeamSums {
   std::vector<float> weights_;
   double lines_per_m_ = 1.0;
   float solid_angle_ = 1.0F;
+  float least_weight_ = 1.0F;  ///< divisor of smaller weights, steradians; > 0
   bool mean_ = false;
   bool weighs_ = false;  ///< weights are summed too
 };

@@ -22,8 +22,11 @@ struct BinningOptions {
   SkipSwitches skip{};  ///< for SkipRule::empty_beams, with slices
 };
 
-/// Share of a beam in a line below which its mean is 0: smaller weights are mostly rounding.
-inline constexpr float least_share = 0x1p-32F;
+/// Share of a beam in a line below which its mean fades, in proportion to the share (docs/physics.md 1.2,
+/// A12): a sample of 3 views of 256 x 512 samples for 256 beams.
+inline constexpr float full_share = 1.0F / 1536;
+/// The same for samples that are points: each one counts, whatever its share.
+inline constexpr float full_share_of_points = 0x1p-32F;
 /// Open share of a beam below which it is blocked: the rest is the error of the solid angles.
 inline constexpr double least_open = 2e-3;
 

@@ -7,7 +7,7 @@ layout(std430, binding = 1) buffer Counts { PingCounts counts; };
 layout(std430, binding = 2) coherent buffer Image { float image[]; };  // [beam][line]; then weights, later open water
 layout(std430, binding = 3) readonly buffer Sums { uint sums[]; };     // see bin.comp
 
-const float least_share = 2.3283064e-10;  // as in binning.hpp
+const float full_share = 1.0 / 1536.0;  // as in binning.hpp
 const float least_open = 2e-3;
 
 shared uvec2 s_slope[GROUP], s_sum[GROUP];
@@ -141,8 +141,8 @@ void main() {
 #if WEIGHED
   float solid_angle = solid_angles[beam];
   for (uint k = begin; k < end && echo.is_mean != 0; ++k) {
-    float weight = image[weights_at + k];
-    image[echo_at + k] = weight > least_share * solid_angle ? min(1.0, image[echo_at + k] / weight) : 0.0;
+    float weight = max(image[weights_at + k], full_share * solid_angle);
+    image[echo_at + k] = min(1.0, image[echo_at + k] / weight);
   }
   if (echo.has_open_water != 0) {
     write_open(weights_at, solid_angle);

@@ -41,11 +41,8 @@ ConfigScenes config_scenes(int more_poses, int bearings);
 
 /// In each scene, with preset `default` and before speckle and noise, the image of engine `gpu` must be that
 /// of `cpu`: RMS of the difference over RMS of the image, over all bins of a fan or of all bearings of a
-/// turn.
-///
-/// Mode `physical`: within 1e-3. Mode `paper`: within 2e-2, because each bin is a mean. A bin may hold 1e-5
-/// of its beam, and the last bits of the slices decide about its mean. For fixed grids and conical beams
-/// nothing is promised, because the engines sample other directions: the difference is only printed.
+/// turn, within 1e-3. For fixed grids and conical beams nothing is promised, because the engines sample other
+/// directions: the difference is only printed.
 ///
 /// All types of heads must occur. Prints one line for each scene.
 /// @param beams in the middle of each fan that are rendered

@@ -90,8 +90,8 @@ class BothSides {
       if (options_.mean) {
         bin(patches, &EchoPatch::weight, &EchoPatch::weight_gradient, solid_angle, weight.data());
         for (std::size_t k = 0; k < lines; ++k) {
-          const bool is_seen = weight[k] > least_share * static_cast<float>(solid_angle);
-          echo[k] = is_seen ? std::min(1.0F, echo[k] / weight[k]) : 0.0F;
+          const float least_weight = full_share * static_cast<float>(solid_angle);
+          echo[k] = std::min(1.0F, echo[k] / std::max(weight[k], least_weight));
         }
       }
     }
