@@ -32,6 +32,7 @@
 #include "server/diagnosis/sight.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/to_render.hpp"
+#include "server/recording/glf_device.hpp"
 #include "server/trial_pings.hpp"
 #include "server/try_bind.hpp"
 
@@ -331,7 +332,7 @@ void Check::check_recording() {
   const RecordingConfig& recording = *config_.recording;
   try_folder(recording.directory, "recording.directory");
   const bool has_glf = recording.glf && std::ranges::any_of(config_.heads, [](const HeadConfig& head) {
-                         return type_of(head).writes_glf();
+                         return glf_device(*head.type) != nullptr;
                        });
   report_.summary.push_back(fmt::format("records  into {}:{}{}{}", recording.directory.string(),
                                         has_glf ? " glf" : "", recording.mcap ? " mcap" : "",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/devices/device_type.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -11,6 +10,7 @@
 
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "server/net/pty_port.hpp"
+#include "server/recording/glf_device.hpp"
 
 namespace sonard::server {
 
@@ -62,17 +62,10 @@ void check_sampling_of(const HeadConfig& head) {
 }
 
 std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads) {
-  constexpr int most_numbered = 9;
   std::vector<HeadToRecord> recorded;
-  int numbered = 0;
   for (const HeadConfig& head : heads) {
-    const DeviceType& type = type_of(head);
-    HeadToRecord one{head.name, std::string(type.name()), type.device_id(head), std::nullopt, {}};
-    if (type.writes_glf()) {
-      one.glf_number = static_cast<std::uint8_t>(std::min(numbered++, most_numbered));
-      one.glf_status = [&type](std::span<const std::uint8_t> message) { return type.glf_status(message); };
-    }
-    recorded.push_back(std::move(one));
+    const HeadType& type = *head.type;
+    recorded.push_back({head.name, std::string(type.name()), type.device_id(head), glf_device(type)});
   }
   return recorded;
 }

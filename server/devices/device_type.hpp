@@ -2,16 +2,13 @@
 // The server's interface to a type of device. Each type has its own folder below this one.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "protocol/common/device.hpp"
-#include "protocol/glf/records.hpp"
 #include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/sonar_settings.hpp"
@@ -20,7 +17,6 @@
 #include "server/config/head_type.hpp"
 #include "server/devices/survey.hpp"
 #include "server/logs/log_reader.hpp"
-#include "server/logs/log_summary.hpp"
 #include "server/net/interfaces.hpp"
 #include "server/net/transport.hpp"
 #include "server/net/udp_endpoint.hpp"
@@ -57,6 +53,8 @@ class ConnectedDevice {
   virtual std::optional<std::vector<Ipv4>> own_addresses() const { return std::nullopt; }
 };
 
+/// What the server knows of a type of device. A type with .glf logs is a GlfDevice, too; a type whose pings
+/// are recognised in captures is a CaptureReader.
 class DeviceType : public HeadType {
  public:
   /// True if a ping is one beam, at the bearing of the job; false if it is a fan.
@@ -73,19 +71,6 @@ class DeviceType : public HeadType {
   /// A ping with the settings that clients usually request, for work before the first ping.
   virtual PingJob usual_job(const HeadConfig& head) const = 0;
   virtual render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const = 0;
-
-  // ---- Logs
-
-  /// True if .glf logs are in use for such heads.
-  virtual bool writes_glf() const { return false; }
-  /// See HeadToRecord::glf_status.
-  virtual std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> /*message*/) const {
-    return std::nullopt;
-  }
-  /// The start of a ping in a datagram; nullopt for other datagrams and resent pings.
-  virtual std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> /*datagram*/) const {
-    return std::nullopt;
-  }
 
   // ---- Playing logs back
 

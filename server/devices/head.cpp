@@ -391,7 +391,7 @@ void Head::Impl::send(std::vector<Outgoing> messages) {
     return;
   }
   for (const Outgoing& message : messages) {
-    if (type.writes_glf() && message.to == Outgoing::To::everybody) {
+    if (message.to == Outgoing::To::everybody) {
       recording.status(message.bytes);
     }
   }

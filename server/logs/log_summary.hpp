@@ -62,6 +62,18 @@ struct CapturedPing {
   std::uint16_t device_id = 0;
   RecordedSettings settings;
 };
+/// A type of device (HeadType) of this class recognises its pings in captures.
+class CaptureReader {
+ public:
+  CaptureReader() = default;
+  virtual ~CaptureReader() = default;
+  CaptureReader(const CaptureReader&) = delete;
+  CaptureReader& operator=(const CaptureReader&) = delete;
+
+  /// The start of a ping in a datagram; nullopt for other datagrams and resent pings.
+  virtual std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram) const = 0;
+};
+
 using PingFinder = std::function<std::optional<CapturedPing>(std::span<const std::uint8_t> datagram)>;
 
 /// @param ping_in finds the pings of a .pcapng

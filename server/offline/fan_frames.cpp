@@ -16,6 +16,7 @@
 #include "server/offline/frame_times.hpp"
 #include "server/offline/sidecar.hpp"
 #include "server/offline/vehicle_body.hpp"
+#include "server/recording/glf_device.hpp"
 #include "server/recording/glf_records.hpp"
 
 namespace sonard::server {
@@ -109,7 +110,7 @@ std::string FanFrames::caption(int frame) const {
 }
 
 bool FanFrames::makes_glf() const {
-  return type_of(head_).writes_glf();
+  return glf_device(*head_.type) != nullptr;
 }
 
 std::optional<PingRecord> FanFrames::ping_record(int frame, std::string_view npy) const {

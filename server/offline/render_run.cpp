@@ -47,6 +47,7 @@
 #include "server/offline/sidecar.hpp"
 #include "server/offline/sweep_frames.hpp"
 #include "server/offline/vehicle_trajectory.hpp"
+#include "server/recording/glf_device.hpp"
 #include "server/recording/log_names.hpp"
 
 namespace sonard::server {
@@ -82,7 +83,7 @@ DaemonConfig seeded(const LoadedConfig& loaded, const OfflineOptions& options) {
 HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   HeadPlace place{static_cast<int>(head), 0};
   for (std::size_t i = 0; i < head; ++i) {
-    place.glf_number += type_of(heads[i]).writes_glf() ? 1 : 0;
+    place.glf_number += glf_device(*heads[i].type) != nullptr ? 1 : 0;
   }
   return place;
 }

@@ -30,7 +30,7 @@ struct PingSent {
   std::shared_ptr<const PosesUsed> poses;
 };
 
-/// A status message of a head whose logs store it (HeadToRecord::glf_status) was sent.
+/// A status message of a head whose logs store it (HeadToRecord::glf) was sent.
 struct StatusSent {
   SharedBytes message;
 };

@@ -11,8 +11,8 @@ namespace sonard::server {
 /// GlfPacking makes a .glf from it.
 class GlfLogWriter final : public LogWriter {
  public:
-  /// @param head index in LogSetting::heads; the head has a glf_number
-  GlfLogWriter(const LogSetting& setting, int head) : LogWriter(setting), head_(head) {}
+  /// @param head index in LogSetting::heads; the head has .glf logs
+  GlfLogWriter(const LogSetting& setting, int head);
 
   void write(const RecordingEvent& event) override;
   void flush(TimePoint) override {}  // every record is written at once
@@ -21,10 +21,10 @@ class GlfLogWriter final : public LogWriter {
  private:
   void write(const PingSent& sent);
   void write(const StatusSent& status, TimePoint time);
-  GlfLogOrigin origin() const;
   const HeadToRecord& head() const { return setting().heads[static_cast<std::size_t>(head_)]; }
 
   int head_;
+  GlfLogOrigin origin_;
 };
 
 }  // namespace sonard::server

@@ -23,7 +23,12 @@ class HeadRecording {
 
   void wire(WirePassed passed) const { push(std::move(passed)); }
   void stream_ended(const WireEnds& ends) const { push(StreamEnded{ends}); }
-  void status(const SharedBytes& message) const { push(StatusSent{message}); }
+  /// A status message was sent to all clients; recorded only if the head's logs store it.
+  void status(const SharedBytes& message) const {
+    if (on() && recorder_->stores_statuses(head_)) {
+      push(StatusSent{message});
+    }
+  }
   void ping(PingSent ping) const { push(std::move(ping)); }
   void posed(const std::shared_ptr<const PosesUsed>& poses) const { push(PingPosed{poses}); }
 

@@ -40,7 +40,7 @@ LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& h
     logs_.push_back(std::make_unique<PcapngLogWriter>(setting_));
   }
   for (std::size_t head = 0; config.glf && head < heads.size(); ++head) {
-    if (heads[head].glf_number) {
+    if (heads[head].glf != nullptr) {
       logs_.push_back(std::make_unique<GlfLogWriter>(setting_, static_cast<int>(head)));
     }
   }

@@ -4,29 +4,23 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "protocol/glf/records.hpp"
 #include "server/config/config.hpp"
 #include "server/recording/events.hpp"
 #include "server/recording/growing_log.hpp"
 
 namespace sonard::server {
 
+class GlfDevice;
+
 /// Description of a head for its logs.
 struct HeadToRecord {
   std::string name;
-  std::string type;             ///< its type in the configuration
-  std::uint16_t device_id = 0;  ///< its ID on the wire
-  /// Number of the head among the heads with .glf logs, 0..9; nullopt: such heads have no .glf logs.
-  std::optional<std::uint8_t> glf_number;
-  /// Converts a status message to the fields of a .glf; nullopt for other messages. Empty: the head has no
-  /// such status.
-  std::function<std::optional<glf::StatusRecord>(std::span<const std::uint8_t>)> glf_status;
+  std::string type;                ///< its type in the configuration
+  std::uint16_t device_id = 0;     ///< its ID on the wire
+  const GlfDevice* glf = nullptr;  ///< null: the head has no .glf logs
 };
 
 /// Shared by all logs that begin together. Both clocks are read at the beginning and kept, so that times in a

@@ -147,6 +147,10 @@ void Recorder::push(RecordingEvent event) {
   }
 }
 
+bool Recorder::stores_statuses(int head) const {
+  return impl_->config.glf && impl_->heads.at(static_cast<std::size_t>(head)).glf != nullptr;
+}
+
 void Recorder::turn(bool on) {
   if (impl_->on.exchange(on) != on) {
     spdlog::info("recording: turned {}", on ? "on" : "off");

@@ -58,6 +58,8 @@ class Recorder {
 
   /// Any thread; never blocks. An event that does not fit the queue is dropped and counted.
   void push(RecordingEvent event);
+  /// Whether the logs of a head store its status messages; any thread.
+  bool stores_statuses(int head) const;
   /// Any thread. False: closes the open logs and ignores new events, uncounted, until recording is turned on
   /// again, with new logs.
   void turn(bool on);

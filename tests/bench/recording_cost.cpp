@@ -17,6 +17,7 @@
 #include "protocol/gemini/encoded_ping.hpp"
 #include "protocol/gemini/recorded_form.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
+#include "server/recording/glf_device.hpp"
 #include "server/recording/head_recording.hpp"
 #include "server/recording/log_set.hpp"
 #include "server/recording/recorder.hpp"
@@ -92,8 +93,12 @@ struct PingEvents {
   }
 };
 
-const std::vector<server::HeadToRecord> one_head{
-    {"bow", "gemini_720i", 513, 0, [](std::span<const std::uint8_t>) { return std::nullopt; }}};
+struct : server::GlfDevice {
+  std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t>) const override {
+    return std::nullopt;
+  }
+} without_statuses;
+const std::vector<server::HeadToRecord> one_head{{"bow", "gemini_720i", 513, &without_statuses}};
 
 server::RecordingConfig config_of(const fs::path& folder, const std::string& formats) {
   server::RecordingConfig config;

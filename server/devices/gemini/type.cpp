@@ -19,7 +19,9 @@
 #include "server/devices/gemini/section.hpp"
 #include "server/devices/gemini/settings.hpp"
 #include "server/devices/gemini/survey.hpp"
+#include "server/logs/log_summary.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/recording/glf_device.hpp"
 
 namespace sonard::server {
 namespace {
@@ -36,7 +38,7 @@ double worst_bearing_error_rad(const LoggedHead& head) {
   return worst;
 }
 
-class GeminiType final : public DeviceType {
+class GeminiType final : public DeviceType, public GlfDevice, public CaptureReader {
  public:
   std::string_view name() const override { return "gemini_720i"; }
   std::string_view title() const override { return "Gemini 720i"; }
@@ -125,8 +127,6 @@ class GeminiType final : public DeviceType {
   }
 
   // ---- Logs
-
-  bool writes_glf() const override { return true; }
 
   std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t> message) const override {
     const auto report = gemini::decode_report(message);

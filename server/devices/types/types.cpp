@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "server/recording/glf_device.hpp"
+
 namespace sonard::server {
 
 std::span<const HeadType* const> head_types() {
@@ -25,14 +27,16 @@ const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind l
     return nullptr;
   }
   const auto types = device_types();
-  const auto found = std::ranges::find_if(
-      types, [&](const DeviceType* type) { return type->writes_glf() && type->scanning() == scanning; });
+  const auto found = std::ranges::find_if(types, [&](const DeviceType* type) {
+    return glf_device(*type) != nullptr && type->scanning() == scanning;
+  });
   return found == types.end() ? nullptr : *found;
 }
 
 std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram) {
   for (const DeviceType* type : device_types()) {
-    if (const std::optional<CapturedPing> seen = type->ping_in(datagram)) {
+    const auto* const reader = dynamic_cast<const CaptureReader*>(type);
+    if (auto seen = reader != nullptr ? reader->ping_in(datagram) : std::nullopt) {
       return seen;
     }
   }

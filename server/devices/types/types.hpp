@@ -2,9 +2,13 @@
 // All types of device in this program.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 
 #include "server/devices/device_type.hpp"
+#include "server/logs/log_summary.hpp"
 
 namespace sonard::server {
 
@@ -21,7 +25,7 @@ const DeviceType* type_named(std::string_view name);
 /// is known.
 const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind log);
 
-/// The first ping in a datagram of any type of device.
+/// The start of a ping of any type of device in a datagram; nullopt: the types find none.
 std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram);
 
 }  // namespace sonard::server

@@ -77,8 +77,17 @@ RecordingEvent wire_event(std::size_t bytes, TimePoint time) {
               true, server::WireTransport::udp, {}, {{{0x7F000001, 52900}, {0x7F000002, 52901}, data}}}};
 }
 
+const server::GlfDevice& glf_device_without_statuses() {
+  static const struct : server::GlfDevice {
+    std::optional<glf::StatusRecord> glf_status(std::span<const std::uint8_t>) const override {
+      return std::nullopt;
+    }
+  } device;
+  return device;
+}
+
 std::vector<server::HeadToRecord> one_head() {
-  return {{"bow", "gemini_720i", 601, 0, [](std::span<const std::uint8_t>) { return std::nullopt; }}};
+  return {{"bow", "gemini_720i", 601, &glf_device_without_statuses()}};
 }
 
 }  // namespace sonard::test

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "server/recording/events.hpp"
+#include "server/recording/glf_device.hpp"
 #include "server/recording/log_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -39,6 +40,8 @@ server::RecordingEvent ping_event(std::uint64_t number, int lines, server::TimeP
 /// One datagram of `bytes` bytes to a client at 127.0.0.1:52900.
 server::RecordingEvent wire_event(std::size_t bytes, server::TimePoint time);
 
+/// A type of device with .glf logs that store no statuses.
+const server::GlfDevice& glf_device_without_statuses();
 /// A list with one head, "bow", ID 601, which has a .glf.
 std::vector<server::HeadToRecord> one_head();
 

@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include "protocol/glf/log_view.hpp"
+#include "server/recording/glf_log_writer.hpp"
+#include "tests/unit/server/recording/fixture.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -82,6 +86,32 @@ TEST(GlfRecords, FlagsSayWhereTheSoundSpeedIsFromAndThatTheFrequencyIsTheLowOne)
 
 TEST(GlfRecords, GainIsInWholePercent) {
   EXPECT_EQ(image_of(ping_of(100, 0)).gain_percent, 50);
+}
+
+/// Node of the image that the log of a head stores.
+std::uint16_t node_in_log(const std::vector<HeadToRecord>& heads, int head) {
+  const test::TemporaryFolder folder;
+  RecordingConfig config;
+  config.directory = folder.path();
+  const LogSetting setting{config, heads, {}, 0, "stem"};
+  GlfLogWriter log(setting, head);
+  RecordingEvent event = test::ping_event(1, 32, TimePoint{transmit_unix_ns});
+  event.head = head;
+  log.write(event);
+  log.close();
+  const std::vector<std::uint8_t> file = test::contents(log.file().path());
+  const auto view = glf::LogView::open(file);
+  EXPECT_TRUE(view && view->index().records.size() == 1U);
+  return view->image(view->index().records.front())->origin.node_id;
+}
+
+TEST(GlfLogWriter, NumbersTheHeadsThatHaveGlfLogs) {
+  std::vector<HeadToRecord> heads(12, test::one_head().front());
+  heads[1].glf = nullptr;
+  EXPECT_EQ(node_in_log(heads, 0), 100);
+  EXPECT_EQ(node_in_log(heads, 2), 101);
+  EXPECT_EQ(node_in_log(heads, 10), 109);
+  EXPECT_EQ(node_in_log(heads, 11), 109) << "the highest number";
 }
 
 }  // namespace

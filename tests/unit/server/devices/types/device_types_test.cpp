@@ -13,6 +13,7 @@
 
 #include "renderer/sonar_settings.hpp"
 #include "server/net/pty_port.hpp"
+#include "server/recording/glf_device.hpp"
 
 namespace sonard::server {
 namespace {
@@ -123,7 +124,7 @@ TEST(DeviceTypes, LayOutASurveyOfWholeFrames) {
   }
 }
 
-TEST(RecordedHeads, NumberThoseWhoseUsersKnowGlfLogs) {
+TEST(RecordedHeads, NameTheTypeWhoseUsersKnowGlfLogs) {
   HeadConfig fan = type_named("gemini_720i")->make_default();
   fan.name = "a";
   HeadConfig scanning = type_named("micron")->make_default();
@@ -133,10 +134,11 @@ TEST(RecordedHeads, NumberThoseWhoseUsersKnowGlfLogs) {
   EXPECT_EQ(recorded[0].name, "a");
   EXPECT_EQ(recorded[0].type, "gemini_720i");
   EXPECT_EQ(recorded[0].device_id, 513);
-  EXPECT_EQ(recorded[0].glf_number, 0);
+  EXPECT_EQ(recorded[0].glf, glf_device(*fan.type));
+  ASSERT_NE(recorded[0].glf, nullptr);
   EXPECT_EQ(recorded[1].device_id, 2);
-  EXPECT_FALSE(recorded[1].glf_number);
-  EXPECT_EQ(recorded[2].glf_number, 1);
+  EXPECT_EQ(recorded[1].glf, nullptr);
+  EXPECT_EQ(recorded[2].glf, recorded[0].glf);
 }
 
 }  // namespace
