@@ -334,9 +334,9 @@ RenderServiceHooks Daemon::hooks() {
     spdlog::critical("engine: the renderer failed: {}", what);
     end(exit_renderer);
   };
-  hooks.observe = [this](const RenderJob& job, const render::PingSamples& samples) {
-    if (PingDump* dump = dumps_[static_cast<std::size_t>(job.head)].get()) {
-      dump->write(job, samples);
+  hooks.observe = [this](const PosedPing& ping, const render::PingSamples& samples) {
+    if (PingDump* dump = dumps_[static_cast<std::size_t>(ping.head)].get()) {
+      dump->write(ping, samples);
     }
   };
   return hooks;

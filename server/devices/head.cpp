@@ -15,6 +15,7 @@
 #include "server/devices/device_type.hpp"
 #include "server/devices/head_diagnosis.hpp"
 #include "server/devices/head_log.hpp"
+#include "server/devices/head_poses.hpp"
 #include "server/devices/head_rendering.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/devices/ping_viewer.hpp"
@@ -34,9 +35,10 @@ namespace asio = boost::asio;
 constexpr std::chrono::seconds report_period{10};
 constexpr std::chrono::milliseconds pause_without_memory{100};
 constexpr std::size_t most_waiting_events = 4096;  // while a transport is blocked; more are dropped
+constexpr std::chrono::milliseconds sense_period{50};
 
-/// Poses of the job in progress, for the recording: its ping goes onto the wire before the next job comes.
-struct PosesToRecord {
+/// Poses of the newest job, for recording and viewers: its ping goes onto the wire before the next job comes.
+struct PosesOfJob {
   std::uint64_t number = 0;
   std::shared_ptr<const PosesUsed> poses;
 };
@@ -52,12 +54,13 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   const DeviceType& type;
 
   std::unique_ptr<ConnectedDevice> connected;
+  HeadPoses poses;
   HeadRendering rendering;
   DeadlineTimer timer;
   asio::steady_timer report_timer;
   HeadLog log;
   HeadRecording recording;
-  PosesToRecord poses_to_record;
+  PosesOfJob newest_job;
   RecentClients clients;
   RecentPings recent_pings;
   std::optional<NewestPing> newest;
@@ -68,6 +71,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   std::deque<Event> events;  ///< not processed yet
   std::optional<TimePoint> wake_at;
   std::optional<NextPing> next_ping;
+  std::optional<TimePoint> sensed_at;  ///< PoseHistory::present() of the newest sense()
   bool out_of_water = false;
   SensorReadings readings;  ///< last sent to the device
   bool running = false;
@@ -91,11 +95,13 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   std::optional<std::uint64_t> carry_out(TimePoint now, Actions actions);
   void send(std::vector<Outgoing> messages);
   void record(TimePoint now, PingRecord ping);
-  void note_water(TimePoint now);
-  void read_sensors(TimePoint now);
+  void sense(TimePoint now);
+  void read_sensors(TimePoint now, const render::Pose& T_world_mount);
+  void note_water(TimePoint now, const std::optional<render::Pose>& T_world_mount);
   void feed(TimePoint now);
   bool next_ping_is_due(TimePoint now);
   bool render(const PingJob& job);
+  PosedPing posed(const PingJob& job, std::shared_ptr<const PosesUsed> poses_of_ping) const;
   void schedule(TimePoint now);
   void report_every_period();
 };
@@ -119,7 +125,7 @@ void Head::poses_changed() {
   }
 }
 std::optional<std::chrono::nanoseconds> Head::pose_lead() const {
-  return impl_->rendering.pose_lead();
+  return impl_->poses.lead();
 }
 void Head::look_at_addresses(const std::vector<InterfaceAddress>& now) {
   impl_->look_at_addresses(now);
@@ -140,12 +146,17 @@ Head::Impl::Impl(const HeadConfig& head_config, int head_index, const HeadServic
       index(head_index),
       type(type_of(config)),
       connected(type.connect(config, services.io, services.clock)),
-      rendering(config, index, services),
+      poses(config, services.poses, services.vehicle_model),
+      rendering(config, index, services.renderer, services.clock,
+                // If poses bring the time, pings wait for them, and the image must depend on nothing else. A
+                // recording is played as it is.
+                {.adapts = !poses.in_simulated_time() && services.playback == nullptr,
+                 .withdraws = services.skip.on(render::SkipRule::nobody_listening)}),
       timer(services.io),
       report_timer(services.io),
       log(config.name),
       recording(services.recorder, index, services.clock),
-      diagnosis(config, services) {}
+      diagnosis(config, services.poses, services.vehicle_model, services.world) {}
 
 // ---- Life
 
@@ -332,9 +343,8 @@ void Head::Impl::take_or_lose(TimePoint now, const Event& event) {
 }
 
 void Head::Impl::take(TimePoint now, const Event& event) {
-  note_water(now);
+  sense(now);
   feed(now);
-  read_sensors(now);
   step(now, event);
   while (next_ping_is_due(now)) {
     step(now, NextPingDue{});
@@ -371,7 +381,7 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
   wake_at = actions.wake_at;
   next_ping = actions.next_ping;
   if (actions.nobody_there) {
-    rendering.rest();
+    poses.rest();
   }
   if (services.playback != nullptr) {
     services.playback->progress(index, now, connected->device().progress());
@@ -400,45 +410,57 @@ void Head::Impl::send(std::vector<Outgoing> messages) {
 
 void Head::Impl::record(TimePoint now, PingRecord ping) {
   recent_pings.sent(now, ping.transmit_time);
-  if (recording.on() && poses_to_record.poses && poses_to_record.number == ping.number) {
-    recording.ping({ping, poses_to_record.poses});
+  if (recording.on() && newest_job.poses && newest_job.number == ping.number) {
+    recording.ping({ping, newest_job.poses});
   }
   if (services.viewer != nullptr) {
     services.viewer->show(std::make_shared<const ShownPing>(
-        ShownPing{index, now, std::move(ping), newest ? newest->T_world_mount : std::nullopt}));
+        ShownPing{index, now, std::move(ping),
+                  newest_job.poses ? std::optional(newest_job.poses->T_world_sonar) : std::nullopt}));
   }
 }
 
-void Head::Impl::read_sensors(TimePoint now) {
-  if (!type.has_sensors()) {
+// Looks at the pose of the present at each new pose in simulated time, else every sense_period: an event may
+// be any datagram.
+void Head::Impl::sense(TimePoint now) {
+  if (!services.water_surface_z_m && !type.has_sensors()) {
     return;
   }
-  if (const auto T_world_mount = rendering.T_world_mount(services.poses.present(now))) {
-    const SensorReadings present = sensor_readings(*T_world_mount, services.water_surface_z_m);
-    if (std::exchange(readings, present) != present) {
-      step(now, SensorsRead{present});
-    }
+  const TimePoint present = services.poses.present(now);
+  if (sensed_at &&
+      (poses.in_simulated_time() ? present == *sensed_at : present - *sensed_at < sense_period)) {
+    return;
+  }
+  sensed_at = present;
+  const std::optional<render::Pose> T_world_mount = poses.T_world_mount(present);
+  note_water(now, T_world_mount);
+  if (T_world_mount && type.has_sensors()) {
+    read_sensors(now, *T_world_mount);
   }
 }
 
-void Head::Impl::note_water(TimePoint now) {
-  if (!services.water_surface_z_m) {
+void Head::Impl::read_sensors(TimePoint now, const render::Pose& T_world_mount) {
+  const SensorReadings present = sensor_readings(T_world_mount, services.water_surface_z_m);
+  if (std::exchange(readings, present) != present) {
+    step(now, SensorsRead{present});
+  }
+}
+
+void Head::Impl::note_water(TimePoint now, const std::optional<render::Pose>& T_world_mount) {
+  const bool out = services.water_surface_z_m && T_world_mount &&
+                   T_world_mount->position_m.z > *services.water_surface_z_m;
+  if (std::exchange(out_of_water, out) == out) {
     return;
   }
-  const auto T_world_mount = rendering.T_world_mount(services.poses.present(now));
-  const bool out = T_world_mount && T_world_mount->position_m.z > *services.water_surface_z_m;
-  if (out != out_of_water) {
-    out_of_water = out;
-    // In air no pings are made that would show this.
-    NewestPing here = newest.value_or(NewestPing{});
+  // In air no pings are made that would show this.
+  if (const std::optional<PosesUsed> here = poses.at(*sensed_at)) {
+    NewestPing ping = newest.value_or(NewestPing{});
     if (!newest) {
-      here.range_m = usual_settings(config).range.max_range_m();
+      ping.range_m = usual_settings(config).range.max_range_m();
     }
-    here.T_world_mount = T_world_mount;
-    const TimePoint present = services.poses.present(now);
-    diagnosis.look(now, present, here, rendering.bodies_at(present), false, 0.0);
-    step(now, WaterChanged{out});
+    diagnosis.look(now, ping, *here, false, 0.0);
   }
+  step(now, WaterChanged{out});
 }
 
 void Head::Impl::feed(TimePoint now) {
@@ -452,7 +474,7 @@ bool Head::Impl::next_ping_is_due(TimePoint now) {
   if (services.poses.ping_clock() == PingClock::wall) {
     return false;
   }
-  if (rendering.begin_ping(now, next_ping)) {
+  if (poses.begin_ping(now, next_ping, rendering.busy())) {
     return true;
   }
   if (next_ping && next_ping->from <= now && !services.poses.newest()) {
@@ -486,58 +508,62 @@ bool Head::Impl::render(const PingJob& job) {
   if (job.record) {
     services.playback->started(index, job);
   }
-  const TimePoint pose_time = rendering.pose_time(job.transmit_time);
-  const std::optional<render::Pose> T_world_mount = rendering.T_world_mount(pose_time);
-  if (!T_world_mount) {
+  newest_job = {job.number, poses.of_ping(job)};
+  const std::shared_ptr<const PosesUsed>& of_ping = newest_job.poses;
+  if (!of_ping) {
     rendering.count_missing_pose();
-    diagnosis.no_pose(pose_time);
+    diagnosis.no_pose(poses.pose_time(job.transmit_time));
     return false;
   }
   if (recording.on()) {
-    poses_to_record = {job.number, rendering.poses_used(job.transmit_time)};
-    recording.posed(poses_to_record.poses);
+    recording.posed(of_ping);
   }
-  std::optional<render::Pose> T_world_at_end = rendering.T_world_mount(pose_time + job.listening_time);
-  if (T_world_at_end) {  // the motor is at rest during a ping
-    T_world_at_end = T_world_transducer(*T_world_at_end, job.bearing_rad);
-  }
-  const render::Pose T_world_sonar = T_world_transducer(*T_world_mount, job.bearing_rad);
-  log.ping(job, type.scanning(), T_world_sonar);
-  render::SonarSettings settings = type.sonar_settings(job, config);
+  PosedPing ping = posed(job, of_ping);
+  log.ping(job, type.scanning(), ping.request.T_world_sonar);
+  const render::Aperture& aperture = ping.request.settings.aperture;
   newest = NewestPing{job.settings,
                       job.range_m(),
                       job.bearing_rad,
-                      T_world_mount,
-                      settings.aperture.beam_edges_rad.front() - settings.aperture.beam_edges_rad.back(),
-                      2 * settings.aperture.elevation_limit_rad()};
-  // In the recording, a replayed ping keeps its recorded number.
+                      of_ping->T_world_sonar,
+                      aperture.beam_edges_rad.front() - aperture.beam_edges_rad.back(),
+                      2 * aperture.elevation_limit_rad()};
   rendering.submit(
-      {.number = job.record.value_or(job.number),
-       .pose_time = pose_time,
-       .transmit_us = job.transmit_us,
-       .period = job.period,
-       .T_world_sonar = T_world_sonar,
-       .T_world_sonar_at_end = T_world_at_end,
-       .settings = std::move(settings)},
-      [weak = weak_from_this(), number = job.number, pose_time,
-       sensed = sensor_readings(*T_world_mount, services.water_surface_z_m)](RenderResult result) {
+      std::move(ping), job.period,
+      [weak = weak_from_this(), number = job.number, of_ping](RenderResult result) {
         const auto self = weak.lock();
         if (!self) {
           return;
         }
         if (self->rendering.take(result)) {
           self->done_or_lost([&] {
-            self->diagnosis.look(self->services.clock.now(), pose_time, *self->newest,
-                                 self->rendering.bodies_at(pose_time), result.statistics.sees_surface,
-                                 result.statistics.echo_over_floor);
+            self->diagnosis.look(self->services.clock.now(), *self->newest, *of_ping,
+                                 result.statistics.sees_surface, result.statistics.echo_over_floor);
           });
           self->happen(
-              PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16), sensed}});
+              PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16),
+                            sensor_readings(of_ping->T_world_sonar, self->services.water_surface_z_m)}});
         } else {
           self->happen(PingNotRendered{number});
         }
       });
   return true;
+}
+
+PosedPing Head::Impl::posed(const PingJob& job, std::shared_ptr<const PosesUsed> poses_of_ping) const {
+  const auto transducer = [&](const render::Pose& T_world_mount) {  // the motor is at rest during a ping
+    return T_world_transducer(T_world_mount, job.bearing_rad);
+  };
+  const std::optional<render::Pose>& at_end = poses_of_ping->T_world_sonar_at_end;
+  // In the recording, a replayed ping keeps its recorded number.
+  PosedPing ping{.head = index,
+                 .transmit_us = job.transmit_us,
+                 .request = {transducer(poses_of_ping->T_world_sonar), type.sonar_settings(job, config),
+                             job.record.value_or(job.number), config.seed,
+                             at_end ? std::optional(transducer(*at_end)) : std::nullopt},
+                 .poses = nullptr,
+                 .hidden_body = config.hides_vehicle ? services.vehicle_model : ""};
+  ping.poses = std::move(poses_of_ping);
+  return ping;
 }
 
 // ---- Log

@@ -11,7 +11,6 @@
 #include <spdlog/spdlog.h>
 
 #include "server/devices/device_type.hpp"
-#include "server/pose/pose_history.hpp"
 
 namespace sonard::server {
 namespace {
@@ -46,9 +45,8 @@ bool LastTurn::note(TimePoint now, double bearing_rad, bool seen) {
   return ever_ && turned_rad_ < full_turn_rad && now - *lost_ < longest_turn;
 }
 
-void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
-                         const std::vector<PosedBody>& bodies, bool sees_surface, double echo_over_floor) {
-  const std::optional<PoseEstimate> vehicle = services_.poses.at(time);
+void HeadDiagnosis::look(TimePoint now, const NewestPing& ping, const PosesUsed& poses, bool sees_surface,
+                         double echo_over_floor) {
   // Hysteresis: to stand out again, an echo must be twice as strong. Otherwise a moving vehicle would log a
   // line each time that it passes the limit.
   const double least = stands_out_.value_or(true) ? least_visible_echo : 2.0 * least_visible_echo;
@@ -60,31 +58,30 @@ void HeadDiagnosis::look(TimePoint now, TimePoint time, const NewestPing& ping,
   const bool saw_as_much = std::exchange(sees_surface_, sees_surface) == sees_surface;
   const bool as_before = std::exchange(stands_out_, stands_out) == stands_out && saw_as_much;
   const auto period = sees_surface && stands_out ? while_seeing : while_blind;
-  if (services_.world == nullptr || !vehicle || !ping.T_world_mount ||
-      (as_before && now - looked_at_ < period)) {
+  if (world_ == nullptr || (as_before && now - looked_at_ < period)) {
     return;
   }
   looked_at_ = now;
   if (boxes_.empty()) {
-    boxes_ = boxes_of(*services_.world);
+    boxes_ = boxes_of(*world_);
   }
-  found(look_around(*services_.world, boxes_, bodies,
-                    {.T_world_vehicle = vehicle->T_world_vehicle,
-                     .T_world_sonar = T_world_transducer(*ping.T_world_mount, ping.bearing_rad),
+  found(look_around(*world_, boxes_, poses.bodies,
+                    {.T_world_vehicle = poses.T_world_vehicle,
+                     .T_world_sonar = T_world_transducer(poses.T_world_sonar, ping.bearing_rad),
                      .range_m = ping.range_m,
                      .sees_surface = sees_surface,
                      .echo_over_floor = stands_out ? std::max(echo_over_floor, least_visible_echo)
                                                    : std::min(echo_over_floor, 0.99 * least_visible_echo),
-                     .vehicle_model = services_.vehicle_model,
+                     .vehicle_model = vehicle_model_,
                      .hides_vehicle = config_.hides_vehicle}));
 }
 
 void HeadDiagnosis::no_pose(TimePoint time) {
   sees_surface_.reset();
   stands_out_.reset();
-  if (const std::optional<StalePose> stale = services_.poses.stale_at(time)) {
+  if (const std::optional<StalePose> stale = history_.stale_at(time)) {
     found({{stale_pose_code, fmt::format("The head does not ping: {}.", stale_text(*stale))}});
-  } else if (services_.poses.at(time)) {
+  } else if (history_.at(time)) {
     found({{no_pose_code,
             "No pose of the vehicle has arrived, so the head does not ping: pings follow the stamps of poses "
             "(poses.clock), and poses.initial has no stamp."}});
@@ -94,8 +91,8 @@ void HeadDiagnosis::no_pose(TimePoint time) {
 }
 
 bool HeadDiagnosis::has_pose(TimePoint now) const {
-  const PoseHistory& poses = services_.poses;
-  return poses.at(poses.present(now)) && (poses.ping_clock() == PingClock::wall || poses.newest());
+  return history_.at(history_.present(now)) &&
+         (history_.ping_clock() == PingClock::wall || history_.newest());
 }
 
 std::vector<Finding> HeadDiagnosis::findings(TimePoint now) const {

@@ -9,10 +9,11 @@
 
 #include "server/clock/clock.hpp"
 #include "server/config/config.hpp"
-#include "server/devices/head.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/diagnosis/finding.hpp"
 #include "server/diagnosis/sight.hpp"
+#include "server/pose/pose_history.hpp"
+#include "server/pose/poses_used.hpp"
 
 namespace sonard::server {
 
@@ -36,17 +37,20 @@ class LastTurn {
 /// Belongs to the I/O thread.
 class HeadDiagnosis {
  public:
-  HeadDiagnosis(const HeadConfig& config, const HeadServices& services)
-      : config_(config), services_(services) {}
+  /// @param config, history, world must outlive this object
+  /// @param vehicle_model the body that moves with the vehicle; empty: no body does
+  /// @param world null: nothing is looked at
+  HeadDiagnosis(const HeadConfig& config, const PoseHistory& history, std::string vehicle_model,
+                const render::World* world)
+      : config_(config), history_(history), vehicle_model_(std::move(vehicle_model)), world_(world) {}
 
   /// Looks around at once if the head's view has changed, else every few seconds.
-  /// @param ping the newest, with the pose of its mount
-  /// @param time of the pose of the ping, on the clock of PoseHistory
-  /// @param bodies that are not at their pose in the world
+  /// @param ping the newest
+  /// @param poses of this ping
   /// @param sees_surface PingStatistics::sees_surface
   /// @param echo_over_floor PingStatistics::echo_over_floor
-  void look(TimePoint now, TimePoint time, const NewestPing& ping, const std::vector<PosedBody>& bodies,
-            bool sees_surface, double echo_over_floor);
+  void look(TimePoint now, const NewestPing& ping, const PosesUsed& poses, bool sees_surface,
+            double echo_over_floor);
   /// Called if a ping was not made, or waits, because no pose is known.
   /// @param time of the ping, on the clock of PoseHistory
   void no_pose(TimePoint time);
@@ -68,7 +72,9 @@ class HeadDiagnosis {
   };
 
   const HeadConfig& config_;
-  HeadServices services_;
+  const PoseHistory& history_;
+  const std::string vehicle_model_;
+  const render::World* const world_;
   std::vector<Finding> findings_;
   std::optional<Misaddressed> misaddressed_;  ///< the newest command for another head
   std::vector<BodyBox> boxes_;                ///< of the world, once they are needed

@@ -34,14 +34,14 @@ PingDump::PingDump(std::filesystem::path folder, std::string head)
   index_ << "number,id,transmit_us,lines,beams,crc32,pose_ns\n" << std::flush;
 }
 
-void PingDump::write(const RenderJob& job, const render::PingSamples& samples) {
-  const std::uint64_t number = job.request.ping_number;
+void PingDump::write(const PosedPing& ping, const render::PingSamples& samples) {
+  const std::uint64_t number = ping.request.ping_number;
   const std::filesystem::path path = folder_ / fmt::format("{}-{:08}.npy", head_, number);
   std::ofstream file(path, std::ios::binary);
   file << npy::encode({samples.lines, samples.beams, samples.u8, samples.u16});
   file.close();
-  index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, job.transmit_us, samples.lines,
-                        samples.beams, samples_crc32(samples), job.pose_ns)
+  index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, ping.transmit_us, samples.lines,
+                        samples.beams, samples_crc32(samples), ping.poses->stamp_ns)
          << std::flush;
   if ((!file || !index_) && !failed_) {
     failed_ = true;

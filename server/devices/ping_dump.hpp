@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "server/rendering/render_service.hpp"
+#include "server/rendering/posed_ping.hpp"
 
 namespace sonard::server {
 
@@ -28,7 +28,7 @@ class PingDump {
   /// @throws std::runtime_error naming the path
   PingDump(std::filesystem::path folder, std::string head);
 
-  void write(const RenderJob& job, const render::PingSamples& samples);
+  void write(const PosedPing& ping, const render::PingSamples& samples);
 
  private:
   std::filesystem::path folder_;

@@ -5,24 +5,14 @@
 #include <cstddef>
 #include <memory>
 #include <variant>
-#include <vector>
 
 #include "protocol/common/ping_record.hpp"
 #include "protocol/common/shared_bytes.hpp"
-#include "renderer/pose.hpp"
 #include "server/clock/clock.hpp"
 #include "server/net/wire.hpp"
-#include "server/pose/posed_body.hpp"
+#include "server/pose/poses_used.hpp"
 
 namespace sonard::server {
-
-/// All poses used for one ping.
-struct PosesUsed {
-  TimePoint time{};  ///< of the transmission
-  render::Pose T_world_vehicle;
-  render::Pose T_world_sonar;     ///< of the mount
-  std::vector<PosedBody> bodies;  ///< bodies received so far
-};
 
 /// A ping was sent.
 struct PingSent {

@@ -26,6 +26,11 @@ namespace {
 
 constexpr std::size_t most_unknown_bodies = 16;
 
+/// Pose of a hidden body, beyond the reach of any ping, so that the renderer drops the body. It is always the
+/// same pose, so that an unchanged scene stays unchanged. Heads that share a renderer and hide different
+/// bodies each move the body for their pings.
+const render::Pose out_of_sight{{0.0, 0.0, -1e6}, {1.0, 0.0, 0.0, 0.0}};
+
 /// True if the kernel may refuse memory to this process. Otherwise a request always succeeds and proves
 /// nothing.
 bool memory_is_limited() {
@@ -63,7 +68,7 @@ struct RenderService::Impl {
     std::promise<void> done;
   };
   struct Entry {
-    std::shared_ptr<const RenderJob> job;  ///< null: a warm-up
+    std::shared_ptr<const PosedPing> ping;  ///< null: a warm-up
     Done done;
     std::optional<WarmUp> warm_up{};  ///< set: a warm-up, without `done`
   };
@@ -87,11 +92,11 @@ struct RenderService::Impl {
   void run(const RendererFactory& make_renderer, std::promise<void> ready);
   std::optional<Entry> next();
   void describe(const PingRenderer& renderer);
-  std::vector<render::HeadRequest> next_pings(const RenderJob& first);
+  std::vector<render::HeadRequest> next_pings(const PosedPing& first);
   void serve(PingRenderer& renderer);
   void warm_up(PingRenderer& renderer, WarmUp& warm_up);
-  void move_bodies(PingRenderer& renderer, const RenderJob& job);
-  RenderResult render(PingRenderer& renderer, const RenderJob& job,
+  void move_bodies(PingRenderer& renderer, const PosedPing& ping);
+  RenderResult render(PingRenderer& renderer, const PosedPing& ping,
                       const std::vector<render::HeadRequest>& next);
   void close_queue();
 };
@@ -115,8 +120,8 @@ RenderService::~RenderService() {
   stop();
 }
 
-void RenderService::submit(RenderJob job, Done done) {
-  Impl::Entry entry{std::make_shared<const RenderJob>(std::move(job)), std::move(done)};
+void RenderService::submit(PosedPing ping, Done done) {
+  Impl::Entry entry{std::make_shared<const PosedPing>(std::move(ping)), std::move(done)};
   {
     const std::lock_guard lock(impl_->mutex);
     if (impl_->stopping) {
@@ -149,7 +154,7 @@ bool RenderService::withdraw(int head) {
   const std::lock_guard lock(impl_->mutex);
   const auto entry =
       std::find_if(impl_->queue.begin(), impl_->queue.end(),
-                   [head](const Impl::Entry& waiting) { return waiting.job && waiting.job->head == head; });
+                   [head](const Impl::Entry& waiting) { return waiting.ping && waiting.ping->head == head; });
   if (entry == impl_->queue.end()) {
     return false;
   }
@@ -223,10 +228,12 @@ void RenderService::Impl::serve(PingRenderer& renderer) {
       warm_up(renderer, *entry->warm_up);
       continue;
     }
-    RenderResult result = render(renderer, *entry->job, next_pings(*entry->job));
+    RenderResult result =
+        render(renderer, *entry->ping,
+               renderer.begins_pings() ? next_pings(*entry->ping) : std::vector<render::HeadRequest>());
     describe(renderer);
     if (result.error.empty() && hooks.observe) {
-      hooks.observe(*entry->job, result.samples);
+      hooks.observe(*entry->ping, result.samples);
     }
     // std::function needs copyable captures, so a pointer holds the samples.
     auto shared = std::make_shared<RenderResult>(std::move(result));
@@ -245,56 +252,60 @@ void RenderService::Impl::warm_up(PingRenderer& renderer, WarmUp& warm_up) {
 }
 
 /// This ping and the waiting pings that move no body; empty if this ping is the only one.
-std::vector<render::HeadRequest> RenderService::Impl::next_pings(const RenderJob& first) {
-  std::vector<std::shared_ptr<const RenderJob>> waiting;
+std::vector<render::HeadRequest> RenderService::Impl::next_pings(const PosedPing& first) {
+  std::vector<std::shared_ptr<const PosedPing>> waiting;
   {
     const std::lock_guard lock(mutex);
     for (const Entry& entry : queue) {
-      waiting.push_back(entry.job);
+      waiting.push_back(entry.ping);
     }
   }
   std::vector<render::HeadRequest> pings;
-  for (const auto& job : waiting) {  // copied without the lock
-    if (job == nullptr || job->bodies != first.bodies) {
+  for (const auto& ping : waiting) {  // copied without the lock
+    if (ping == nullptr || ping->poses->bodies != first.poses->bodies ||
+        ping->hidden_body != first.hidden_body) {
       break;
     }
     if (pings.empty()) {
       pings.push_back({first.head, first.request});
     }
-    pings.push_back({job->head, job->request});
+    pings.push_back({ping->head, ping->request});
   }
   return pings;
 }
 
 /// @param next from next_pings()
-RenderResult RenderService::Impl::render(PingRenderer& renderer, const RenderJob& job,
+RenderResult RenderService::Impl::render(PingRenderer& renderer, const PosedPing& ping,
                                          const std::vector<render::HeadRequest>& next) {
   RenderResult result;
   try {
-    move_bodies(renderer, job);
+    move_bodies(renderer, ping);
     if (next.size() > 1) {
       renderer.begin_pings(next);
     }
-    result.samples = renderer.render_ping(job.request, job.head);
+    result.samples = renderer.render_ping(ping.request, ping.head);
     make_sure_of_room(result.samples);
     result.statistics = renderer.last_statistics();
   } catch (const render::RequestError& error) {
     result.error = error.what();
   } catch (const std::bad_alloc&) {  // a too large request must not end other clients
     result.samples = {};
-    renderer.forget(job.head);
+    renderer.forget(ping.head);
     result.error = "out of memory for this ping; use a shorter range or fewer bins";
   }
   return result;
 }
 
-void RenderService::Impl::move_bodies(PingRenderer& renderer, const RenderJob& job) {
-  for (const PosedBody& body : job.bodies) {
+void RenderService::Impl::move_bodies(PingRenderer& renderer, const PosedPing& ping) {
+  for (const PosedBody& body : ping.poses->bodies) {
     // Names come from the network: invented names must not fill memory or log.
     if (!renderer.set_body_pose(body.name, body.T_world_body) &&
         unknown_bodies.size() < most_unknown_bodies && unknown_bodies.insert(body.name).second) {
       spdlog::warn("pose stream: body '{}' is not in the world (ignored)", body.name);
     }
+  }
+  if (!ping.hidden_body.empty()) {
+    renderer.set_body_pose(ping.hidden_body, out_of_sight);
   }
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -12,7 +11,7 @@
 #include "renderer/errors.hpp"
 #include "renderer/ping.hpp"
 #include "renderer/pose.hpp"
-#include "server/pose/posed_body.hpp"
+#include "server/rendering/posed_ping.hpp"
 
 namespace sonard::server {
 
@@ -33,6 +32,8 @@ class PingRenderer {
   /// Prepares the engine, trees, shaders and memory for such pings. Called once, before the first ping.
   /// @throws as render_ping()
   virtual void warm_up(const std::vector<render::HeadRequest>& /*first_pings*/) {}
+  /// Whether begin_pings() can start anything, so that it is called.
+  virtual bool begins_pings() const { return false; }
   /// Announces the pings that are rendered next, one by one; they move no body. Common work may start.
   /// @throws render::RendererError
   virtual void begin_pings(const std::vector<render::HeadRequest>& /*pings*/) {}
@@ -42,16 +43,6 @@ class PingRenderer {
 
 /// Makes the renderer; called once, on the render thread, because a GL context belongs to its thread.
 using RendererFactory = std::function<std::unique_ptr<PingRenderer>()>;
-
-/// One ping to render.
-struct RenderJob {
-  int head = 0;                   ///< its index, 0, 1, 2, ...
-  std::string head_name;          ///< name of the head, for logs and dumps
-  std::uint64_t transmit_us = 0;  ///< transmit time on the clock of the head, for logs and dumps
-  std::int64_t pose_ns = 0;       ///< transmit time on the clock of the poses, for dumps
-  render::PingRequest request;
-  std::vector<PosedBody> bodies;  ///< moved before the ping is rendered
-};
 
 struct RenderResult {
   render::PingSamples samples;  ///< empty if `error` is set
@@ -68,7 +59,7 @@ struct RenderServiceHooks {
   /// the daemon must not go on serving zeros.
   std::function<void(const std::string& what)> on_failure;
   /// Optional; called with each rendered ping on the render thread, before the result is returned.
-  std::function<void(const RenderJob&, const render::PingSamples&)> observe;
+  std::function<void(const PosedPing&, const render::PingSamples&)> observe;
 };
 
 /// Owns the render thread. All member functions are thread-safe, but stop() and the destructor must not run
@@ -91,9 +82,9 @@ class RenderService {
   /// Runs PingRenderer::warm_up(); returns when it is done.
   /// @throws any exception of warm_up(); std::future_error if the service is stopped first
   void warm_up(std::vector<render::HeadRequest> first_pings);
-  /// Queues a job. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
+  /// Queues a ping. `done` is called on the I/O thread, unless the renderer fails or the service stops first.
   /// @throws std::logic_error if the queue is full: more than one job per head was submitted
-  void submit(RenderJob job, Done done);
+  void submit(PosedPing ping, Done done);
   /// Drops the waiting job of a head; its `done` is never called. @return false if no job is waiting: it
   /// has begun and is answered as usual
   bool withdraw(int head);

@@ -47,6 +47,7 @@ class WorldRenderer final : public PingRenderer {
     }
   }
 
+  bool begins_pings() const override { return renderer_.engine() == render::EngineKind::gpu; }
   void begin_pings(const std::vector<render::HeadRequest>& pings) override { renderer_.begin_pings(pings); }
 
   render::PingStatistics last_statistics() const override { return renderer_.last_statistics(); }

@@ -110,6 +110,7 @@ class FakeRenderer final : public server::PingRenderer {
     }
   }
 
+  bool begins_pings() const override { return true; }
   void begin_pings(const std::vector<render::HeadRequest>& pings) override {
     std::vector<int>& heads = control_->begun.emplace_back();
     for (const render::HeadRequest& ping : pings) {

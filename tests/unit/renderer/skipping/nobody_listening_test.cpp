@@ -95,7 +95,7 @@ class NobodyListening : public testing::Test {
     config_.device = std::make_shared<GeminiConfig>(gemini_);
     head_ = std::make_unique<Head>(config_, 0, services);
     head_->start();
-    RenderJob job;
+    PosedPing job;
     job.head = other_head;
     job.request.settings.aperture.beam_edges_rad = {0.1, -0.1};
     service_->submit(std::move(job), [this](const RenderResult&) { other_done_ = true; });

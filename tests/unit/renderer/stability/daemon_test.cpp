@@ -294,7 +294,7 @@ class VirtualDaemon {
   void submit(const PingJob& job) {
     const auto pose = poses_.at(job.transmit_time);
     ASSERT_TRUE(pose);
-    RenderJob render;
+    PosedPing render;
     render.request.T_world_sonar = pose->T_world_vehicle;
     render.request.ping_number = job.number;
     render.request.settings.aperture.beam_edges_rad = render::equal_sine_edges(gemini::beam_count, 1.0);

@@ -45,15 +45,17 @@ TEST(SamplesCrc32, Takes16BitSamplesMostSignificantByteFirst) {
 
 TEST_F(PingDumpTest, WritesNumpyFileAndIndexRow) {
   PingDump dump(folder, "bow");
-  RenderJob job;
-  job.request.ping_number = 257;
-  job.transmit_us = 1234567;
-  job.pose_ns = 5678;
+  PosedPing ping;
+  ping.request.ping_number = 257;
+  ping.transmit_us = 1234567;
+  PosesUsed poses;
+  poses.stamp_ns = 5678;
+  ping.poses = std::make_shared<const PosesUsed>(poses);
   render::PingSamples samples;
   samples.beams = 3;
   samples.lines = 3;
   samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-  dump.write(job, samples);
+  dump.write(ping, samples);
   EXPECT_EQ(contents(folder / "bow.csv"),
             "number,id,transmit_us,lines,beams,crc32,pose_ns\n257,1,1234567,3,3,cbf43926,5678\n");
 

@@ -60,8 +60,8 @@ class Inbox {
   std::deque<std::function<void()>> tasks_;
 };
 
-RenderJob small_job(std::uint64_t number, int head = 0) {
-  RenderJob job;
+PosedPing small_job(std::uint64_t number, int head = 0) {
+  PosedPing job;
   job.head = head;
   job.request.ping_number = number;
   job.request.settings.aperture.beam_edges_rad = {0.2, 0.0, -0.2};
@@ -97,9 +97,9 @@ TEST_F(RenderServiceTest, TellsTheRendererWhatComesNext) {
   {
     RenderService service(fake_renderer_factory(control), 5, hooks());
     for (int head = 0; head < 5; ++head) {
-      RenderJob job = small_job(static_cast<std::uint64_t>(head), head);
+      PosedPing job = small_job(static_cast<std::uint64_t>(head), head);
       if (head == 4) {
-        job.bodies = {{"boat", {}}};
+        job.poses = std::make_shared<const PosesUsed>(PosesUsed{{}, {}, {}, {{"boat", {}}}});
       }
       service.submit(std::move(job), [&](const RenderResult&) { ++answers; });
     }
@@ -281,8 +281,8 @@ TEST_F(RenderServiceTest, StopForgetsWaitingJobsAndFinishesTheCurrentOne) {
 TEST_F(RenderServiceTest, ObserverSeesEachPingBeforeItIsHandedBack) {
   std::vector<std::uint64_t> observed;
   RenderServiceHooks with_observer = hooks();
-  with_observer.observe = [&](const RenderJob& job, const render::PingSamples& samples) {
-    observed.push_back(job.request.ping_number);
+  with_observer.observe = [&](const PosedPing& ping, const render::PingSamples& samples) {
+    observed.push_back(ping.request.ping_number);
     EXPECT_EQ(samples.u8.size(), 6u);
   };
   RenderService service(fake_renderer_factory(control), 1, with_observer);

@@ -397,6 +397,21 @@ TEST_F(GeminiHeadTest, OutOfTheWaterItDoesNotPingUnlessToldTo) {
   ASSERT_TRUE(run_until_received(0x43, 1));
 }
 
+TEST_F(GeminiHeadTest, NoticesThatItLeavesTheWater) {
+  water_surface_z_m = 1.0;  // the sonar is at z = 0
+  start();
+  command(not_out_of_water(ping_config));
+  ASSERT_TRUE(run_until_received(0x43, 1));
+  pose::PoseSample sample;
+  sample.time_ns = 1;
+  sample.T_world_vehicle.position_m = {0, 0, 2};
+  poses->insert(sample, clock.now());
+  EXPECT_TRUE(run_until([&] {
+    command(not_out_of_water(ping_config));
+    return test::device_count(*head, "pings_suppressed") > 0;
+  }));
+}
+
 TEST_F(GeminiHeadTest, FaultsOfTheLinkApplyInBothDirections) {
   gemini_config.link.to_client.duplicate = 1.0;
   gemini_config.link.from_client.delay = std::chrono::milliseconds{80};
