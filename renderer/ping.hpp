@@ -33,25 +33,25 @@ struct SteadyEcho {
 /// Mode `physical`: re the source intensity at 1 m; mode `paper`: the paper's I_bin in [0, 1].
 struct EchoImage {
   int beams = 0;
-  int lines = 0;                 ///< range bins
-  std::vector<float> intensity;  ///< [beam * lines + line]
+  int bins = 0;                  ///< range bins
+  std::vector<float> intensity;  ///< [beam * bins + bin]
   SteadyEcho steady{};
   /// Share of each range bin's strongest echo that comes from surfaces, in [0, 1]; the rest comes from the
   /// water. Empty: 1 in all bins.
   std::vector<float> surface_share{};
 
-  float at(int beam, int line) const {
-    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(lines) +
-                     static_cast<std::size_t>(line)];
+  float at(int beam, int bin) const {
+    return intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(bins) +
+                     static_cast<std::size_t>(bin)];
   }
 };
 
-/// Output of the receiver, ready for the device to send: line by line, each from port to starboard.
+/// Output of the receiver, ready for the device to send: bin by bin, each from port to starboard.
 struct PingSamples {
   int beams = 0;
-  int lines = 0;                   ///< range bins after range compression
-  std::vector<std::uint8_t> u8;    ///< [line * beams + beam], if the output has 8 bits
-  std::vector<std::uint16_t> u16;  ///< [line * beams + beam], if the output has 16 bits
+  int bins = 0;                    ///< range bins after range compression
+  std::vector<std::uint8_t> u8;    ///< [bin * beams + beam], if the output has 8 bits
+  std::vector<std::uint16_t> u16;  ///< [bin * beams + beam], if the output has 16 bits
 };
 
 struct PingRequest {

@@ -262,14 +262,14 @@ void BeamPattern::add_lobe(int fine_beam, float echo, const Beams& of, std::vect
 
 BeamPattern::LineSums BeamPattern::sum_lines(const EchoImage& fine, WorkerPool& workers) const {
   constexpr int lines_per_job = 256;
-  const auto lines = static_cast<std::size_t>(fine.lines);
+  const auto lines = static_cast<std::size_t>(fine.bins);
   LineSums sums;
   sums.sum.resize(lines);
   sums.least.resize(lines, std::numeric_limits<float>::max());
   sums.most.resize(lines);
-  workers.run((fine.lines + lines_per_job - 1) / lines_per_job, [&](int job) {
+  workers.run((fine.bins + lines_per_job - 1) / lines_per_job, [&](int job) {
     const auto begin = static_cast<std::size_t>(job * lines_per_job);
-    const int count = std::min(lines_per_job, fine.lines - job * lines_per_job);
+    const int count = std::min(lines_per_job, fine.bins - job * lines_per_job);
     for (std::size_t f = 0; f < inverse_width_.size(); ++f) {
       gather_row(&fine.intensity[f * lines + begin], inverse_width_[f], count, &sums.sum[begin],
                  &sums.least[begin], &sums.most[begin]);
@@ -301,7 +301,7 @@ std::vector<BeamPattern::Span> BeamPattern::spans_of(const LineSums& sums, int l
 
 void BeamPattern::receive(const EchoImage& fine, int beam, const Span& span, const float* leaks,
                           float* out) const {
-  const auto lines = static_cast<std::size_t>(fine.lines);
+  const auto lines = static_cast<std::size_t>(fine.bins);
   const int count = span.end - span.begin;
   const auto row = [&](int f) {
     return &fine.intensity[static_cast<std::size_t>(f) * lines + static_cast<std::size_t>(span.begin)];
@@ -334,17 +334,16 @@ void BeamPattern::apply(const EchoImage& fine, EchoImage& out, WorkerPool& worke
                         SkipCounts& skipped) const {
   constexpr int beams_per_job = 8;  // neighbours read the same rows
   out.beams = static_cast<int>(bands_.size());
-  out.lines = fine.lines;
-  out.intensity.resize(bands_.size() * static_cast<std::size_t>(fine.lines));
+  out.bins = fine.bins;
+  out.intensity.resize(bands_.size() * static_cast<std::size_t>(fine.bins));
   const LineSums sums = sum_lines(fine, workers);
-  const std::vector<Span> spans = spans_of(sums, fine.lines, skip, skipped);
+  const std::vector<Span> spans = spans_of(sums, fine.bins, skip, skipped);
   const bool no_leak = !leaks_ && skip.on(SkipRule::perfect_elements);
   skipped.add(SkipRule::perfect_elements, no_leak ? 1 : 0);
   workers.run((out.beams + beams_per_job - 1) / beams_per_job, [&](int job) {
     const int end = std::min(out.beams, (job + 1) * beams_per_job);
     for (int beam = job * beams_per_job; beam < end; ++beam) {
-      float* const row =
-          &out.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(fine.lines)];
+      float* const row = &out.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(fine.bins)];
       for (const Span& span : spans) {
         receive(fine, beam, span, no_leak ? nullptr : sums.sum.data(), row + span.begin);
       }

@@ -86,7 +86,7 @@ EchoBlock::EchoBlock(const EchoImage& echo)
 
 void EchoBlock::load(int first, int count) {
   first_ = first;
-  const auto lines = static_cast<std::size_t>(echo_.lines);
+  const auto lines = static_cast<std::size_t>(echo_.bins);
   turn(&echo_.intensity[static_cast<std::size_t>(first)], lines, static_cast<std::size_t>(echo_.beams),
        static_cast<std::size_t>(count), rows_.data(), static_cast<std::size_t>(stride_));
 }

@@ -135,9 +135,9 @@ PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double t
 
 void PulseResponse::apply(const EchoImage& echo, EchoImage& out, WorkerPool& workers) const {
   constexpr int beams_per_job = 8;
-  const auto lines = static_cast<std::size_t>(echo.lines);
+  const auto lines = static_cast<std::size_t>(echo.bins);
   out.beams = echo.beams;
-  out.lines = echo.lines;
+  out.bins = echo.bins;
   out.intensity.resize(echo.intensity.size());
   workers.run((echo.beams + beams_per_job - 1) / beams_per_job, [&](int job) {
     const int end = std::min(echo.beams, (job + 1) * beams_per_job);

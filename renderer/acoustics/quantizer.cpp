@@ -69,8 +69,8 @@ void quantise_decibels(const float* sum_db, float terms, int count, std::uint8_t
 PingSamples make_samples(const SonarSettings& settings) {
   PingSamples samples;
   samples.beams = settings.aperture.beam_count();
-  samples.lines = settings.range.output_count();
-  const std::size_t size = static_cast<std::size_t>(samples.beams) * static_cast<std::size_t>(samples.lines);
+  samples.bins = settings.range.output_count();
+  const std::size_t size = static_cast<std::size_t>(samples.beams) * static_cast<std::size_t>(samples.bins);
   settings.sixteen_bit ? samples.u16.resize(size) : samples.u8.resize(size);
   return samples;
 }

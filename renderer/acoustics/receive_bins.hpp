@@ -22,7 +22,7 @@ PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSet
   PingSamples samples = make_samples(settings);
   const int looks_log2 = settings.range.compression_log2;
   const int lines_per_block = EchoBlock::most_lines >> looks_log2;
-  const int blocks = (samples.lines + lines_per_block - 1) / lines_per_block;
+  const int blocks = (samples.bins + lines_per_block - 1) / lines_per_block;
   std::atomic<int> next{0};
   std::mutex ending;
   workers.run(std::min(blocks, static_cast<int>(workers.size())), [&](int) {
@@ -31,7 +31,7 @@ PingSamples receive_bins(const EchoImage& echo, const Ping& ping, const SonarSet
     Quantizer output(settings, samples);
     for (int i = next++; i < blocks; i = next++) {
       const int begin = i * lines_per_block;
-      const int end = std::min(begin + lines_per_block, samples.lines);
+      const int end = std::min(begin + lines_per_block, samples.bins);
       block.load(begin << looks_log2, (end - begin) << looks_log2);
       for (int line = begin; line < end; ++line) {
         output.begin();

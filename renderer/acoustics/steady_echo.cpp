@@ -20,8 +20,8 @@ constexpr float full_dominance = 0.8F;
 float sum_around(const EchoImage& fine, int fine_beam, int line, int beams, int lines) {
   float sum = 0;
   for (int f = std::max(0, fine_beam - beams); f <= std::min(fine.beams - 1, fine_beam + beams); ++f) {
-    const float* row = &fine.intensity[static_cast<std::size_t>(f) * static_cast<std::size_t>(fine.lines)];
-    for (int k = std::max(0, line - lines); k <= std::min(fine.lines - 1, line + lines); ++k) {
+    const float* row = &fine.intensity[static_cast<std::size_t>(f) * static_cast<std::size_t>(fine.bins)];
+    for (int k = std::max(0, line - lines); k <= std::min(fine.bins - 1, line + lines); ++k) {
       sum += row[k];
     }
   }
@@ -31,7 +31,7 @@ float sum_around(const EchoImage& fine, int fine_beam, int line, int beams, int 
 bool is_peak(const EchoImage& fine, int fine_beam, int line) {
   const float here = fine.at(fine_beam, line);
   for (int f = std::max(0, fine_beam - 1); f <= std::min(fine.beams - 1, fine_beam + 1); ++f) {
-    for (int k = std::max(0, line - 1); k <= std::min(fine.lines - 1, line + 1); ++k) {
+    for (int k = std::max(0, line - 1); k <= std::min(fine.bins - 1, line + 1); ++k) {
       const float there = fine.at(f, k);
       const bool first = f < fine_beam || (f == fine_beam && k < line);
       if (there > here || (first && there == here)) {
@@ -65,9 +65,9 @@ bool stands_out(const float* __restrict row, float faintest) {
 void find_points_of_beam(const EchoImage& fine, int fine_beam, const MixingReach& reach, float faintest,
                          std::vector<PointEcho>& points) {
   const float* row =
-      &fine.intensity[static_cast<std::size_t>(fine_beam) * static_cast<std::size_t>(fine.lines)];
-  for (int k = 2; k + 2 < fine.lines; ++k) {
-    if ((k - 2) % block_lines == 0 && k + block_lines + 2 <= fine.lines && !stands_out(row + k, faintest)) {
+      &fine.intensity[static_cast<std::size_t>(fine_beam) * static_cast<std::size_t>(fine.bins)];
+  for (int k = 2; k + 2 < fine.bins; ++k) {
+    if ((k - 2) % block_lines == 0 && k + block_lines + 2 <= fine.bins && !stands_out(row + k, faintest)) {
       k += block_lines - 1;
       continue;
     }
@@ -123,7 +123,7 @@ SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage&
   if (points.empty()) {
     return steady;
   }
-  steady.row_of_line.assign(static_cast<std::size_t>(fine.lines), -1);
+  steady.row_of_line.assign(static_cast<std::size_t>(fine.bins), -1);
   const int taps = pulse != nullptr ? pulse->taps() : 1;
   const auto row_at = [&](int line) {
     std::int32_t& row = steady.row_of_line[static_cast<std::size_t>(line)];
@@ -138,12 +138,12 @@ SteadyEcho receive_points(const std::vector<PointEcho>& points, const EchoImage&
     const int first = std::max(0, point.fine_beam - 1);
     const int last = std::min(fine.beams - 1, point.fine_beam + 1);
     const BeamPattern::Beams lobes = pattern.receivers_of(first, last);
-    for (int k = std::max(0, point.line - 1); k <= std::min(fine.lines - 1, point.line + 1); ++k) {
+    for (int k = std::max(0, point.line - 1); k <= std::min(fine.bins - 1, point.line + 1); ++k) {
       std::fill(received.begin() + lobes.begin, received.begin() + lobes.end, 0.0F);
       for (int f = first; f <= last; ++f) {
         pattern.add_lobe(f, point.share * fine.at(f, k), lobes, received);
       }
-      for (int line = std::max(0, k - taps + 1); line <= std::min(fine.lines - 1, k + taps - 1); ++line) {
+      for (int line = std::max(0, k - taps + 1); line <= std::min(fine.bins - 1, k + taps - 1); ++line) {
         const auto of_pulse = static_cast<float>(pulse != nullptr ? pulse->share(std::abs(line - k)) : 1.0);
         float* row = row_at(line);
         for (int b = lobes.begin; b < lobes.end; ++b) {

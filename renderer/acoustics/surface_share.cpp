@@ -23,7 +23,7 @@ void keep_larger(const float* __restrict candidates, std::size_t count, float* _
 }  // namespace
 
 std::vector<float> strongest_of_lines(const EchoImage& image, WorkerPool& workers) {
-  const auto lines = static_cast<std::size_t>(image.lines);
+  const auto lines = static_cast<std::size_t>(image.bins);
   std::vector<float> strongest(lines, 0.0F);
   workers.run(static_cast<int>((lines + lines_per_job - 1) / lines_per_job), [&](int job) {
     const std::size_t first = static_cast<std::size_t>(job) * lines_per_job;

@@ -36,7 +36,7 @@ class Clutter {
     for (int beam = 0; beam < image.beams; ++beam) {
       const float* row = row_of(beam);
       first_echo_[static_cast<std::size_t>(beam)] =
-          static_cast<int>(std::find_if(row, row + image.lines, [](float echo) { return echo > 0; }) - row);
+          static_cast<int>(std::find_if(row, row + image.bins, [](float echo) { return echo > 0; }) - row);
     }
   }
 
@@ -55,7 +55,7 @@ class Clutter {
         glm::conjugate(T_world_sonar_.orientation) * (position_m - T_world_sonar_.position_m);
     const double range_m = glm::length(p);
     const auto line = static_cast<int>(range_m / settings_.range.step_m);
-    if (!(range_m < farthest_m) || !(range_m > nearest_depth_m) || line >= image_.lines) {
+    if (!(range_m < farthest_m) || !(range_m > nearest_depth_m) || line >= image_.bins) {
       return;
     }
     const int beam = beam_of(std::atan2(p.y, p.x));
@@ -70,7 +70,7 @@ class Clutter {
 
  private:
   float* row_of(int beam) {
-    return &image_.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(image_.lines)];
+    return &image_.intensity[static_cast<std::size_t>(beam) * static_cast<std::size_t>(image_.bins)];
   }
 
   /// -1 outside the fan.

@@ -15,10 +15,10 @@ double bin_rms(const EchoImage& image, const EchoImage& truth, double kept_share
   std::vector<double> squares;
   for (int beam = 0; beam < truth.beams; ++beam) {
     float largest = 0.0F;
-    for (int line = 0; line < truth.lines; ++line) {
+    for (int line = 0; line < truth.bins; ++line) {
       largest = std::max(largest, truth.at(beam, line));
     }
-    for (int line = 0; line < truth.lines; ++line) {
+    for (int line = 0; line < truth.bins; ++line) {
       if (!std::isfinite(image.at(beam, line))) {
         return std::numeric_limits<double>::infinity();
       }

@@ -66,7 +66,7 @@ EchoImage closed_form(const SonarSettings& settings) {
     const double psi_from = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1];
     const double psi_to = settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam)];
     const double step = (psi_to - psi_from) / steps;
-    std::vector<double> lines(static_cast<std::size_t>(image.lines));
+    std::vector<double> lines(static_cast<std::size_t>(image.bins));
     for (int i = 0; i < steps; ++i) {
       add_wall_echo(psi_from + (i + 0.5) * step, step, settings.aperture.elevation_limit_rad(),
                     settings.range, lines);

@@ -163,12 +163,12 @@ struct SonarRenderer::Impl {
                    EchoImage& image) {
     const SonarSettings& settings = settings_and_seed.settings;
     image.beams = settings.aperture.beam_count();
-    image.lines = settings.range.count;
+    image.bins = settings.range.count;
     image.steady = {};
     image.surface_share.clear();
     strongest_of_all.clear();
     if (!settings.transmit) {
-      image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines),
+      image.intensity.assign(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.bins),
                              0.0F);
       return;
     }
@@ -261,7 +261,7 @@ struct SonarRenderer::Impl {
     const int beams = up_to_end.aperture.beam_count();
     const int lines = up_to_end.range.count;
     joined.image.beams = beams;
-    joined.image.lines = lines;
+    joined.image.bins = lines;
     joined.image.intensity.resize(static_cast<std::size_t>(beams) * static_cast<std::size_t>(lines));
     joined.open_sr.resize(request.open_water ? joined.image.intensity.size() : 0);
     MeanEcho echo;

@@ -38,9 +38,9 @@ void PingDump::write(const PosedPing& ping, const render::PingSamples& samples) 
   const std::uint64_t number = ping.request.ping_number;
   const std::filesystem::path path = folder_ / fmt::format("{}-{:08}.npy", head_, number);
   std::ofstream file(path, std::ios::binary);
-  file << npy::encode({samples.lines, samples.beams, samples.u8, samples.u16});
+  file << npy::encode({samples.bins, samples.beams, samples.u8, samples.u16});
   file.close();
-  index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, ping.transmit_us, samples.lines,
+  index_ << fmt::format("{},{},{},{},{},{:08x},{}\n", number, number % 256, ping.transmit_us, samples.bins,
                         samples.beams, samples_crc32(samples), ping.poses->stamp_ns)
          << std::flush;
   if ((!file || !index_) && !failed_) {

@@ -39,7 +39,7 @@ void silence(render::Body& body) {
 void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint16_t id,
                   std::vector<float>& loudest, std::vector<std::uint16_t>& ids) {
   constexpr float rounding = 1e-6F;
-  const int lines = echo.lines >> compression_log2;
+  const int lines = echo.bins >> compression_log2;
   for (int beam = 0; beam < echo.beams; ++beam) {
     float loudest_of_body = 0.0F;
     for (int line = 0; line < lines; ++line) {

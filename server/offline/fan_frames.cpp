@@ -85,7 +85,7 @@ Frame FanFrames::render(render::SonarRenderer& renderer, int frame) {
   place_bodies(trajectory_, times_.at(frame), renderer, truth_);
   render::PingSamples rendered = renderer.render_ping(ping, place_.head);
   auto samples = std::make_shared<const npy::Table>(
-      npy::Table{rendered.lines, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
+      npy::Table{rendered.bins, rendered.beams, std::move(rendered.u8), std::move(rendered.u16)});
   Frame made;
   made.view = {.time_ns = times_.at(frame), .range_m = ping.settings.range.max_range_m()};
   made.view.add(renderer.last_statistics());

@@ -40,7 +40,7 @@ class LogRenderer final : public PingRenderer {
     const LoggedPing& ping = head.pings.at(number);
     render::PingSamples samples;
     samples.beams = ping.settings.beams;
-    samples.lines = ping.settings.bins;
+    samples.bins = ping.settings.bins;
     samples.u8 = reader_.samples(ping);
     return samples;
   }

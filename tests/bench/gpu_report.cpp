@@ -88,7 +88,7 @@ void check_image(Engine& engine, const render::PingRequest& request, const Subje
                options.repeats);
   }
   if (!options.images.empty()) {
-    write_text(npy::header("<f4", image.beams, image.lines) + bytes, options.images / file);
+    write_text(npy::header("<f4", image.beams, image.bins) + bytes, options.images / file);
   }
   if (!options.like.empty()) {
     const auto error = compare_images(image, read_npy(options.like / file));

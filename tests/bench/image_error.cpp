@@ -19,7 +19,7 @@ constexpr double trimmed_share = 0.01;
 using Beam = std::span<const float>;
 
 Beam beam_of(const render::EchoImage& image, int beam) {
-  const auto lines = static_cast<std::size_t>(image.lines);
+  const auto lines = static_cast<std::size_t>(image.bins);
   return Beam(image.intensity).subspan(static_cast<std::size_t>(beam) * lines, lines);
 }
 
@@ -71,7 +71,7 @@ struct Share {
 }  // namespace
 
 std::optional<ImageError> compare_images(const render::EchoImage& image, const render::EchoImage& reference) {
-  if (image.beams != reference.beams || image.lines != reference.lines) {
+  if (image.beams != reference.beams || image.bins != reference.bins) {
     throw std::invalid_argument("image and reference differ in size");
   }
   ImageError error;

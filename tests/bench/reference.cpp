@@ -57,7 +57,7 @@ render::EchoImage read_npy(const std::filesystem::path& file) {
     refuse(file, "expected little-endian float32 in C order with two dimensions");
   }
   render::EchoImage image{std::stoi(shape[1]), std::stoi(shape[2]), {}};
-  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
+  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.bins));
   std::vector<char> bytes(image.intensity.size() * sizeof(float));
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
     refuse(file, "ends before its last value");
@@ -82,7 +82,7 @@ std::optional<Reference> find_reference(const test::Scene& scene, const std::fil
   }
   Reference reference{read_npy(file), false, std::nullopt};
   if (reference.image.beams != scene.settings.aperture.beam_count() ||
-      reference.image.lines != scene.settings.range.count) {
+      reference.image.bins != scene.settings.range.count) {
     refuse(file, "not of the size that the scene has: render it again");
   }
   std::filesystem::path description = file;

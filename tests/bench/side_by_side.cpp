@@ -41,8 +41,8 @@ picture::FanShape shape_of(const test::Scene& scene) {
 
 /// Levels in decibels without spreading, as a sonar with TVG would show them. One row per line.
 cv::Mat levels(const render::EchoImage& image, double strongest) {
-  cv::Mat polar(image.lines, image.beams, CV_8UC1);
-  for (int k = 0; k < image.lines; ++k) {
+  cv::Mat polar(image.bins, image.beams, CV_8UC1);
+  for (int k = 0; k < image.bins; ++k) {
     for (int b = 0; b < image.beams; ++b) {
       const double value = static_cast<double>(image.at(b, k)) * std::pow(k + 0.5, 3) / strongest;
       const double db = 10 * std::log10(std::max(value, 1e-12));
@@ -54,7 +54,7 @@ cv::Mat levels(const render::EchoImage& image, double strongest) {
 
 double strongest_level(const render::EchoImage& image) {
   double strongest = 0;
-  for (int k = 0; k < image.lines; ++k) {
+  for (int k = 0; k < image.bins; ++k) {
     for (int b = 0; b < image.beams; ++b) {
       strongest = std::max(strongest, static_cast<double>(image.at(b, k)) * std::pow(k + 0.5, 3));
     }
@@ -64,13 +64,13 @@ double strongest_level(const render::EchoImage& image) {
 
 /// |image / truth - 1| for bins whose truth exceeds the share `heard` of their beam's maximum.
 cv::Mat differences(const render::EchoImage& image, const render::EchoImage& truth) {
-  cv::Mat polar = cv::Mat::zeros(image.lines, image.beams, CV_8UC1);
+  cv::Mat polar = cv::Mat::zeros(image.bins, image.beams, CV_8UC1);
   for (int b = 0; b < image.beams; ++b) {
     float most = 0;
-    for (int k = 0; k < image.lines; ++k) {
+    for (int k = 0; k < image.bins; ++k) {
       most = std::max(most, truth.at(b, k));
     }
-    for (int k = 0; k < image.lines; ++k) {
+    for (int k = 0; k < image.bins; ++k) {
       const double expected = static_cast<double>(truth.at(b, k));
       if (expected > heard * static_cast<double>(most)) {
         const double error = std::abs(static_cast<double>(image.at(b, k)) / expected - 1);

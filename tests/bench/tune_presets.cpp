@@ -95,7 +95,7 @@ class SceneBench {
     seconds += cpu_s() - begin;
     render::EchoImage image;
     image.beams = bins.beams;
-    image.lines = bins.lines;
+    image.bins = bins.lines;
     image.intensity = std::move(bins.echo);
     return image;
   }

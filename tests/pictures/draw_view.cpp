@@ -28,7 +28,7 @@ cv::Mat draw_fan(render::SonarRenderer& renderer, const View& view, const pictur
                  const std::string& caption) {
   render::PingSamples samples =
       renderer.render_ping({view.T_world_sonar, view.settings, 0, 1, view.T_world_sonar_at_end});
-  const cv::Mat polar(samples.lines, samples.beams, CV_8UC1, samples.u8.data());
+  const cv::Mat polar(samples.bins, samples.beams, CV_8UC1, samples.u8.data());
   return picture::FanImage(shape_of(view), style).draw(polar, caption);
 }
 

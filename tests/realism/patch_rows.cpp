@@ -16,7 +16,7 @@ namespace {
 
 /// 8-bit samples as amplitudes: inverts the output scale.
 AmplitudeImage amplitudes_of(const render::PingSamples& samples, const render::SonarSettings& settings) {
-  AmplitudeImage image{samples.lines, samples.beams, 255, {}};
+  AmplitudeImage image{samples.bins, samples.beams, 255, {}};
   const bool power = settings.output_scale == render::OutputScale::power;
   const auto amplitude_of = [&](double code) {
     return power ? 255 * std::pow(code / 255, 1 / settings.output_exponent) : code;

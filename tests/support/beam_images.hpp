@@ -21,13 +21,13 @@ inline render::EchoImage image_of_beams(const render::SonarSettings& settings, c
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;
   const render::RangeBins& range = settings.range;
   render::EchoImage image{settings.aperture.beam_count(), range.count, {}};
-  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.lines));
+  image.intensity.resize(static_cast<std::size_t>(image.beams) * static_cast<std::size_t>(image.bins));
   std::atomic<int> next_beam{0};
   const auto fill_beams = [&] {
     for (int beam = next_beam++; beam < image.beams; beam = next_beam++) {
       const auto b = static_cast<std::size_t>(beam);
-      float* const values = &image.intensity[b * static_cast<std::size_t>(image.lines)];
-      for (int k = 0; k < image.lines; ++k) {
+      float* const values = &image.intensity[b * static_cast<std::size_t>(image.bins)];
+      for (int k = 0; k < image.bins; ++k) {
         const double from_m = std::max(1e-9, k * range.step_m);
         values[k] = static_cast<float>(echo(edges[b + 1], edges[b], from_m, (k + 1) * range.step_m));
       }

@@ -87,8 +87,8 @@ class FakeRenderer final : public server::PingRenderer {
     control_->record(request);
     render::PingSamples samples;
     samples.beams = request.settings.aperture.beam_count();
-    samples.lines = request.settings.range.output_count();
-    for (int line = 0; line < samples.lines; ++line) {
+    samples.bins = request.settings.range.output_count();
+    for (int line = 0; line < samples.bins; ++line) {
       for (int beam = 0; beam < samples.beams; ++beam) {
         const std::uint8_t value = fake_sample(request.ping_number, line, beam);
         if (request.settings.sixteen_bit) {

@@ -18,7 +18,7 @@ INSTANTIATE_TEST_SUITE_P(Accuracy, AbsorptionAccuracy, all_cases(), case_name);
 /// Level of one beam, dB, with the absorption beyond `wall_m` undone line by line.
 double level_db(const render::EchoImage& image, int beam, double wall_m, double step_m) {
   double sum = 0;
-  for (int k = 0; k < image.lines; ++k) {
+  for (int k = 0; k < image.bins; ++k) {
     sum += static_cast<double>(image.at(beam, k)) *
            std::pow(10.0, alpha_db_per_m * ((k + 0.5) * step_m - wall_m) / 5);
   }

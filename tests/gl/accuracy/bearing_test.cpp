@@ -45,7 +45,7 @@ TEST_P(BearingAccuracy, T11StripInTheCentreOfEveryBeam) {
       int loudest = -spacing;
       for (int b = std::max(0, beam - spacing / 2 + 1); b < std::min(image.beams, beam + spacing / 2); ++b) {
         double echo = 0;
-        for (int k = 0; k < image.lines; ++k) {
+        for (int k = 0; k < image.bins; ++k) {
           echo += static_cast<double>(image.at(b, k));
         }
         moment += (b - beam) * echo;

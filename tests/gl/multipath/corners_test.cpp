@@ -23,7 +23,7 @@ struct Reflector {
 Reflector strongest(const EchoImage& image) {
   Reflector reflector;
   for (int beam = 0; beam < image.beams; ++beam) {
-    for (int line = 0; line < image.lines; ++line) {
+    for (int line = 0; line < image.bins; ++line) {
       if (static_cast<double>(image.at(beam, line)) > reflector.intensity) {
         reflector = {beam, line, static_cast<double>(image.at(beam, line))};
       }

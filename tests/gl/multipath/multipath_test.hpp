@@ -79,7 +79,7 @@ inline double energy(const render::EchoImage& image, const render::SonarSettings
     if (middle_deg < from_deg || middle_deg > to_deg) {
       continue;
     }
-    for (int line = 0; line < image.lines; ++line) {
+    for (int line = 0; line < image.bins; ++line) {
       if ((line + 1) * settings.range.step_m > from_m && line * settings.range.step_m <= to_m) {
         sum += static_cast<double>(image.at(beam, line));
       }

@@ -142,7 +142,7 @@ TEST_P(PingMotion, RangeIsHalfOfTheWayOutAndBack) {
   request.settings.aperture.beam_edges_rad = equal_angle_edges(2, 0.4 * degree);
   const EchoImage& image = renderer.render_echo(request);
   int first = 0;
-  while (first < image.lines && image.at(0, first) == 0.0F) {
+  while (first < image.bins && image.at(0, first) == 0.0F) {
     ++first;
   }
   EXPECT_NEAR(first * request.settings.range.step_m, 43.75 / (1 + 0.5 / range_m), 0.06);

@@ -58,7 +58,7 @@ double first_range_m(double down_rad, double bend = bend_per_m) {
 
 int first_line(const EchoImage& image, int beam) {
   int line = 0;
-  while (line < image.lines && image.at(beam, line) == 0.0F) {
+  while (line < image.bins && image.at(beam, line) == 0.0F) {
     ++line;
   }
   return line;

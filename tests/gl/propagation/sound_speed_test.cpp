@@ -39,7 +39,7 @@ double shown_m(double lines, double line_rate_hz) {
 
 int first_line(const render::EchoImage& image, int beam) {
   int line = 0;
-  while (line < image.lines && image.at(beam, line) == 0.0F) {
+  while (line < image.bins && image.at(beam, line) == 0.0F) {
     ++line;
   }
   return line;
@@ -99,7 +99,7 @@ TEST_P(SoundSpeed, FlatArrayHearsAPostWhereItsDelaysPoint) {
     const render::EchoImage image = image_of(post, gemini_sonar_settings(gemini_job(1450.0), head));
     const auto loudest = std::max_element(image.intensity.begin(), image.intensity.end());
     ASSERT_GT(*loudest, 0.0F);
-    const auto beam = (loudest - image.intensity.begin()) / image.lines;
+    const auto beam = (loudest - image.intensity.begin()) / image.bins;
     // The 256 beams are even in the sine of the bearing, from 60 degrees to port downwards.
     const double shown_sin = std::sin(bearing) * (error ? assumed_mps / 1450.0 : 1.0);
     EXPECT_EQ(beam, static_cast<int>(128 - 128 * shown_sin / std::sin(60 * degree))) << error;

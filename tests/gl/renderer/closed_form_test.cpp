@@ -40,7 +40,7 @@ Comparison compare(const EchoImage& image, const PingRequest& request, const Pla
     const auto b = static_cast<std::size_t>(beam);
     std::vector<double> expected, measured;
     double expected_sum = 0, measured_sum = 0;
-    for (int k = 0; k < image.lines; ++k) {
+    for (int k = 0; k < image.bins; ++k) {
       const double from = std::max(1e-6, k * request.settings.range.step_m);
       expected.push_back(
           truth.beam(edges[b + 1], edges[b], from, (k + 1) * request.settings.range.step_m, 800));
@@ -94,7 +94,7 @@ TEST_P(ClosedForm, T4Sphere) {
     const EchoImage image = renderer.render_echo(request);
     std::vector<double> expected, measured;
     double total = 0;
-    for (int k = 0; k < image.lines; ++k) {
+    for (int k = 0; k < image.bins; ++k) {
       const double step = request.settings.range.step_m;
       expected.push_back(test::sphere_echo(0.5, 8, k * step, (k + 1) * step));
       measured.push_back(0);
@@ -126,7 +126,7 @@ TEST_P(ClosedForm, T6TwoHalfPlanes) {
   const EchoImage image = renderer.render_echo(request);
   const auto first_line = [&](int beam) {
     int k = 0;
-    while (k < image.lines && image.at(beam, k) == 0) {
+    while (k < image.bins && image.at(beam, k) == 0) {
       ++k;
     }
     return k;

@@ -111,10 +111,10 @@ Difference difference(SonarRenderer& gpu, SonarRenderer& cpu, const PingRequest&
   result.bins = a.intensity.size();
   for (int beam = 0; beam < a.beams; ++beam) {
     float strongest = 0;
-    for (int k = 0; k < a.lines; ++k) {
+    for (int k = 0; k < a.bins; ++k) {
       strongest = std::max(strongest, a.at(beam, k));
     }
-    for (int k = 0; k < a.lines; ++k) {
+    for (int k = 0; k < a.bins; ++k) {
       result.echoes += a.at(beam, k) > 0 ? 1 : 0;
       result.different += std::abs(a.at(beam, k) - b.at(beam, k)) > 1e-3F * strongest ? 1 : 0;
     }
@@ -213,7 +213,7 @@ TEST_F(EngineAgreement, S21FarFromTheOriginAndRotated) {
 /// First line of a beam with an echo, or the number of lines.
 int first_echo(const EchoImage& image, int beam) {
   int k = 0;
-  while (k < image.lines && !(image.at(beam, k) > 0)) {
+  while (k < image.bins && !(image.at(beam, k) > 0)) {
     ++k;
   }
   return k;

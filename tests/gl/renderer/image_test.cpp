@@ -36,8 +36,8 @@ World bed_and_ball(const glm::dvec3& ball_m) {
 }
 
 double beam_sum(const EchoImage& image, int from, int to) {
-  return std::accumulate(image.intensity.begin() + static_cast<std::ptrdiff_t>(from) * image.lines,
-                         image.intensity.begin() + static_cast<std::ptrdiff_t>(to) * image.lines, 0.0);
+  return std::accumulate(image.intensity.begin() + static_cast<std::ptrdiff_t>(from) * image.bins,
+                         image.intensity.begin() + static_cast<std::ptrdiff_t>(to) * image.bins, 0.0);
 }
 
 class Image : public EngineTest {};

@@ -45,7 +45,7 @@ TEST_P(Paper, PlaneFollowsTheSigmoid) {
     const EchoImage image = renderer.render_echo(request);
     int compared = 0;
     for (const int beam : {0, 40, 127, 200, 255}) {
-      for (int k = 1; k + 1 < image.lines; ++k) {
+      for (int k = 1; k + 1 < image.bins; ++k) {
         if (image.at(beam, k - 1) > 0 && image.at(beam, k + 1) > 0) {
           const double range_m = (k + 0.5) * 0.025;
           // The slope of S over one line bounds the effect of averaging inside the line.
@@ -118,7 +118,7 @@ TEST_P(Paper, SingleFrustumClipsTheSidesOnlyWhenAskedTo) {
   const auto extent = [&](int beam) {
     const EchoImage image = renderer.render_echo(request);
     int first = -1, last = -1;
-    for (int k = 0; k < image.lines; ++k) {
+    for (int k = 0; k < image.bins; ++k) {
       if (image.at(beam, k) > 0) {
         first = first < 0 ? k : first;
         last = k;

@@ -72,8 +72,8 @@ TEST_P(Reception, APointIsHeardWithThePatternOfTheArray) {
   const EchoImage& echo = renderer.render_echo(request);
   ASSERT_EQ(echo.beams, beams);
   const auto level_db = [&](int b) {
-    const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.lines)];
-    return 10 * std::log10(std::accumulate(row, row + echo.lines, 1e-30));
+    const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.bins)];
+    return 10 * std::log10(std::accumulate(row, row + echo.bins, 1e-30));
   };
   const auto truth_db = [&](int b) {
     const double axis = gemini_spacing * (beams / 2.0 - 0.5 - b);
@@ -145,8 +145,8 @@ TEST_P(Reception, AWallKeepsItsLevel) {
     const EchoImage& echo = renderer.render_echo(request);
     std::vector<double> sums;
     for (int b = 0; b < echo.beams; ++b) {
-      const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.lines)];
-      sums.push_back(std::accumulate(row, row + echo.lines, 0.0));
+      const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.bins)];
+      sums.push_back(std::accumulate(row, row + echo.bins, 0.0));
     }
     return sums;
   };
@@ -163,8 +163,8 @@ std::pair<double, double> centre_and_sum(const EchoImage& echo, const std::vecto
   double moment = 0;
   for (int b = 0; b < echo.beams; ++b) {
     const auto beam = static_cast<std::size_t>(b);
-    const auto* row = &echo.intensity[beam * static_cast<std::size_t>(echo.lines)];
-    const double heard = std::accumulate(row, row + echo.lines, 0.0);
+    const auto* row = &echo.intensity[beam * static_cast<std::size_t>(echo.bins)];
+    const double heard = std::accumulate(row, row + echo.bins, 0.0);
     sum += heard;
     moment += heard * (std::sin(edges_rad[beam]) + std::sin(edges_rad[beam + 1])) / 2;
   }
@@ -220,8 +220,8 @@ TEST_P(Reception, ConesReachBeyondTheFan) {
   const int beam = static_cast<int>((std::sin(60 * degree) - sine) / gemini_spacing);
   std::vector<double> sums;
   for (int b = 0; b < 6; ++b) {
-    const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.lines)];
-    sums.push_back(std::accumulate(row, row + echo.lines, 0.0));
+    const auto* row = &echo.intensity[static_cast<std::size_t>(b * echo.bins)];
+    sums.push_back(std::accumulate(row, row + echo.bins, 0.0));
   }
   EXPECT_GT(sums[static_cast<std::size_t>(beam)], 0);
   EXPECT_EQ(std::max_element(sums.begin(), sums.end()) - sums.begin(), beam);

@@ -93,7 +93,7 @@ TEST_P(VolumeReverberation, EndsBehindAWall) {
       const int before = static_cast<int>(10 / std::cos(nearest) / 0.05) - 2;
       const int behind = static_cast<int>(10 / std::cos(farthest) / std::cos(limit) / 0.05) + 2;
       EXPECT_GT(image.at(beam, before), 0.0F);
-      for (int line = behind; line < image.lines; ++line) {
+      for (int line = behind; line < image.bins; ++line) {
         ASSERT_EQ(image.at(beam, line), 0.0F) << beam << ' ' << line;
       }
     }

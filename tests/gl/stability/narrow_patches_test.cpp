@@ -41,7 +41,7 @@ TEST_P(NarrowPatches, S1NearPlateAndFarWallInOneImage) {
                    std::abs(request.settings.aperture.beam_edges_rad[static_cast<std::size_t>(beam) + 1]));
       const int first = static_cast<int>(9000.06 / std::cos(inner) / 0.3);
       int k = 0;
-      while (k < image.lines && !(image.at(beam, k) > 0)) {
+      while (k < image.bins && !(image.at(beam, k) > 0)) {
         ++k;
       }
       EXPECT_NEAR(k, first, 1) << beam;

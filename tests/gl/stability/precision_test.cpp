@@ -147,7 +147,7 @@ TEST_P(Precision, S3InsideABallOnlyTheBallIsHeard) {
       continue;  // its echo is optional
     }
     for (int beam = 0; beam < image.beams; ++beam) {
-      for (int k = 0; k < image.lines; ++k) {
+      for (int k = 0; k < image.bins; ++k) {
         const double far_m = k * 0.02;
         if (far_m > static_cast<double>(radius_m) + 0.02 || far_m + 0.06 < static_cast<double>(radius_m)) {
           ASSERT_EQ(image.at(beam, k), 0) << "beam " << beam << ", " << far_m << " m";

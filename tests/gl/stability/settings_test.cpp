@@ -92,7 +92,7 @@ TEST_P(Settings, S7RangesAreRefusedOrGiveAValidImage) {
   for (const auto& [lines, step_m] :
        std::vector<std::pair<int, double>>{{10, 1e-4}, {65535, 1e-6}, {1, 1e-6}}) {
     const EchoImage image = renderer.render_echo(with(lines, step_m));
-    EXPECT_EQ(image.lines, lines);
+    EXPECT_EQ(image.bins, lines);
     EXPECT_TRUE(is_sane(image));
     EXPECT_EQ(sum(image), 0) << "the wall is beyond " << lines << " x " << step_m;
   }
@@ -149,7 +149,7 @@ TEST_P(Settings, S8LargestImage) {
     const double inner = std::min(std::abs(request.settings.aperture.beam_edges_rad[b]),
                                   std::abs(request.settings.aperture.beam_edges_rad[b + 1]));
     int k = 0;
-    while (k < image.lines && !(image.at(beam, k) > 0)) {
+    while (k < image.bins && !(image.at(beam, k) > 0)) {
       ++k;
     }
     EXPECT_NEAR(k, std::floor(5 / std::cos(inner) / 1e-3), 2) << beam;
@@ -221,7 +221,7 @@ TEST_P(Settings, S9FullCircleHasNoSeam) {
   request.T_world_sonar.orientation = glm::angleAxis(180 * degree, glm::dvec3(0, 0, 1));
   EchoImage behind = renderer.render_echo(request);
   std::rotate(behind.intensity.begin(),
-              behind.intensity.begin() + static_cast<std::ptrdiff_t>(beams / 2) * behind.lines,
+              behind.intensity.begin() + static_cast<std::ptrdiff_t>(beams / 2) * behind.bins,
               behind.intensity.end());
   EXPECT_GT(sum(ahead), 0);
   // Edges of the crate fall differently into slices, within the preset's 1 %.
@@ -307,7 +307,7 @@ TEST_P(Settings, S15AbsorptionFromNoneToTenDecibelsAMetre) {
     const EchoImage image = renderer.render_echo(request);
     ASSERT_TRUE(is_sane(image));
     for (int beam = 0; beam < image.beams; ++beam) {
-      for (int k = 0; k < image.lines; ++k) {
+      for (int k = 0; k < image.bins; ++k) {
         const double expected =
             static_cast<double>(lossless.at(beam, k)) * std::pow(10.0, -alpha * (k + 0.5) * 0.02 / 5);
         ASSERT_NEAR(static_cast<double>(image.at(beam, k)), expected, 1e-5 * expected + 1e-38) << alpha;

@@ -100,8 +100,8 @@ inline double sum(const render::EchoImage& image) {
 }
 
 inline double beam_sum(const render::EchoImage& image, int beam) {
-  const auto begin = image.intensity.begin() + static_cast<std::ptrdiff_t>(beam) * image.lines;
-  return std::accumulate(begin, begin + image.lines, 0.0);
+  const auto begin = image.intensity.begin() + static_cast<std::ptrdiff_t>(beam) * image.bins;
+  return std::accumulate(begin, begin + image.bins, 0.0);
 }
 
 inline float strongest(const render::EchoImage& image) {

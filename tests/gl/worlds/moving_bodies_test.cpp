@@ -39,7 +39,7 @@ void expect_shadow(const EchoImage& image, double far_edge_m) {
   const int beam = image.beams / 2;
   const double first_m = std::hypot(far_edge_m, height_m - box_m.z);
   const double last_m = std::hypot(far_edge_m * height_m / (height_m - box_m.z), height_m);
-  for (int line = 0; line < image.lines; ++line) {
+  for (int line = 0; line < image.bins; ++line) {
     const double begin_m = line * line_m, end_m = begin_m + line_m;
     if (begin_m > first_m + 2 * line_m && end_m < last_m - 2 * line_m) {
       EXPECT_EQ(image.at(beam, line), 0.0F) << begin_m << " m, box to " << far_edge_m;

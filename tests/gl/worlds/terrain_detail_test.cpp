@@ -43,9 +43,9 @@ Comparison compare(const EchoImage& image, const EchoImage& full) {
   double squares = 0.0;
   int bins = 0;
   for (int beam = 0; beam < full.beams; ++beam) {
-    const auto of_beam = full.intensity.begin() + static_cast<std::ptrdiff_t>(beam) * full.lines;
-    const float faint = 0.01F * *std::max_element(of_beam, of_beam + full.lines);
-    for (int line = 0; line < full.lines; ++line) {
+    const auto of_beam = full.intensity.begin() + static_cast<std::ptrdiff_t>(beam) * full.bins;
+    const float faint = 0.01F * *std::max_element(of_beam, of_beam + full.bins);
+    for (int line = 0; line < full.bins; ++line) {
       const auto a = static_cast<double>(image.at(beam, line)), b = static_cast<double>(full.at(beam, line));
       result.worst_of_maximum =
           std::max(result.worst_of_maximum, std::abs(a - b) / static_cast<double>(largest));

@@ -64,7 +64,7 @@ TEST(PulseResponse, NothingIsLost) {
   WorkerPool workers(2);
   response.apply(image_of(2, intensity), out, workers);
   EXPECT_EQ(out.beams, 2);
-  EXPECT_EQ(out.lines, 600);
+  EXPECT_EQ(out.bins, 600);
   EXPECT_NEAR(sum(out), 3.0, 1e-5);
   for (int away = 0; away < response.taps(); ++away) {
     EXPECT_FLOAT_EQ(out.at(0, 300 + away), static_cast<float>(2 * response.share(away)));

@@ -38,7 +38,7 @@ Statistics statistics_of(const PingSamples& samples) {
   for (int lag = 0; lag <= 4; ++lag) {
     double sum = 0;
     int n = 0;
-    for (int line = 0; line < samples.lines; ++line) {
+    for (int line = 0; line < samples.bins; ++line) {
       for (int b = 0; b + lag < samples.beams; ++b, ++n) {
         const auto at = static_cast<std::size_t>(line * samples.beams + b);
         sum += (v[at] - s.mean) * (v[at + static_cast<std::size_t>(lag)] - s.mean);
@@ -132,7 +132,7 @@ double intensity_correlation(const PingSamples& first, const PingSamples& second
                              int line_lag) {
   double sum = 0, sum_a = 0, sum_b = 0, square_a = 0, square_b = 0;
   double n = 0;
-  for (int line = 0; line + line_lag < first.lines; ++line) {
+  for (int line = 0; line + line_lag < first.bins; ++line) {
     for (int b = 0; b + beam_lag < first.beams; ++b, ++n) {
       const double a = std::pow(first.u16[static_cast<std::size_t>(line * beams + b)], 2);
       const double c =
@@ -189,7 +189,7 @@ TEST(Receiver, CompressionAveragesAmplitudesOrKeepsThePeak) {
   PingRequest request = bare_request(4000);
   request.settings.range.compression_log2 = 2;
   const PingSamples mean = Receiver().receive(uniform_echo(4000, 0.01F), request, 0, workers);
-  EXPECT_EQ(mean.lines, 1000);
+  EXPECT_EQ(mean.bins, 1000);
   EXPECT_NEAR(statistics_of(mean).cv, 0.5227 / 2, 0.006);
   request.settings.range.compression_peak = true;
   const PingSamples peak = Receiver().receive(uniform_echo(4000, 0.01F), request, 0, workers);
@@ -502,10 +502,10 @@ TEST(Receiver, BroadsideStripeRaisesNoiseInMidFan) {
   const PingSamples samples = Receiver().receive(uniform_echo(2000, 0), request, 0, workers);
   const auto power_db = [&](int beam) {
     double sum = 0;
-    for (int line = 0; line < samples.lines; ++line) {
+    for (int line = 0; line < samples.bins; ++line) {
       sum += std::pow(samples.u16[static_cast<std::size_t>(line * beams + beam)] / 65535.0, 2);
     }
-    return 10 * std::log10(sum / samples.lines);
+    return 10 * std::log10(sum / samples.bins);
   };
   EXPECT_NEAR(power_db(127) - power_db(60), 3.5, 0.5);
   EXPECT_NEAR(power_db(200) - power_db(60), 0, 0.4);

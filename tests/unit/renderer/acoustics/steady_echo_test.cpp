@@ -26,7 +26,7 @@ EchoImage image_of(float everywhere) {
 }
 
 float& cell(EchoImage& image, int beam, int line) {
-  return image.intensity[static_cast<std::size_t>(beam * image.lines + line)];
+  return image.intensity[static_cast<std::size_t>(beam * image.bins + line)];
 }
 
 TEST(SteadyEcho, ASpotAloneIsAPoint) {
@@ -84,7 +84,7 @@ TEST(SteadyEcho, BeamsReceiveAPointThroughTheirPatternAndThePulse) {
   aperture.receive_beamwidth_rad = 4 * std::numbers::pi / 180;
   const BeamPattern pattern(aperture, {1});
   EchoImage fine{pattern.fine_beams(), 60, {}, {}};
-  fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.lines), 0.0F);
+  fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.bins), 0.0F);
   const int middle = fine.beams / 2;
   cell(fine, middle, 30) = 2;
   const PulseResponse pulse(PhysicalModel::Pulse::tone, 0.04, 0.01);
@@ -122,7 +122,7 @@ TEST(SteadyEcho, NoBeamReceivesLessThanNothing) {
   EchoImage fine{pattern.fine_beams(), 3, {}, {}};
   bool some_would_be_below = false;
   for (int at = 1; at < 511; at += 15) {
-    fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.lines), 0.0F);
+    fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.bins), 0.0F);
     cell(fine, at, 1) = 1;
     for (int beam = 0; beam < 512; ++beam) {
       some_would_be_below |= pattern.share(beam, at) < pattern.share(beam, (at + 256) % 512);

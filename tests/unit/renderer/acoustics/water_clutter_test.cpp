@@ -27,9 +27,9 @@ SonarSettings settings_of(double density_per_m3) {
 EchoImage clutter_of(const SonarSettings& settings, const Pose& T_world_sonar = {}, std::uint64_t seed = 1,
                      float echo = 0) {
   EchoImage image{settings.aperture.beam_count(), settings.range.count, {}, {}};
-  image.intensity.assign(static_cast<std::size_t>(image.beams * image.lines), 0.0F);
+  image.intensity.assign(static_cast<std::size_t>(image.beams * image.bins), 0.0F);
   for (int beam = 0; beam < image.beams; ++beam) {
-    image.intensity[static_cast<std::size_t>(beam * image.lines + 200)] = echo;  // at 10 m
+    image.intensity[static_cast<std::size_t>(beam * image.bins + 200)] = echo;  // at 10 m
   }
   add_water_clutter(settings, T_world_sonar, seed, image);
   return image;
@@ -47,7 +47,7 @@ TEST(WaterClutter, IsAsDenseAndAsStrongAsAskedFor) {
   EXPECT_NEAR(static_cast<double>(count_of(image)), expected, 60);
   double strength = 0;
   for (int beam = 0; beam < image.beams; ++beam) {
-    for (int line = 0; line < image.lines; ++line) {
+    for (int line = 0; line < image.bins; ++line) {
       strength += static_cast<double>(image.at(beam, line)) * std::pow((line + 0.5) * 0.05, 2);
     }
   }
@@ -74,7 +74,7 @@ TEST(WaterClutter, StaysWhereItIsInTheWorld) {
 TEST(WaterClutter, IsHiddenBehindTheFirstEcho) {
   const EchoImage image = clutter_of(settings_of(0.1), {}, 1, 1.0F);
   for (int beam = 0; beam < image.beams; ++beam) {
-    for (int line = 201; line < image.lines; ++line) {
+    for (int line = 201; line < image.bins; ++line) {
       ASSERT_EQ(image.at(beam, line), 0) << beam << ' ' << line;
     }
   }

@@ -203,8 +203,8 @@ class ScriptedRenderer final : public PingRenderer {
     script_(request);
     render::PingSamples samples;
     samples.beams = request.settings.aperture.beam_count();
-    samples.lines = request.settings.range.output_count();
-    samples.u8.assign(static_cast<std::size_t>(samples.beams) * static_cast<std::size_t>(samples.lines), 1);
+    samples.bins = request.settings.range.output_count();
+    samples.u8.assign(static_cast<std::size_t>(samples.beams) * static_cast<std::size_t>(samples.bins), 1);
     return samples;
   }
   render::PingStatistics last_statistics() const override { return {}; }

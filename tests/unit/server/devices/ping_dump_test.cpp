@@ -53,7 +53,7 @@ TEST_F(PingDumpTest, WritesNumpyFileAndIndexRow) {
   ping.poses = std::make_shared<const PosesUsed>(poses);
   render::PingSamples samples;
   samples.beams = 3;
-  samples.lines = 3;
+  samples.bins = 3;
   samples.u8 = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   dump.write(ping, samples);
   EXPECT_EQ(contents(folder / "bow.csv"),

@@ -211,7 +211,7 @@ TEST(LogRenderer, HandsOutTheSamplesOfTheRecordThatAPingAnswers) {
   render::PingRequest request;
   request.ping_number = 2;
   const render::PingSamples samples = renderer->render_ping(request, 0);
-  EXPECT_EQ(samples.lines, 3);
+  EXPECT_EQ(samples.bins, 3);
   EXPECT_EQ(samples.beams, 2);
   EXPECT_EQ(samples.u8, std::vector<std::uint8_t>(6, 12));
   EXPECT_TRUE(samples.u16.empty());

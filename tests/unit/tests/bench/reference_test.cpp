@@ -66,7 +66,7 @@ test::Scene small_scene() {
 TEST_F(ReferenceFiles, AreReadBeamByBeam) {
   const render::EchoImage image = read_npy(write("a.npy", npy(two_by_three, {1, 2, 3, 4, 5, 6.5F})));
   EXPECT_EQ(image.beams, 2);
-  EXPECT_EQ(image.lines, 3);
+  EXPECT_EQ(image.bins, 3);
   EXPECT_EQ(image.at(0, 2), 3);
   EXPECT_EQ(image.at(1, 0), 4);
   EXPECT_EQ(image.at(1, 2), 6.5F);
