@@ -287,8 +287,9 @@ void expect_agreement(const ConfigScenes& all, int beams) {
       done[i] = true;
       const EngineDifference found = both.compare(middle_beams(scene, beams));
       const bool has_promise = sample_equal_directions(scene.settings);
-      std::printf("%.1e %s (gpu %.1f s, cpu %.2f s) %s, %s\n", found.rms, has_promise ? "" : "without a limit",
-                  found.gpu_s, found.cpu_s, scene.world_file.filename().c_str(), scene.name.c_str());
+      std::printf("%.1e %s (gpu %.1f s, cpu %.2f s) %s, %s\n", found.rms,
+                  has_promise ? "" : "without a limit", found.gpu_s, found.cpu_s,
+                  scene.world_file.filename().c_str(), scene.name.c_str());
       std::fflush(stdout);
       EXPECT_TRUE(found.by_gpu) << scene.name << ": the CPU made it";
       EXPECT_TRUE(!has_promise || found.rms <= promised) << scene.name << ": " << found.rms;
