@@ -66,7 +66,7 @@ struct ImageRecord {
 
 /// Converts a bearing of the wire to a bearing in a log's table. Tables in logs descend from about +60
 /// degrees (port), on the wire bearings ascend from -60 degrees (port). Pixels keep the wire's order of beams
-/// (docs/logs.md 1.4).
+/// (docs/logs.md 1.4). It is its own inverse.
 constexpr double bearing_for_log(double wire_bearing_rad) {
   return -wire_bearing_rad;
 }

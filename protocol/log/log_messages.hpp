@@ -24,6 +24,12 @@ std::vector<std::uint8_t> schema_data(const google::protobuf::Descriptor& messag
 
 std::vector<std::uint8_t> encode(const google::protobuf::MessageLite& message);
 
+/// Converts a bearing of a device, positive to starboard, to a bearing of a message, positive to port as in
+/// REP-103. It is its own inverse.
+constexpr double bearing_for_log(double bearing_rad) {
+  return -bearing_rad;
+}
+
 /// One line that describes inconsistent sizes of an image; nullopt if it has range_lines * beams pixels and
 /// one bearing for each beam.
 std::optional<std::string> problem_of(const SonarImage& image);

@@ -40,9 +40,9 @@ SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<
   return readings;
 }
 
-// Bearings are positive to starboard, rotations about z to port.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad) {
-  return T_world_mount * render::Pose{{0.0, 0.0, 0.0}, glm::angleAxis(-bearing_rad, glm::dvec3(0, 0, 1))};
+  const glm::dquat turned = glm::angleAxis(azimuth_rad(bearing_rad), glm::dvec3(0, 0, 1));
+  return T_world_mount * render::Pose{{0.0, 0.0, 0.0}, turned};
 }
 
 render::SonarSettings usual_settings(const HeadConfig& head) {

@@ -105,6 +105,11 @@ SocketTrouble trouble_of(const SocketError& error, const DeviceType& type);
 /// @param water_surface_z_m height of the surface in the world frame; nullopt: the world has no surface
 SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m);
 
+/// Azimuth in the sonar frame, as the renderer has it, of a bearing of the device (docs/frames-and-units.md).
+constexpr double azimuth_rad(double bearing_rad) {
+  return -bearing_rad;
+}
+
 /// Pose of a head's transducer at a bearing (PingJob::bearing_rad): the mount, rotated about its z axis.
 render::Pose T_world_transducer(const render::Pose& T_world_mount, double bearing_rad);
 

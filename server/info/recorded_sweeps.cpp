@@ -82,7 +82,7 @@ class GrowingSweep {
 }  // namespace
 
 int picture_bearing(const LoggedPing& line) {
-  return picture::turn_bearing(-line.bearing_rad);  // logs count to port
+  return picture::turn_bearing(line.bearing_rad);
 }
 
 std::vector<RecordedSweep> sweeps_of(const LoggedHead& head) {

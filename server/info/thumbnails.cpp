@@ -19,17 +19,6 @@ namespace {
 
 constexpr picture::FanStyle thumbnail_style{.radius_px = 300, .grid = true};
 
-// Bearings of the recording are positive to port, of pictures to starboard.
-picture::FanShape shape_of(const LoggedHead& head, const RecordedSettings& settings) {
-  picture::FanShape shape;
-  for (const double bearing_rad : head.bearings_rad) {
-    shape.bearings_rad.push_back(-bearing_rad);
-  }
-  shape.lines = settings.bins;
-  shape.line_step_m = settings.bin_m;
-  return shape;
-}
-
 bool drawable(const picture::FanShape& shape, const RecordedSettings& settings) {
   constexpr double quarter_turn_rad = 1.5707963267948966;
   const auto& bearings = shape.bearings_rad;
@@ -61,7 +50,7 @@ std::uint64_t write_fans(const LogReader& reader, const LoggedHead& head, const 
   std::uint64_t written = 0;
   for (std::uint64_t ping = 0; ping < head.pings.size(); ping += every, ++written) {
     const LoggedPing& image = head.pings[ping];
-    const picture::FanShape shape = shape_of(head, image.settings);
+    const picture::FanShape shape{head.bearings_rad, image.settings.bins, image.settings.bin_m};
     if (!drawable(shape, image.settings)) {
       throw file.error(
           fmt::format("ping {} of sonar {} has beams that do not form a fan", ping, head.device_id));

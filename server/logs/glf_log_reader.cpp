@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -63,9 +64,8 @@ GlfLogReader::GlfLogReader(const LogFile& file) : file_(file), view_(opened(file
     }
     LoggedHead& head = this->head({}, image->origin.device_id, /*scanning=*/false);
     if (head.pings.empty()) {
-      head.bearings_rad.resize(image->bearings_rad.size());
-      // bearing_for_log() is its own inverse, and its sign is as in our frame: positive to port.
-      std::ranges::copy(image->bearings_rad, head.bearings_rad.begin());
+      std::ranges::transform(image->bearings_rad, std::back_inserter(head.bearings_rad),
+                             glf::bearing_for_log);
     }
     head.pings.push_back({.time_ns = *time_ns, .settings = settings_of(*image), .wire = {}, .place = place});
   }

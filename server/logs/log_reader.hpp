@@ -24,7 +24,7 @@ struct LoggedPing {
   /// Since the Unix epoch. A .glf has local time without a zone, which counts as UTC here.
   std::int64_t time_ns = 0;
   RecordedSettings settings;
-  double bearing_rad = 0.0;        ///< of the beam of a scanning head: 0 ahead, positive to port
+  double bearing_rad = 0.0;        ///< of a scanning head's beam, see PingRecord::bearings_rad
   int bits_per_bin = 8;            ///< 8: samples are 0..255; 4: 0..15
   std::vector<std::uint8_t> wire;  ///< the message without samples; empty: not in the log
   std::size_t place = 0;           ///< index in the reader
@@ -36,7 +36,8 @@ struct LoggedHead {
   std::uint16_t device_id = 0;
   bool scanning = false;          ///< true: a ping is a line of one beam
   std::vector<LoggedPing> pings;  ///< at least one, in the order of their times
-  /// Bearings of a multibeam head's first ping: one per beam in the order of samples, positive to port.
+  /// Bearings of a multibeam head's first ping: one per beam in the order of samples, see
+  /// PingRecord::bearings_rad.
   std::vector<double> bearings_rad;
 };
 

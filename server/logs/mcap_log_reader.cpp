@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/logs/mcap_log_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -103,7 +105,8 @@ bool McapLogReader::add_image(std::span<const std::uint8_t> bytes) {
   LoggedHead& head = this->head(image->head(), static_cast<std::uint16_t>(image->device_id()), false);
   if (head.pings.empty()) {
     head.type = image->type();
-    head.bearings_rad.assign(image->bearings_rad().begin(), image->bearings_rad().end());
+    std::ranges::transform(image->bearings_rad(), std::back_inserter(head.bearings_rad),
+                           log::bearing_for_log);
   }
   head.pings.push_back({.time_ns = image->transmit_time_ns(),
                         .settings = settings_of(*image),
@@ -124,7 +127,7 @@ bool McapLogReader::add_line(std::span<const std::uint8_t> bytes) {
   }
   head.pings.push_back({.time_ns = line->transmit_time_ns(),
                         .settings = settings_of(*line),
-                        .bearing_rad = line->bearing_rad(),
+                        .bearing_rad = log::bearing_for_log(line->bearing_rad()),
                         .bits_per_bin = line->bits_per_bin() == 4 ? 4 : 8,
                         .wire = bytes_of(line->wire_line()),
                         .place = messages_.size()});

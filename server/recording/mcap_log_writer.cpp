@@ -36,7 +36,7 @@ log::SonarImage image_message(const PingSent& sent, const HeadToRecord& head, st
   image.set_beams(static_cast<std::uint32_t>(ping.settings.beams));
   image.set_pixels(text(ping.samples));
   for (const double bearing_rad : ping.bearings_rad) {
-    image.add_bearings_rad(-bearing_rad);  // devices count bearings to starboard
+    image.add_bearings_rad(log::bearing_for_log(bearing_rad));
   }
   image.set_wire_head(text(ping.wire));
   image.set_amplitude_exponent(ping.settings.amplitude_exponent);
@@ -57,7 +57,7 @@ log::ScanLine line_message(const PingSent& sent, const HeadToRecord& head, std::
   line.set_device_id(head.device_id);
   line.set_line_number(ping.number);
   line.set_transmit_time_ns(transmit_ns);
-  line.set_bearing_rad(-ping.bearings_rad.front());  // devices count bearings to starboard
+  line.set_bearing_rad(log::bearing_for_log(ping.bearings_rad.front()));
   line.set_bins(text(ping.samples));
   line.set_bits_per_bin(static_cast<std::uint32_t>(ping.bits_per_bin));
   line.set_wire_line(text(ping.wire));

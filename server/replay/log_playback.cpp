@@ -72,7 +72,7 @@ std::optional<ReplayedPing> LogPlayback::next_ping(int index, TimePoint now) {
   const LoggedPing& ping = head(index).played.logged->pings.at(next->image);
   return ReplayedPing{.record = next->image,
                       .settings = ping.settings,
-                      .bearing_rad = -ping.bearing_rad,  // devices count bearings to starboard
+                      .bearing_rad = ping.bearing_rad,
                       .bits_per_bin = ping.bits_per_bin,
                       .wire = ping.wire,
                       .due = next->due};

@@ -7,6 +7,7 @@
 
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/gemini/messages.hpp"
+#include "server/devices/device_type.hpp"
 
 namespace sonard::server {
 namespace {
@@ -17,14 +18,13 @@ constexpr double widest_sin = 0.9962;  // 85 degrees
 // Levels were set between images of 20 and 50 m (docs/physics.md 2.6): clients request this pulse at 30 m.
 constexpr double usual_pulse_s = 18 / gemini::carrier_hz;
 
-// Device bearings are positive to starboard, azimuths of the renderer to port.
 // `steering`: c / c_d, the true sound speed over the speed that the beamformer assumes. A beam meant for the
 // bearing b receives sin b * c / c_d (docs/physics.md 2.12).
 std::vector<double> beam_edges_rad(double steering) {
   std::vector<double> edges = gemini::beam_edges_sin();
   const double ratio = std::min(steering, widest_sin / std::abs(edges.front()));
   for (double& edge : edges) {
-    edge = -std::asin(ratio * edge);
+    edge = azimuth_rad(std::asin(ratio * edge));
   }
   return edges;
 }

@@ -33,7 +33,7 @@ double worst_bearing_error_rad(const LoggedHead& head) {
   const std::vector<double> wire = gemini::bearings_rad();
   double worst = 0.0;
   for (std::size_t i = 0; i < std::min(wire.size(), head.bearings_rad.size()); ++i) {
-    worst = std::max(worst, std::abs(head.bearings_rad[i] + wire[i]));  // opposite signs
+    worst = std::max(worst, std::abs(head.bearings_rad[i] - wire[i]));
   }
   return worst;
 }

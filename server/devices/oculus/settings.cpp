@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "server/devices/device_type.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -16,7 +18,7 @@ std::vector<double> beam_edges_rad(int beams, double aperture_deg) {
   const double outermost = end * beams / (beams - 1);
   std::vector<double> edges;
   for (int edge = 0; edge <= beams; ++edge) {
-    edges.push_back(-std::asin(outermost * (2.0 * edge / beams - 1.0)));
+    edges.push_back(azimuth_rad(std::asin(outermost * (2.0 * edge / beams - 1.0))));
   }
   return edges;
 }

@@ -400,6 +400,7 @@ TEST(Damage, ReplayAndInfoTellAnImageThatDoesNotUnpackWhenTheyOpenTheLog) {
   const LogFile file(temporary.path());
   const auto recording = open_log(file);
   ASSERT_EQ(recording->heads().at(0).pings.size(), 2U);
+  EXPECT_LT(recording->heads()[0].bearings_rad.at(0), 0.0) << "the first beam is to port";
   EXPECT_EQ(recording->samples(recording->heads()[0].pings[1]), Bytes(60, 2));
   EXPECT_THAT(recording->problems(),
               ElementsAre(AllOf(HasSubstr("damaged: "), HasSubstr("; 1 ping is lost"))));

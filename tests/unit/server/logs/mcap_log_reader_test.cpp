@@ -93,7 +93,7 @@ TEST(McapLogReader, HasEveryImageInTheOrderOfTime) {
   EXPECT_EQ(head.name, "bow");
   EXPECT_EQ(head.device_id, 600);
   EXPECT_FALSE(head.scanning);
-  EXPECT_EQ(head.bearings_rad, (std::vector<double>{0.5, -0.5}));
+  EXPECT_EQ(head.bearings_rad, (std::vector<double>{-0.5, 0.5})) << "to starboard";
   ASSERT_EQ(head.pings.size(), 5U);
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(head.pings[i].time_ns, start_ns + static_cast<std::int64_t>(i) * 100'000'000);
@@ -176,7 +176,7 @@ TEST(McapLogReader, HasEveryScanLineAndHowItTravelled) {
     EXPECT_EQ(recording.samples(read), (std::vector<std::uint8_t>{1, i, 15}));
     EXPECT_EQ(read.settings.bins, 3);
     EXPECT_EQ(read.settings.beams, 1);
-    EXPECT_EQ(read.bearing_rad, -1.5);
+    EXPECT_EQ(read.bearing_rad, 1.5) << "to starboard";
     EXPECT_EQ(read.bits_per_bin, 4);
     EXPECT_EQ(read.wire, frame);
     EXPECT_EQ(micron::recorded_line(read.wire), travelled);

@@ -12,7 +12,7 @@ namespace {
 /// A line at a bearing in units of the wire, 1/16 gradian.
 LoggedPing at(int bearing, int bins = 100) {
   LoggedPing line;
-  line.bearing_rad = -(bearing - 3200) * std::numbers::pi / 3200.0;
+  line.bearing_rad = (bearing - 3200) * std::numbers::pi / 3200.0;
   line.settings.bins = bins;
   line.settings.beams = 1;
   line.settings.bin_m = 0.05;

@@ -86,7 +86,7 @@ TEST(LogPlayback, FeedsPingsAsTheyWereRecorded) {
   ASSERT_TRUE(line);
   EXPECT_EQ(line->record, 0U) << "each head counts its own";
   EXPECT_EQ(line->settings, settings(4, 1));
-  EXPECT_EQ(line->bearing_rad, -0.75) << "logs count to port, devices to starboard";
+  EXPECT_EQ(line->bearing_rad, 0.75);
   EXPECT_EQ(line->bits_per_bin, 4);
   EXPECT_EQ(line->wire, (std::vector<std::uint8_t>{1, 2, 3}));
   playback.started(1, answering(*line, 1s));

@@ -42,9 +42,7 @@ LoggedHead fan(std::uint16_t device_id, const std::string& name = "") {
   head.name = name;
   head.device_id = device_id;
   head.pings.push_back({.settings = settings(), .wire = {}});
-  for (const double bearing_rad : gemini::bearings_rad()) {
-    head.bearings_rad.push_back(-bearing_rad);
-  }
+  head.bearings_rad = gemini::bearings_rad();
   return head;
 }
 
