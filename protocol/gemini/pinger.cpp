@@ -36,6 +36,10 @@ Pinger::Pinger(const DeviceConfig& config, DeviceCounters& counters, TimePoint b
 // ---- Wanted
 // -----------------------------------------------------------------------------------------------------
 
+void Pinger::feed(const std::optional<ReplayedPing>& ping) {
+  cycle_.feed(ping && recorded_form(ping->settings) ? ping : std::nullopt);
+}
+
 void Pinger::configure(TimePoint now, const PingConfig& config) {
   if (single_) {
     ++counters_.configs_replaced;

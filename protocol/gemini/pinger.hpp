@@ -37,7 +37,7 @@ class Pinger {
   void on_image_failed(TimePoint now, std::uint64_t number) { cycle_.on_image_failed(now, number); }
   void set_inter_packet_gap(std::chrono::nanoseconds gap) { pacer_.set_gap(gap); }
   void set_out_of_water(bool out_of_water) { out_of_water_ = out_of_water; }
-  void feed(const std::optional<ReplayedPing>& ping) { cycle_.feed(ping); }
+  void feed(const std::optional<ReplayedPing>& ping);
   void next_ping_due() { cycle_.grant(); }
 
   /// Stops pinging because the client goes offline. Finishes the ping on the wire.

@@ -60,7 +60,9 @@ class Device::Impl {
   void take(TimePoint, const TriggerEdge&) {}   // the model has no trigger input
   void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead& sensors) { depth_m_ = sensors.readings.depth_m; }
-  void take(TimePoint, const PingFed& feed) { cycle_.feed(feed.ping); }
+  void take(TimePoint, const PingFed& feed) {
+    cycle_.feed(feed.ping && recorded_form(feed.ping->wire) ? feed.ping : std::nullopt);
+  }
   void take(TimePoint, const NextPingDue&) { cycle_.grant(); }
 
   void advance(TimePoint now);
@@ -70,6 +72,7 @@ class Device::Impl {
     return {counters_.pings_sent, counters_.pings_ended(), counters_.pings_sent};
   }
   std::vector<Counter> counts() const;
+  const PingCounters& counters() const { return counters_; }
 
  private:
   /// The ping under way.
@@ -382,6 +385,9 @@ void Device::move_to(Ipv4 address, Ipv4 netmask) {
 }
 std::vector<Counter> Device::counts() const {
   return impl_->counts();
+}
+const PingCounters& Device::counters() const {
+  return impl_->counters();
 }
 
 }  // namespace sonard::oculus

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/common/device.hpp"
+#include "protocol/common/ping_cycle.hpp"
 #include "protocol/oculus/device_config.hpp"
 
 namespace sonard::oculus {
@@ -30,6 +31,7 @@ class Device final : public sonard::Device {
   PingProgress progress() const override;
   std::vector<Counter> counts() const override;
 
+  const PingCounters& counters() const;
   /// Sets a new address of the machine that serves the head. Status datagrams report it from now on.
   void move_to(Ipv4 address, Ipv4 netmask);
 
