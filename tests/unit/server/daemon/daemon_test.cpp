@@ -6,9 +6,11 @@
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 
 #include "protocol/micron/client.hpp"
 #include "server/clock/clock.hpp"
@@ -207,6 +210,38 @@ TEST_F(DaemonTest, AScanningHeadDoesNotWaitForAFan) {
   });
   scan.join();
   EXPECT_EQ(code, exit_clean);
+}
+
+/// The metrics of a page.
+std::string metrics_at(const Endpoint& page) {
+  boost::asio::ip::tcp::iostream stream;
+  stream.expires_after(std::chrono::seconds{10});
+  stream.connect(boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4(page.address), page.port));
+  stream << "GET /metrics HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n" << std::flush;
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(DaemonTest, MetricsNameTheEngineOfTheNewestPing) {
+  config.web = WebConfig{};
+  config.web->bind = {test::own_loopback_address(3), 8052};
+  config.web->allow = {{0x7F000000, 8}};
+  renderer->before_ping = [this](const render::PingRequest&, int) {
+    renderer->engine = "cpu, because the GPU is lost";
+  };
+  const std::string gpu_lost = "engine=\"cpu, because the GPU is lost\"} 1";
+  std::string before, after;
+  const int code = serve_until([&](UdpEndpoint& client, const Datagram& datagram) {
+    if (is(datagram, 0x40) && before.empty()) {
+      before = metrics_at(config.web->bind);
+      client.send({{{head_address, 52901}, 0, SharedBytes(continuous_config())}});
+    } else if (is(datagram, 0x43)) {
+      after = metrics_at(config.web->bind);
+    }
+    return after.find(gpu_lost) != std::string::npos;  // the page keeps a status for a moment
+  });
+  EXPECT_EQ(code, exit_clean);
+  EXPECT_NE(before.find("engine=\"fake\"} 1"), std::string::npos) << before;
+  EXPECT_NE(after.find(gpu_lost), std::string::npos) << after;
 }
 
 TEST_F(DaemonTest, RendererThatFailsWhileServingEndsItWithItsOwnCode) {
