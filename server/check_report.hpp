@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/check.hpp"
-#include "server/config/config_error.hpp"
+#include "server/yaml/config_error.hpp"
 
 namespace sonard::server {
 

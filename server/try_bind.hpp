@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/config/head_type.hpp"
+#include "server/net/planned_socket.hpp"
 
 namespace sonard::server {
 

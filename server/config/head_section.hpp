@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/config/config.hpp"
-#include "server/config/yaml_section.hpp"
+#include "server/yaml/yaml_section.hpp"
 
 namespace sonard::server {
 

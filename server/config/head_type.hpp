@@ -9,18 +9,11 @@
 
 #include "server/config/config.hpp"
 #include "server/config/head_section.hpp"
-#include "server/config/yaml_section.hpp"
+#include "server/net/planned_socket.hpp"
 #include "server/net/serial_port.hpp"
+#include "server/yaml/yaml_section.hpp"
 
 namespace sonard::server {
-
-/// A socket in the configuration.
-struct PlannedSocket {
-  enum class Transport : std::uint8_t { udp, tcp };
-  Transport transport = Transport::udp;
-  Endpoint endpoint;
-  std::string key;  ///< "heads[0].network.bind", or "network.bind" in a list for one head
-};
 
 /// A value that no two heads may share.
 struct Identity {

@@ -14,13 +14,13 @@
 
 #include "renderer/acoustics/water.hpp"
 #include "server/config/head_section.hpp"
-#include "server/config/network_section.hpp"
 #include "server/config/overlaps.hpp"
-#include "server/config/status_section.hpp"
-#include "server/config/yaml_section.hpp"
-#include "server/config/yaml_trouble.hpp"
-#include "server/config/yaml_unclosed.hpp"
 #include "server/net/addresses.hpp"
+#include "server/yaml/network_section.hpp"
+#include "server/yaml/status_section.hpp"
+#include "server/yaml/yaml_section.hpp"
+#include "server/yaml/yaml_trouble.hpp"
+#include "server/yaml/yaml_unclosed.hpp"
 
 namespace sonard::server {
 namespace {

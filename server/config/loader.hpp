@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "server/config/config.hpp"
-#include "server/config/config_error.hpp"
-#include "server/config/key_reference.hpp"
+#include "server/yaml/config_error.hpp"
+#include "server/yaml/key_reference.hpp"
 
 namespace sonard::server {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "server/config/config.hpp"
-#include "server/config/config_error.hpp"
 #include "server/config/head_type.hpp"
+#include "server/yaml/config_error.hpp"
 
 namespace sonard::server {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "server/config/config_error.hpp"
 #include "server/config/loader.hpp"
 #include "server/devices/types/types.hpp"
+#include "server/yaml/config_error.hpp"
 #include "tests/fuzz/file_in_memory.hpp"
 #include "tests/fuzz/require.hpp"
 

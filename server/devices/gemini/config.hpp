@@ -9,8 +9,8 @@
 #include "protocol/gemini/device_config.hpp"
 #include "server/config/config.hpp"
 #include "server/config/device_settings.hpp"
-#include "server/config/status_destination.hpp"
 #include "server/net/faulty_link.hpp"
+#include "server/yaml/status_destination.hpp"
 
 namespace sonard::server {
 

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include "protocol/gemini/messages.hpp"
-#include "server/config/network_section.hpp"
-#include "server/config/status_section.hpp"
 #include "server/net/addresses.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/yaml/network_section.hpp"
+#include "server/yaml/status_section.hpp"
 
 namespace sonard::server {
 namespace {

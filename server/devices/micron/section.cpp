@@ -2,7 +2,7 @@
 #include "server/devices/micron/section.hpp"
 
 #include "protocol/micron/recorded_form.hpp"
-#include "server/config/network_section.hpp"
+#include "server/yaml/network_section.hpp"
 
 namespace sonard::server {
 namespace {

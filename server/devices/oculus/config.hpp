@@ -9,7 +9,7 @@
 #include "protocol/oculus/device_config.hpp"
 #include "server/config/config.hpp"
 #include "server/config/device_settings.hpp"
-#include "server/config/status_destination.hpp"
+#include "server/yaml/status_destination.hpp"
 
 namespace sonard::server {
 

@@ -9,8 +9,8 @@
 #include "protocol/oculus/models.hpp"
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/config/status_section.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/yaml/status_section.hpp"
 
 namespace sonard::server {
 namespace {

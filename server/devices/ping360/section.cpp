@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "server/config/network_section.hpp"
 #include "server/net/addresses.hpp"
+#include "server/yaml/network_section.hpp"
 
 namespace sonard::server {
 namespace {

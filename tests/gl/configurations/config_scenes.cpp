@@ -18,13 +18,13 @@
 #include "protocol/pose/trajectory.hpp"
 #include "renderer/pipeline/sonar_renderer.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "server/config/config_error.hpp"
 #include "server/config/loader.hpp"
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/resolve_mounts.hpp"
 #include "server/devices/device_type.hpp"
 #include "server/devices/types/types.hpp"
 #include "server/pose/to_render.hpp"
+#include "server/yaml/config_error.hpp"
 
 namespace sonard::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/config/config_error.hpp"
-#include "server/config/key_reference.hpp"
+#include "server/yaml/config_error.hpp"
+#include "server/yaml/key_reference.hpp"
 
 namespace sonard::server {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "server/config/config_error.hpp"
+#include "server/yaml/config_error.hpp"
 
 namespace sonard::server {
 

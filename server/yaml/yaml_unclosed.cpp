@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/yaml_unclosed.hpp"
+#include "server/yaml/yaml_unclosed.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/network_section.hpp"
+#include "server/yaml/network_section.hpp"
 
 #include <algorithm>
 #include <limits>

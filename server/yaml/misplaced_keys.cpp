@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/misplaced_keys.hpp"
+#include "server/yaml/misplaced_keys.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "server/config/yaml_trouble.hpp"
+#include "server/yaml/yaml_trouble.hpp"
 
 namespace sonard::server {
 namespace {

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "server/config/yaml_section.hpp"
 #include "server/net/addresses.hpp"
 #include "server/net/faulty_link.hpp"
 #include "server/net/serial_port.hpp"
+#include "server/yaml/yaml_section.hpp"
 
 namespace sonard::server {
 

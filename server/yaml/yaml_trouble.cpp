@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/yaml_trouble.hpp"
+#include "server/yaml/yaml_trouble.hpp"
 
 #include <arpa/inet.h>
 
@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "server/config/yaml_unclosed.hpp"
+#include "server/yaml/yaml_unclosed.hpp"
 
 namespace sonard::server {
 namespace {

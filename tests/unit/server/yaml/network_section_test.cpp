@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The section that sets how clients reach a serial device: valid values and errors.
-#include "server/config/network_section.hpp"
+#include "server/yaml/network_section.hpp"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/yaml_section.hpp"
+#include "server/yaml/yaml_section.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 
 #include "common/text/edit_distance.hpp"
-#include "server/config/yaml_trouble.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/yaml/yaml_trouble.hpp"
 
 namespace sonard::server {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/status_destination.hpp"
+#include "server/yaml/status_destination.hpp"
 
 #include <fmt/format.h>
 

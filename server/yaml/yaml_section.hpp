@@ -20,9 +20,9 @@
 #include <yaml-cpp/yaml.h>
 #include <glm/vec3.hpp>
 
-#include "server/config/config_error.hpp"
-#include "server/config/key_reference.hpp"
-#include "server/config/misplaced_keys.hpp"
+#include "server/yaml/config_error.hpp"
+#include "server/yaml/key_reference.hpp"
+#include "server/yaml/misplaced_keys.hpp"
 
 namespace sonard::server {
 

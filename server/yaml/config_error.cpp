@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/config_error.hpp"
+#include "server/yaml/config_error.hpp"
 
 #include <algorithm>
 #include <iterator>

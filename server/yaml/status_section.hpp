@@ -4,11 +4,11 @@
 
 #include <string_view>
 
-#include "server/config/network_section.hpp"
-#include "server/config/status_destination.hpp"
-#include "server/config/yaml_section.hpp"
 #include "server/net/addresses.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/yaml/network_section.hpp"
+#include "server/yaml/status_destination.hpp"
+#include "server/yaml/yaml_section.hpp"
 
 namespace sonard::server {
 
