@@ -19,8 +19,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "common/text/counted.hpp"
-#include "protocol/pose/trajectory.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/world.hpp"
@@ -31,7 +29,7 @@
 #include "server/devices/device_type.hpp"
 #include "server/diagnosis/sight.hpp"
 #include "server/net/udp_endpoint.hpp"
-#include "server/pose/to_render.hpp"
+#include "server/pose/pose_input.hpp"
 #include "server/recording/glf_device.hpp"
 #include "server/trial_pings.hpp"
 #include "server/try_bind.hpp"
@@ -50,7 +48,6 @@ class Check {
   }
 
   CheckReport run(bool try_addresses) {
-    load_trajectory();
     check_world();
     check_poses();
     check_recording();
@@ -78,8 +75,7 @@ class Check {
   void check_head(std::size_t index);
   void check_addresses();
   void list_bodies(const render::World& world);
-  void load_trajectory();
-  std::optional<std::pair<const char*, render::Pose>> start() const;
+  std::optional<FirstPose> start() const;
   void check_start(const render::World& world);
   void report_cost(const HeadConfig& head, double ms, std::size_t triangles);
   void try_folder(const std::filesystem::path& folder, const std::string& key);
@@ -87,8 +83,6 @@ class Check {
 
   const LoadedConfig& loaded_;
   DaemonConfig config_;
-  std::optional<pose::Trajectory> trajectory_;
-  std::string trajectory_trouble_;  ///< why it cannot be read; empty if it can
   CheckReport report_;
 };
 
@@ -200,26 +194,15 @@ void Check::list_bodies(const render::World& world) {
   }
 }
 
-/// Runs before the world is loaded, because it gives the start pose. check_poses() reports its errors.
-void Check::load_trajectory() {
-  const std::optional<TrajectoryInput>& input = config_.poses.trajectory;
-  if (!input) {
-    return;
-  }
-  try {
-    trajectory_ = pose::load_trajectory(input->file, input->axes);
-  } catch (const pose::TrajectoryError& error) {
-    trajectory_trouble_ = error.what();
-  }
-}
-
 /// Start pose of the vehicle and the key that sets it; nullopt if only live poses give it.
-std::optional<std::pair<const char*, render::Pose>> Check::start() const {
+std::optional<FirstPose> Check::start() const {
   if (config_.poses.T_world_vehicle_initial) {
-    return std::pair{"poses.initial", *config_.poses.T_world_vehicle_initial};
+    return FirstPose{"poses.initial", *config_.poses.T_world_vehicle_initial};
   }
-  if (trajectory_) {
-    return std::pair{"poses.trajectory.file", to_render(trajectory_->points().front().T_world_vehicle)};
+  for (const std::shared_ptr<const PoseInput>& input : config_.poses.inputs) {
+    if (std::optional<FirstPose> first = input->first_pose()) {
+      return first;
+    }
   }
   return std::nullopt;
 }
@@ -234,12 +217,12 @@ void Check::check_start(const render::World& world) {
       }
     }
   }
-  const auto beginning = start();
+  const std::optional<FirstPose> beginning = start();
   TrialPings pings(config_, world);
   for (std::size_t i = 0; i < config_.heads.size(); ++i) {
     report_.summary.push_back(
         fmt::format("looks    {}: {}", config_.heads[i].name,
-                    pings.view(i, beginning ? std::optional(beginning->second) : std::nullopt)));
+                    pings.view(i, beginning ? std::optional(beginning->T_world_vehicle) : std::nullopt)));
   }
   if (!beginning) {
     return;
@@ -303,7 +286,7 @@ void Check::check_world() {
     for (const render::WorldSonar& sonar : world.sonars) {
       report_.summary.push_back(fmt::format("sonar    {}: {} of the world", sonar.path, sonar.type));
     }
-    for (const WorldProblem& found : resolve_mounts(config_, world)) {
+    for (const ConfigProblem& found : resolve_mounts(config_, world)) {
       problem(found.key, found.message);
     }
     try {
@@ -378,26 +361,12 @@ void Check::check_poses() {
   if (poses.T_world_vehicle_initial) {
     sources.emplace_back("initial pose");
   }
-  if (poses.udp) {
-    sources.push_back("UDP " + endpoint_text(poses.udp->bind));
-  }
-  if (poses.tcp) {
-    sources.push_back("TCP " + endpoint_text(poses.tcp->bind));
-  }
-  if (poses.mavlink) {
-    sources.push_back(fmt::format("MAVLink UDP {} (system {})", endpoint_text(poses.mavlink->bind),
-                                  poses.mavlink->system_id));
-  }
-  if (poses.gazebo) {
-    sources.push_back(fmt::format("gazebo {} entity '{}'", poses.gazebo->topic, poses.gazebo->vehicle.name));
-  }
-  if (trajectory_) {
-    sources.push_back(
-        fmt::format("trajectory {} ({}, {:.1f} s)", poses.trajectory->file.string(),
-                    counted(trajectory_->points().size(), "pose"),
-                    1e-9 * static_cast<double>(trajectory_->end_ns() - trajectory_->start_ns())));
-  } else if (poses.trajectory) {
-    problem("poses.trajectory.file", trajectory_trouble_);
+  for (const std::shared_ptr<const PoseInput>& input : poses.inputs) {
+    try {
+      sources.push_back(input->summary());
+    } catch (const PoseSourceError& error) {
+      problem(error.key, error.what());
+    }
   }
   report_.summary.push_back(fmt::format("engine   {}", render::name_of(config_.engine)));
   report_.summary.push_back(fmt::format("poses    {}", fmt::join(sources, ", ")));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/listen.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -15,6 +16,7 @@
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/diagnosis/pose_stream.hpp"
+#include "server/pose/pose_input.hpp"
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/posed_body.hpp"
 #include "server/pose/to_render.hpp"
@@ -114,7 +116,7 @@ void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
 }
 
 bool any_is_live(const PoseConfig& poses) {
-  return poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
+  return std::ranges::any_of(poses.inputs, [](const auto& input) { return input->type().is_live; });
 }
 
 }  // namespace

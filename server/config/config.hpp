@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "protocol/pose/pose_codec.hpp"
 #include "renderer/pose.hpp"
 #include "renderer/renderer_options.hpp"
 #include "renderer/scene/geographic_frame.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "renderer/sonar_settings.hpp"
 #include "server/net/addresses.hpp"
+#include "server/pose/pose_config.hpp"
 
 namespace sonard::server {
 
@@ -38,96 +38,6 @@ struct WaterConfig {
   double sound_speed_mps = 0.0;  ///< of this water (Mackenzie or Medwin), whether or not the heads use it
   /// Gradient of the speed of sound per metre upwards, 1/s. Positive: rays bend down; 0: rays are straight.
   double sound_speed_gradient_per_s = 0.0;
-};
-
-/// A UDP socket that receives one pose message per datagram (docs/poses.md).
-struct UdpPoseInput {
-  Endpoint bind;
-  AllowList allow;
-};
-
-/// A TCP listener for varint-delimited pose messages (docs/poses.md).
-struct TcpPoseInput {
-  Endpoint bind;
-  AllowList allow;
-  int max_clients = 8;  ///< further connections are closed at once
-};
-
-/// The messages of a MAVLink vehicle that give its position.
-enum class MavlinkMessages {
-  automatic,       ///< ODOMETRY if it arrives, else the others
-  odometry,        ///< ODOMETRY
-  local_position,  ///< LOCAL_POSITION_NED with ATTITUDE or ATTITUDE_QUATERNION
-  global_position  ///< GLOBAL_POSITION_INT with ATTITUDE or ATTITUDE_QUATERNION
-};
-
-/// A UDP socket that listens to a MAVLink vehicle (docs/simulators/ardusub.md).
-struct MavlinkPoseInput {
-  Endpoint bind;
-  AllowList allow;
-  std::uint8_t system_id = 1;     ///< the vehicle, 1..255
-  std::uint8_t component_id = 1;  ///< component whose messages are used, 1..255; 1: the autopilot
-  MavlinkMessages messages = MavlinkMessages::automatic;
-  render::Pose T_world_local;  ///< origin of the vehicle's positions, in axes east, north, up
-  /// The world's place on Earth, for global_position (resolve_mounts() sets it).
-  std::optional<render::GeographicOrigin> world_origin;
-};
-
-/// A trajectory file, played in real time from the start of the daemon.
-struct TrajectoryInput {
-  std::filesystem::path file;  ///< CSV or TUM, recognised by its content (docs/poses.md)
-  bool loop = false;           ///< false: the last pose stays the newest one
-  double speed = 1.0;          ///< 2: twice as fast as recorded; > 0
-  pose::Axes axes = pose::Axes::enu_flu;
-};
-
-/// An entity whose pose a simulator sends, by its name in the simulator.
-struct SimulatorEntity {
-  std::string name;
-  /// The entities that each pose is relative to, from a model in the world inwards. Empty: the pose of the
-  /// entity is in the world.
-  std::vector<std::string> parents;
-};
-
-/// A topic of Gazebo (Ignition or gz transport) with poses (docs/simulators/gazebo.md).
-struct GazeboPoseInput {
-  struct Body {
-    SimulatorEntity entity;
-    std::string body;  ///< of our world
-  };
-  std::string topic;
-  std::string partition;          ///< empty: the value of IGN_PARTITION
-  Ipv4 address = 0x7F000001;      ///< of this machine; loopback: Gazebo on this machine only
-  SimulatorEntity vehicle;        ///< carrier of the sonars; without a name: DaemonConfig::vehicle_model
-  render::Pose T_entity_vehicle;  ///< mount of the vehicle frame on that entity
-  std::vector<Body> bodies;
-};
-
-/// What a head does if the newest pose is older than the extrapolation limit.
-enum class StalePolicy {
-  hold,     ///< continues to ping from the last pose
-  silence,  ///< sends status packets only, until a pose arrives
-};
-
-/// The clock that times the pings.
-enum class PingClock {
-  wall,                 ///< the time of this machine
-  simulated,            ///< simulated time, the stamps of the poses; late pings are skipped to keep up
-  simulated_lock_step,  ///< as `simulated`, but no ping is skipped: TCP publishers must wait
-};
-
-struct PoseConfig {
-  /// T_world_vehicle until the first pose arrives. If nullopt, the heads answer but do not ping until then.
-  std::optional<render::Pose> T_world_vehicle_initial;
-  std::optional<UdpPoseInput> udp;
-  std::optional<TcpPoseInput> tcp;
-  std::optional<MavlinkPoseInput> mavlink;
-  std::optional<TrajectoryInput> trajectory;
-  std::optional<GazeboPoseInput> gazebo;
-  /// Extrapolates this long after the newest pose with its twist (without a twist, holds the pose); >= 0.
-  std::chrono::nanoseconds extrapolation_limit{std::chrono::milliseconds{500}};
-  StalePolicy stale_policy = StalePolicy::hold;
-  PingClock clock = PingClock::wall;
 };
 
 /// The part of a head's configuration that only its type of device reads.

@@ -45,9 +45,4 @@ void apply_water(YamlSection& section, const HeadContext& context, double carrie
 void warn_of_absorption(YamlSection& section, const WaterConfig& water, double carrier_hz,
                         std::string_view remedy);
 
-/// `position_m` and `rpy_deg` (roll, pitch, yaw about fixed x, y, z; positive pitch is nose down), each
-/// with its meaning.
-void read_pose(YamlSection& section, render::Pose& pose, std::string_view position_meaning,
-               std::string_view rpy_meaning);
-
 }  // namespace sonard::server

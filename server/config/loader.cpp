@@ -16,6 +16,8 @@
 #include "server/config/head_section.hpp"
 #include "server/config/overlaps.hpp"
 #include "server/net/addresses.hpp"
+#include "server/pose/section.hpp"
+#include "server/pose/types/types.hpp"
 #include "server/yaml/network_section.hpp"
 #include "server/yaml/status_section.hpp"
 #include "server/yaml/yaml_section.hpp"
@@ -178,176 +180,6 @@ void read_water(YamlSection& section, HeadContext& context) {
                  "water above cold: rays bend down, and the bed appears nearer. "
                  "-0.017 is water of one temperature; no sonar here shows its effect. With a gradient, "
                  "sonard subdivides facets ([acoustics.md](acoustics.md#refraction))");
-}
-
-void read_trajectory(YamlSection& section, const std::filesystem::path& folder, TrajectoryInput& trajectory) {
-  section.require("file", "a trajectory file, CSV or TUM");
-  section.path("file", trajectory.file, folder, "trajectory file, CSV or TUM ([poses.md](poses.md))");
-  section.boolean("loop", trajectory.loop,
-                  "true: playback starts again at the end; false: the last pose remains");
-  section.number("speed", trajectory.speed, Range::above(0.0, 1000.0),
-                 "playback speed; 2 is twice as fast as recorded");
-  section.choice("axes", trajectory.axes,
-                 {{"enu_flu", pose::Axes::enu_flu}, {"ned_frd", pose::Axes::ned_frd}},
-                 "convention for the axes of world and vehicle in the file");
-}
-
-void read_mavlink(YamlSection& section, MavlinkPoseInput& mavlink) {
-  read_socket(section, mavlink.bind, mavlink.allow, endpoint_form,
-              "UDP address that receives the telemetry; the example uses 127.0.0.1:14660",
-              "address blocks that may send telemetry");
-  section.integer("system_id", mavlink.system_id, 1, 255,
-                  "MAVLink system ID of the vehicle; sonard ignores messages from other systems");
-  section.integer("component_id", mavlink.component_id, 1, 255,
-                  "MAVLink component whose messages sonard uses; 1 is the autopilot");
-  section.choice(
-      "messages", mavlink.messages,
-      {{"auto", MavlinkMessages::automatic},
-       {"odometry", MavlinkMessages::odometry},
-       {"local_position", MavlinkMessages::local_position},
-       {"global_position", MavlinkMessages::global_position}},
-      "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
-      "the attitude at the same time. `auto` uses the first in this list that arrives. GLOBAL_POSITION_INT "
-      "requires an `origin`; at latitude 0, longitude 0 it gives only the depth");
-  section.section("origin", "pose of the vehicle's own origin in the world", [&](YamlSection& inner) {
-    read_pose(inner, mavlink.T_world_local,
-              "world position (x east, y north, z up) of the vehicle's (0, 0, 0)",
-              "rotation; yaw 90 turns the vehicle's north to the west of the world");
-  });
-}
-
-std::optional<std::string> any_text(std::string_view text) {
-  return text.empty() ? std::nullopt : std::optional(std::string(text));
-}
-
-/// "parents": the entities that a relative pose is relative to.
-void read_parents(YamlSection& section, bool relative, SimulatorEntity& entity, std::string_view meaning) {
-  constexpr TextForm names{"names of entities, the outermost first", "texts", R"("type": "string")"};
-  section.parsed_list("parents", entity.parents, &any_text, names, meaning);
-  if (!relative && section.has("parents")) {
-    section.report("parents", "is invalid with `frame: world` (expected `frame: relative`)");
-  }
-}
-
-void read_gazebo(YamlSection& section, GazeboPoseInput& gazebo) {
-  enum class Frame { world, relative };
-  Frame frame = Frame::world;
-  section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
-  section.text("topic", gazebo.topic, "topic with `Pose_V` or `Pose` messages");
-  section.text("partition", gazebo.partition, "partition of the Gazebo transport");
-  section.default_is("partition", "value of `IGN_PARTITION`");
-  read_own_address(
-      section, "address", gazebo.address,
-      "address of this machine on the network to Gazebo, instead of `IGN_IP` and `GZ_IP`. Default: loopback, "
-      "so only this machine can publish poses. With any other address, every machine on that network can");
-  section.require("frame", "world, or relative for poses that are relative to parents");
-  section.choice("frame", frame, {{"world", Frame::world}, {"relative", Frame::relative}},
-                 "reference frame of the poses: `world`, or `relative` to `parents`");
-  const bool relative = frame == Frame::relative;
-  section.text("vehicle", gazebo.vehicle.name,
-               "entity that carries the sonars; **required** if no model of the world is the vehicle");
-  section.default_is("vehicle", "`world.vehicle_model`; with `relative` it has no parents");
-  read_parents(section, relative, gazebo.vehicle,
-               "entities that the pose of `vehicle` is relative to, the outermost first; [] for a model "
-               "directly in the world");
-  section.default_is("parents", "**required** with `relative` and `vehicle`");
-  const bool named = section.has("vehicle");
-  if (relative && named) {
-    section.require("parents",
-                    "the entities that the vehicle's pose is relative to, the outermost first; [] for a "
-                    "model directly in the world");
-  }
-  for (const char* key : {"parents", "mount"}) {
-    if (!named && section.has(key)) {
-      section.report(key, "requires `vehicle`, which is missing (expected both, or neither)");
-    }
-  }
-  section.section(
-      "mount", "pose of the vehicle frame on the entity; only with `vehicle`", [&](YamlSection& inner) {
-        read_pose(inner, gazebo.T_entity_vehicle, "origin of the vehicle frame in the axes of the entity",
-                  "rotation, as in `poses.initial`");
-      });
-  section.sections("bodies", "simulator entities that move bodies of the world", [&](YamlSection& inner) {
-    GazeboPoseInput::Body& body = gazebo.bodies.emplace_back();
-    inner.require("entity", "the name of an entity of the simulator");
-    inner.text("entity", body.entity.name, "name of the entity in the simulator");
-    read_parents(inner, relative, body.entity,
-                 "as the other `parents`, for `entity`; only with `frame: relative`");
-    inner.require("body", "the name of a model of the world");
-    inner.text("body", body.body, "name of the model in the world of sonard");
-  });
-}
-
-void read_poses(YamlSection& section, const std::filesystem::path& folder, PoseConfig& poses) {
-  section.introduce(
-      "At least one of `initial`, `udp`, `tcp`, `mavlink`, `gazebo` and `trajectory` is required. "
-      "`trajectory` cannot be combined with `udp`, `tcp`, `mavlink` or `gazebo`. Only one of these four may "
-      "send poses of the vehicle at a time.");
-  section.section(
-      "initial",
-      "pose until the first one arrives. Without it, and always in simulated time (`clock`), the heads "
-      "answer clients but do not ping before the first pose",
-      [&](YamlSection& inner) {
-        inner.require("position_m", "a list of three numbers");
-        read_pose(
-            inner, poses.T_world_vehicle_initial.emplace(),
-            "origin of the vehicle in the world (x east, y north, z up)",
-            "roll, pitch and yaw about the fixed x, y and z axes, in this order. On the vehicle, x is "
-            "forward, y to port and z up, so positive pitch is nose down and positive yaw turns to port");
-      });
-  section.section("udp", "pose messages by UDP, one per datagram ([poses.md](poses.md))",
-                  [&](YamlSection& inner) {
-                    UdpPoseInput& udp = poses.udp.emplace();
-                    read_socket(inner, udp.bind, udp.allow, endpoint_form,
-                                "UDP address that receives poses; the demo uses 127.0.0.1:14600",
-                                "address blocks that may publish poses");
-                  });
-  section.section(
-      "tcp", "varint-delimited pose messages by TCP ([poses.md](poses.md))", [&](YamlSection& inner) {
-        TcpPoseInput& tcp = poses.tcp.emplace();
-        read_socket(inner, tcp.bind, tcp.allow, endpoint_form, "TCP address that publishers connect to",
-                    "address blocks that may publish poses");
-        inner.integer("max_clients", tcp.max_clients, 1, 1000,
-                      "maximum number of connections ([beyond it](security.md#limits-on-clients))");
-      });
-  section.section("mavlink",
-                  "telemetry of a MAVLink vehicle by UDP ([simulators/ardusub.md](simulators/ardusub.md))",
-                  [&](YamlSection& inner) { read_mavlink(inner, poses.mavlink.emplace()); });
-  section.renamed("ignition", "gazebo");
-  section.section("gazebo", "pose topic of Gazebo ([simulators/gazebo.md](simulators/gazebo.md))",
-                  [&](YamlSection& inner) { read_gazebo(inner, poses.gazebo.emplace()); });
-  section.section("trajectory", "trajectory file, played from the start of the daemon",
-                  [&](YamlSection& inner) { read_trajectory(inner, folder, poses.trajectory.emplace()); });
-  section.duration("extrapolation_limit_ms", poses.extrapolation_limit, Range::from(0.0, 60'000.0),
-                   "time after the newest pose for which sonard follows its twist, if any");
-  section.choice("stale", poses.stale_policy,
-                 {{"hold", StalePolicy::hold}, {"silence", StalePolicy::silence}},
-                 "after `extrapolation_limit_ms`: `hold`: pings continue from the last pose; `silence`: "
-                 "pings stop until a pose arrives, and status packets continue");
-  section.renamed_value("clock", "source", "simulated");
-  section.renamed_value("clock", "lock_step", "simulated_lock_step");
-  section.choice("clock", poses.clock,
-                 {{"wall", PingClock::wall},
-                  {"simulated", PingClock::simulated},
-                  {"simulated_lock_step", PingClock::simulated_lock_step}},
-                 "clock for the pings: `wall` is the clock of this machine; with `simulated` and "
-                 "`simulated_lock_step`, pings follow the stamps of the poses, for a simulation that is "
-                 "slow, fast or paused. `simulated_lock_step` skips no ping, however slow "
-                 "the rendering ([poses.md](poses.md#simulated-time))");
-
-  const bool live = poses.udp || poses.tcp || poses.mavlink || poses.gazebo;
-  if (live && poses.trajectory) {
-    section.report("trajectory", "cannot be combined with a live input (expected one of them)");
-  }
-  if (!live && !poses.trajectory && !poses.T_world_vehicle_initial) {
-    section.report("initial",
-                   "no source of poses is given (expected initial, udp, tcp, mavlink, gazebo or trajectory)");
-  }
-  if (!live && !poses.trajectory && poses.clock != PingClock::wall) {
-    section.report("clock",
-                   "requires poses with time stamps (expected wall, or udp, tcp, mavlink, gazebo or "
-                   "trajectory in addition)");
-  }
 }
 
 void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adaptive_quality) {
@@ -522,8 +354,9 @@ void read_document(YamlSection& root, std::span<const HeadType* const> types, Da
   context.water.sound_speed_mps = render::sound_speed_mps(properties(context.water));
   config.water = context.water;
   root.require("poses", "a mapping with the sources of the vehicle's pose");
-  root.section("poses", "sources of the vehicle's pose",
-               [&](YamlSection& section) { read_poses(section, context.folder, config.poses); });
+  root.section("poses", "sources of the vehicle's pose", [&](YamlSection& section) {
+    config.poses = read_poses(section, pose_source_types(), context.folder);
+  });
   context.simulated_time = config.poses.clock != PingClock::wall;
   root.section("sampling", "target error of the images", [&](YamlSection& section) {
     read_sampling(section, context.sampling, context.adaptive_quality);

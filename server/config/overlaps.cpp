@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/config/overlaps.hpp"
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "server/pose/pose_input.hpp"
 
 namespace sonard::server {
 namespace {
@@ -86,14 +90,10 @@ class Overlaps {
 
 std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config) {
   std::vector<PlannedSocket> sockets;
-  if (config.poses.udp) {
-    sockets.push_back({Transport::udp, config.poses.udp->bind, "poses.udp.bind"});
-  }
-  if (config.poses.mavlink) {
-    sockets.push_back({Transport::udp, config.poses.mavlink->bind, "poses.mavlink.bind"});
-  }
-  if (config.poses.tcp) {
-    sockets.push_back({Transport::tcp, config.poses.tcp->bind, "poses.tcp.bind"});
+  for (const std::shared_ptr<const PoseInput>& input : config.poses.inputs) {
+    if (std::optional<PlannedSocket> socket = input->socket()) {
+      sockets.push_back(std::move(*socket));
+    }
   }
   if (config.web) {
     sockets.push_back({Transport::tcp, config.web->bind, "web.bind"});

@@ -10,7 +10,7 @@
 
 namespace sonard::server {
 
-/// Sockets of the pose input, then of each head; keys are paths in the whole configuration.
+/// Sockets of the pose inputs and the page, then of each head; keys are paths in the whole configuration.
 std::vector<PlannedSocket> planned_sockets(const DaemonConfig& config);
 
 /// Sockets that conflict, duplicate names, and values that two heads of a type must not share.

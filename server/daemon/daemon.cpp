@@ -23,7 +23,6 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "protocol/pose/trajectory.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/reader_jail.hpp"
 #include "server/clock/clock.hpp"
@@ -62,10 +61,8 @@ std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig
                                         const PoseSink& sink, const PoseHold& hold) {
   try {
     return std::make_unique<PoseInputs>(io, config.poses, clock, sink, hold);
-  } catch (const pose::TrajectoryError& error) {
-    throw StartError("poses.trajectory.file", exit_config, error.what());
   } catch (const PoseSourceError& error) {
-    throw StartError("poses.gazebo", exit_config, error.what());
+    throw StartError(error.key, exit_config, error.what());
   }
 }
 
@@ -346,7 +343,7 @@ void Daemon::start_inputs() {
   try {
     inputs_->start();
   } catch (const PoseSourceError& error) {
-    throw StartError("poses", exit_network, error.what());
+    throw StartError(error.key, exit_network, error.what());
   }
 }
 
@@ -599,7 +596,7 @@ render::World load_world_of(DaemonConfig& config) {
     for (const std::string& line : world.left_out) {
       spdlog::info("world {}: left out: {}", world.name, line);
     }
-    for (const WorldProblem& problem : resolve_mounts(config, world)) {
+    for (const ConfigProblem& problem : resolve_mounts(config, world)) {
       throw StartError(problem.key, exit_config, problem.message);
     }
     return world;

@@ -2,10 +2,13 @@
 #include "server/daemon/resolve_mounts.hpp"
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "server/config/head_type.hpp"
+#include "server/pose/pose_input.hpp"
 
 namespace sonard::server {
 namespace {
@@ -33,7 +36,7 @@ class MountResolver {
  public:
   MountResolver(DaemonConfig& config, const render::World& world) : config_(config), world_(world) {}
 
-  std::vector<WorldProblem> take() {
+  std::vector<ConfigProblem> take() {
     if (!config_.vehicle_model.empty() && world_.find_body(config_.vehicle_model) == nullptr) {
       problem("world.vehicle_model", fmt::format("the world has no model '{}'", config_.vehicle_model));
     }
@@ -47,14 +50,13 @@ class MountResolver {
             "the world has no model of the vehicle (expected world.vehicle_model, or a mount from_world)");
       }
     }
-    name_entity();
-    place_mavlink();
+    resolve_inputs();
     return std::move(problems_);
   }
 
  private:
   void problem(std::string key, std::string message) {
-    problems_.push_back({std::move(key), std::move(message)});
+    problems_.push_back({{}, std::move(key), std::move(message)});
   }
 
   void mount(std::size_t index) {
@@ -90,38 +92,23 @@ class MountResolver {
     }
   }
 
-  void name_entity() {
-    if (!config_.poses.gazebo || !config_.poses.gazebo->vehicle.name.empty()) {
-      return;
-    }
-    if (config_.vehicle_model.empty()) {
-      problem("poses.gazebo.vehicle",
-              "missing (expected the name of an entity of the simulator; otherwise, world.vehicle_model or a "
-              "mount from_world must name the model with the sonars)");
-    }
-    config_.poses.gazebo->vehicle = {config_.vehicle_model, {}};
-  }
-
-  void place_mavlink() {
-    if (!config_.poses.mavlink) {
-      return;
-    }
-    config_.poses.mavlink->world_origin = world_.origin;
-    if (config_.poses.mavlink->messages == MavlinkMessages::global_position && !world_.origin) {
-      problem("poses.mavlink.messages",
-              "global_position requires the position of the world on Earth (expected world.origin, or "
-              "<spherical_coordinates> in its file)");
+  void resolve_inputs() {
+    const WorldOfPoses world{config_.vehicle_model, world_.origin};
+    for (std::shared_ptr<const PoseInput>& input : config_.poses.inputs) {
+      if (auto resolved = input->in_world(world, problems_)) {
+        input = std::move(resolved);
+      }
     }
   }
 
   DaemonConfig& config_;
   const render::World& world_;
-  std::vector<WorldProblem> problems_;
+  std::vector<ConfigProblem> problems_;
 };
 
 }  // namespace
 
-std::vector<WorldProblem> resolve_mounts(DaemonConfig& config, const render::World& world) {
+std::vector<ConfigProblem> resolve_mounts(DaemonConfig& config, const render::World& world) {
   return MountResolver(config, world).take();
 }
 

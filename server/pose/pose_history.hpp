@@ -13,7 +13,7 @@
 #include "protocol/pose/pose_codec.hpp"
 #include "renderer/pose.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
+#include "server/pose/pose_config.hpp"
 #include "server/pose/pose_track.hpp"
 #include "server/pose/posed_body.hpp"
 #include "server/pose/publisher_clock.hpp"

@@ -9,6 +9,8 @@
 #include <spdlog/spdlog.h>
 #include <boost/asio/io_context.hpp>
 
+#include "server/pose/pose_input.hpp"
+
 namespace sonard::server {
 namespace {
 
@@ -30,7 +32,9 @@ PoseInputs::PoseInputs(boost::asio::io_context& io, const PoseConfig& config, co
       sink(sample, arrival);
     };
   };
-  sources_ = make_pose_sources(io, config, clock, measured_sink, hold);
+  for (const std::shared_ptr<const PoseInput>& input : config.inputs) {
+    sources_.push_back(input->open(io, clock, measured_sink(), hold));
+  }
   told_silent_.resize(sources_.size());
   publishers_.resize(sources_.size());
 }

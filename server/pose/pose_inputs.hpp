@@ -11,6 +11,7 @@
 
 #include <boost/asio/steady_timer.hpp>
 
+#include "server/pose/pose_config.hpp"
 #include "server/pose/pose_source.hpp"
 #include "server/pose/pose_statistics.hpp"
 
@@ -22,7 +23,7 @@ namespace sonard::server {
 class PoseInputs {
  public:
   /// Every pose of every source goes to `sink`. `hold` may be empty: publishers then never wait.
-  /// @throws exceptions of make_pose_sources()
+  /// @throws PoseSourceError
   PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink,
              PoseHold hold = {}, std::chrono::milliseconds report_period = std::chrono::seconds{10});
 

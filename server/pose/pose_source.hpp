@@ -4,24 +4,23 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/pose/pose_codec.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
-
-namespace boost::asio {
-class io_context;
-}
 
 namespace sonard::server {
 
-/// The OS refused a socket. what() is one line with source, address, operation and reason.
+/// A source cannot be used: the OS refused a socket, or a file is wrong. what() is one line with source,
+/// address or file, operation and reason.
 struct PoseSourceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit PoseSourceError(const std::string& what, std::string config_key = "poses")
+      : std::runtime_error(what), key(std::move(config_key)) {}
+
+  std::string key;  ///< of the configuration
 };
 
 /// Receives each pose and the time of its arrival. Called on the I/O thread.
@@ -82,14 +81,5 @@ class PoseSource {
            "firewall block it?";
   }
 };
-
-/// Makes one source per configured input. `sink_of_next` is called for the sink of each. `clock` and `io`
-/// outlive the sources.
-/// @throws pose::TrajectoryError if the trajectory cannot be used; PoseSourceError if the configuration needs
-/// Gazebo Transport and this program was built without it
-std::vector<std::unique_ptr<PoseSource>> make_pose_sources(boost::asio::io_context& io,
-                                                           const PoseConfig& config, const Clock& clock,
-                                                           const std::function<PoseSink()>& sink_of_next,
-                                                           const PoseHold& hold);
 
 }  // namespace sonard::server

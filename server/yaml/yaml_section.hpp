@@ -58,6 +58,11 @@ struct TextForm {
   std::string_view schema;    ///< as KeyReference::schema
 };
 
+/// For YamlSection::parsed() and parsed_list(): accepts any text but an empty one.
+inline std::optional<std::string> any_text(std::string_view text) {
+  return text.empty() ? std::nullopt : std::optional(std::string(text));
+}
+
 /// One mapping. Reports at most one problem for each key. A reader writes its result only if the key exists
 /// and its value is valid, so the previous content is the default. Readers take the unit of a number from the
 /// name of the key ("delay_ms"). `meaning` is KeyReference::meaning.

@@ -17,6 +17,7 @@
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/type.hpp"
 #include "server/devices/types/types.hpp"
+#include "server/pose/trajectory/input.hpp"
 
 namespace sonard::pictures {
 namespace {
@@ -32,8 +33,8 @@ class Vehicle {
     if (poses.T_world_vehicle_initial) {
       initial_ = *poses.T_world_vehicle_initial;
     }
-    if (poses.trajectory) {
-      trajectory_ = pose::load_trajectory(poses.trajectory->file, poses.trajectory->axes);
+    if (const auto* trajectory = server::settings_of<server::TrajectoryInput>(poses)) {
+      trajectory_ = pose::load_trajectory(trajectory->file, trajectory->axes);
     }
   }
 
@@ -98,7 +99,8 @@ server::DaemonConfig load(const std::string& config) {
 std::vector<render::Pose> poses_along(const std::string& config, const std::string& trajectory,
                                       const std::vector<double>& times_s) {
   server::DaemonConfig daemon = load(config);
-  daemon.poses.trajectory = {.file = SONARD_SOURCE_DIR "/configs/" + trajectory};
+  daemon.poses.inputs = {
+      server::pose_input(server::TrajectoryInput{.file = SONARD_SOURCE_DIR "/configs/" + trajectory})};
   const Vehicle vehicle(daemon.poses);
   std::vector<render::Pose> T_world_sonar;
   for (const double time_s : times_s) {

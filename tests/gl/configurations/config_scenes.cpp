@@ -24,6 +24,7 @@
 #include "server/devices/device_type.hpp"
 #include "server/devices/types/types.hpp"
 #include "server/pose/to_render.hpp"
+#include "server/pose/trajectory/input.hpp"
 #include "server/yaml/config_error.hpp"
 
 namespace sonard::test {
@@ -79,9 +80,8 @@ std::vector<render::Pose> own_poses(const DaemonConfig& config, const render::Wo
   if (config.poses.T_world_vehicle_initial) {
     poses.push_back(*config.poses.T_world_vehicle_initial);
   }
-  if (config.poses.trajectory) {
-    add_poses(pose::load_trajectory(config.poses.trajectory->file, config.poses.trajectory->axes), more,
-              poses);
+  if (const auto* trajectory = settings_of<TrajectoryInput>(config.poses)) {
+    add_poses(pose::load_trajectory(trajectory->file, trajectory->axes), more, poses);
   }
   for (const auto& demo : YAML::LoadFile(demos.string())) {
     if (more > 0 && folder / demo.second["configuration"].as<std::string>() == config.file) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses by Ignition Transport from independent programs: one with the stock library, and its command line
 // tool. They run in a network of this test process alone, with multicast on its loopback.
-#include "server/pose/gazebo_pose_source.hpp"
+#include "server/pose/gazebo/source.hpp"
 
 #include <gmock/gmock.h>
 #include <sched.h>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/pose/mavlink_pose_source.hpp"
+#include "server/pose/mavlink/source.hpp"
 #include "tests/unit/protocol/pose/pose_matchers.hpp"
 #include "tests/unit/server/pose/child_process.hpp"
 #include "tests/unit/server/pose/source_fixture.hpp"

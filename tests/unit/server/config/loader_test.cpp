@@ -23,6 +23,9 @@
 #include "server/devices/micron/type.hpp"
 #include "server/devices/types/types.hpp"
 #include "server/net/interfaces.hpp"
+#include "server/pose/gazebo/input.hpp"
+#include "server/pose/mavlink/input.hpp"
+#include "server/pose/trajectory/input.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
 namespace sonard::server {
@@ -52,7 +55,7 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(config.engine, render::EngineKind::automatic);
   ASSERT_TRUE(config.poses.T_world_vehicle_initial);
   EXPECT_EQ(config.poses.T_world_vehicle_initial->position_m, glm::dvec3(1, 2, 3));
-  EXPECT_FALSE(config.poses.udp || config.poses.tcp || config.poses.trajectory);
+  EXPECT_THAT(config.poses.inputs, IsEmpty());
   EXPECT_EQ(config.poses.extrapolation_limit, milliseconds{500});
   EXPECT_EQ(config.poses.stale_policy, StalePolicy::hold);
 
@@ -177,10 +180,12 @@ TEST_F(Loader, ResolvesPathsAgainstTheFolderOfTheFile) {
       "poses: {trajectory: {file: sub/t.csv, loop: true, speed: 2, axes: ned_frd}}\n" +
       minimal_config.substr(minimal_config.find("heads:")) + "    dump: {directory: pings}\n");
   EXPECT_EQ(loaded.config.world_file, "/somewhere/else.sdf");
-  EXPECT_EQ(loaded.config.poses.trajectory->file, folder_ / "sub/t.csv");
-  EXPECT_EQ(loaded.config.poses.trajectory->speed, 2.0);
-  EXPECT_TRUE(loaded.config.poses.trajectory->loop);
-  EXPECT_EQ(loaded.config.poses.trajectory->axes, pose::Axes::ned_frd);
+  const auto* trajectory = settings_of<TrajectoryInput>(loaded.config.poses);
+  ASSERT_NE(trajectory, nullptr);
+  EXPECT_EQ(trajectory->file, folder_ / "sub/t.csv");
+  EXPECT_EQ(trajectory->speed, 2.0);
+  EXPECT_TRUE(trajectory->loop);
+  EXPECT_EQ(trajectory->axes, pose::Axes::ned_frd);
   EXPECT_EQ(loaded.config.heads.at(0).dump_directory, folder_ / "pings");
 }
 
@@ -738,16 +743,18 @@ TEST_F(Loader, ReadsMavlink) {
               testing::UnorderedElementsAre(HasSubstr("poses.mavlink.bind: missing"),
                                             HasSubstr("poses.mavlink.system_id: is"),
                                             HasSubstr("poses.mavlink.messages: 'all' is not understood")));
-  const MavlinkPoseInput plain = load(with("bind: 127.0.0.1:14660")).config.poses.mavlink.value();
+  const auto settings = [&](const std::string& mavlink) {
+    return *settings_of<MavlinkPoseInput>(load(with(mavlink)).config.poses);
+  };
+  const MavlinkPoseInput plain = settings("bind: 127.0.0.1:14660");
   EXPECT_EQ(plain.bind, (Endpoint{0x7F000001, 14660}));
   EXPECT_EQ(plain.system_id, 1);
   EXPECT_EQ(plain.component_id, 1);
   EXPECT_EQ(plain.messages, MavlinkMessages::automatic);
   EXPECT_EQ(plain.T_world_local.position_m, glm::dvec3(0));
-  const MavlinkPoseInput full =
-      load(with("bind: 127.0.0.1:1, system_id: 7, component_id: 197, messages: local_position, "
-                "origin: {position_m: [1, 2, 3], rpy_deg: [0, 0, -90]}"))
-          .config.poses.mavlink.value();
+  const MavlinkPoseInput full = settings(
+      "bind: 127.0.0.1:1, system_id: 7, component_id: 197, messages: local_position, "
+      "origin: {position_m: [1, 2, 3], rpy_deg: [0, 0, -90]}");
   EXPECT_EQ(full.system_id, 7);
   EXPECT_EQ(full.component_id, 197);
   EXPECT_EQ(full.messages, MavlinkMessages::local_position);
@@ -816,8 +823,11 @@ TEST_F(Loader, LeavesTheVehicleOfGazeboToTheWorld) {
     std::string text = minimal_config;
     return text.replace(text.find(initial), initial.size(), "  gazebo: {topic: /p, " + ignition + "}\n");
   };
-  EXPECT_EQ(load(with("frame: relative")).config.poses.gazebo->vehicle.name, "");
-  EXPECT_EQ(load(with("frame: world, vehicle: rov")).config.poses.gazebo->vehicle.name, "rov");
+  const auto vehicle = [&](const std::string& gazebo) {
+    return settings_of<GazeboPoseInput>(load(with(gazebo)).config.poses)->vehicle.name;
+  };
+  EXPECT_EQ(vehicle("frame: relative"), "");
+  EXPECT_EQ(vehicle("frame: world, vehicle: rov"), "rov");
   EXPECT_THAT(complaints(with("frame: relative, parents: [a], mount: {position_m: [0, 0, 1]}")),
               testing::UnorderedElementsAre(HasSubstr("poses.gazebo.parents: requires `vehicle`"),
                                             HasSubstr("poses.gazebo.mount: requires `vehicle`")));

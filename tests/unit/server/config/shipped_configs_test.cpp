@@ -15,6 +15,7 @@
 #include "server/devices/gemini/config.hpp"
 #include "server/devices/gemini/type.hpp"
 #include "server/devices/types/types.hpp"
+#include "server/pose/udp/input.hpp"
 
 namespace sonard::server {
 namespace {
@@ -85,7 +86,7 @@ void expect_demo_head(const DaemonConfig& config) {
   EXPECT_EQ(device_settings<GeminiConfig>(head).command_port, 52901);
   EXPECT_EQ(device_settings<GeminiConfig>(head).device.client_port, 52900);
   EXPECT_EQ(head.acoustics.model, render::Model::physical);
-  EXPECT_EQ(config.poses.udp->bind, (Endpoint{0x7F000001, 14600}));
+  EXPECT_EQ(settings_of<UdpPoseInput>(config.poses)->bind, (Endpoint{0x7F000001, 14600}));
   EXPECT_TRUE(config.poses.T_world_vehicle_initial.has_value());
   const double pi = std::numbers::pi;
   EXPECT_NEAR((head.T_vehicle_sonar.orientation * glm::dvec3(1, 0, 0)).z, -std::sin(20 * pi / 180), 1e-12);
@@ -130,7 +131,7 @@ TEST(ShippedConfigs, TwoVehiclesRunSideBySide) {
   const DaemonConfig b = shipped("two-vehicles-b.yaml");
   ASSERT_EQ(a.heads.size(), 2U);
   ASSERT_EQ(b.heads.size(), 1U);
-  EXPECT_NE(a.poses.udp->bind, b.poses.udp->bind);
+  EXPECT_NE(settings_of<UdpPoseInput>(a.poses)->bind, settings_of<UdpPoseInput>(b.poses)->bind);
   const GeminiConfig& gemini_a = device_settings<GeminiConfig>(a.heads[0]);
   const GeminiConfig& gemini_b = device_settings<GeminiConfig>(b.heads[0]);
   EXPECT_NE(gemini_a.device.sonar_id, gemini_b.device.sonar_id);

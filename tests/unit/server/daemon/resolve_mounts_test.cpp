@@ -7,6 +7,8 @@
 
 #include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/type.hpp"
+#include "server/pose/gazebo/input.hpp"
+#include "server/pose/mavlink/input.hpp"
 
 namespace sonard::server {
 namespace {
@@ -17,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 auto is_problem(const std::string& key, const std::string& part) {
-  return testing::AllOf(Field(&WorldProblem::key, key), Field(&WorldProblem::message, HasSubstr(part)));
+  return testing::AllOf(Field(&ConfigProblem::key, key), Field(&ConfigProblem::message, HasSubstr(part)));
 }
 
 class ResolveMounts : public testing::Test {
@@ -37,7 +39,13 @@ class ResolveMounts : public testing::Test {
     head.mount_from_world = mount;
     config_.heads.push_back(head);
   }
-  std::vector<WorldProblem> take() { return resolve_mounts(config_, world_); }
+  void add_gazebo(SimulatorEntity vehicle) {
+    GazeboPoseInput gazebo;
+    gazebo.vehicle = std::move(vehicle);
+    config_.poses.inputs.push_back(pose_input(gazebo));
+  }
+  SimulatorEntity vehicle_of_gazebo() const { return settings_of<GazeboPoseInput>(config_.poses)->vehicle; }
+  std::vector<ConfigProblem> take() { return resolve_mounts(config_, world_); }
 
   render::World world_;
   DaemonConfig config_;
@@ -45,12 +53,12 @@ class ResolveMounts : public testing::Test {
 
 TEST_F(ResolveMounts, ChangesNothingThatIsNotAskedOfIt) {
   add_gemini("");
-  config_.poses.gazebo.emplace().vehicle = {"boat", {"harbour"}};
+  add_gazebo({"boat", {"harbour"}});
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar, render::Pose{});
   EXPECT_EQ(config_.vehicle_model, "");
-  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "boat");
-  EXPECT_THAT(config_.poses.gazebo->vehicle.parents, ElementsAre("harbour"));
+  EXPECT_EQ(vehicle_of_gazebo().name, "boat");
+  EXPECT_THAT(vehicle_of_gazebo().parents, ElementsAre("harbour"));
 }
 
 TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
@@ -58,12 +66,12 @@ TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
   HeadConfig micron = micron_type().make_default();
   micron.mount_from_world = "rov::bow::micron";
   config_.heads.push_back(micron);
-  config_.poses.gazebo.emplace();
+  add_gazebo({});
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar.position_m, glm::dvec3(1, 2, 3));
   EXPECT_EQ(config_.heads[1].T_vehicle_sonar.position_m, glm::dvec3(0, 0, 1));
   EXPECT_EQ(config_.vehicle_model, "rov");
-  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "rov");
+  EXPECT_EQ(vehicle_of_gazebo().name, "rov");
 }
 
 TEST_F(ResolveMounts, NamesWhatTheWorldHas) {
@@ -96,12 +104,24 @@ TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
   config_ = {};
   add_gemini("");
   config_.heads[0].hides_vehicle = true;
-  config_.poses.gazebo.emplace();
+  add_gazebo({});
   EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].hides_vehicle", "expected world.vehicle_model"),
                                   is_problem("poses.gazebo.vehicle", "expected the name of an entity")));
   config_.vehicle_model = "rov";
   EXPECT_THAT(take(), IsEmpty());
-  EXPECT_EQ(config_.poses.gazebo->vehicle.name, "rov");
+  EXPECT_EQ(vehicle_of_gazebo().name, "rov");
+}
+
+TEST_F(ResolveMounts, PlacesMavlinkOnEarth) {
+  MavlinkPoseInput mavlink;
+  mavlink.messages = MavlinkMessages::global_position;
+  config_.poses.inputs.push_back(pose_input(mavlink));
+  EXPECT_THAT(take(),
+              ElementsAre(is_problem("poses.mavlink.messages",
+                                     "requires the position of the world on Earth (expected world.origin")));
+  world_.origin = render::GeographicOrigin{43.0, 5.0, 0.0};
+  EXPECT_THAT(take(), IsEmpty());
+  EXPECT_EQ(settings_of<MavlinkPoseInput>(config_.poses)->world_origin.value().latitude_deg, 43.0);
 }
 
 }  // namespace

@@ -12,6 +12,9 @@
 #include <sstream>
 
 #include "server/net/addresses.hpp"
+#include "server/pose/tcp/input.hpp"
+#include "server/pose/trajectory/input.hpp"
+#include "server/pose/udp/input.hpp"
 #include "tests/unit/server/pose/source_fixture.hpp"
 
 namespace sonard::server {
@@ -22,7 +25,7 @@ using std::chrono::milliseconds;
 class PoseInputsTest : public SourceTest {
  protected:
   PoseInputsTest() {
-    config_.udp = UdpPoseInput{{localhost, 0}, loopback};
+    config_.inputs = {pose_input(UdpPoseInput{{localhost, 0}, loopback})};
     auto logger =
         std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_));
     before_ = spdlog::default_logger();
@@ -81,6 +84,18 @@ TEST_F(PoseInputsTest, SaysNothingMoreOnceStopped) {
   const std::string text = text_.str();
   run_for(milliseconds{100});
   EXPECT_EQ(text_.str(), text);
+}
+
+TEST_F(PoseInputsTest, EachConfiguredInputBecomesASource) {
+  EXPECT_EQ(PoseInputs(io_, PoseConfig{}, clock_, sink_).size(), 0U);
+  const auto file = write_file("t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\n10.3,0.3,0,0,0,0,0,1\n");
+  config_.inputs.push_back(pose_input(TcpPoseInput{{localhost, 0}, loopback, 8}));
+  config_.inputs.push_back(pose_input(TrajectoryInput{.file = file}));
+  const PoseInputs inputs(io_, config_, clock_, sink_);
+  ASSERT_EQ(inputs.size(), 3U);
+  EXPECT_EQ(inputs.source(0).description(), "pose stream udp 127.0.0.1:0");
+  EXPECT_EQ(inputs.source(1).description(), "pose stream tcp 127.0.0.1:0");
+  EXPECT_EQ(inputs.source(2).description(), "pose trajectory " + file.string());
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "server/net/addresses.hpp"
-#include "server/pose/tcp_pose_source.hpp"
-#include "server/pose/udp_pose_source.hpp"
+#include "server/pose/tcp/source.hpp"
+#include "server/pose/udp/source.hpp"
 #include "tests/unit/server/pose/child_process.hpp"
 #include "tests/unit/server/pose/source_fixture.hpp"
 

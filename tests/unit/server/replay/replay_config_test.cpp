@@ -17,6 +17,7 @@
 #include "server/devices/gemini/type.hpp"
 #include "server/devices/micron/config.hpp"
 #include "server/devices/micron/type.hpp"
+#include "server/pose/udp/input.hpp"
 
 namespace sonard::server {
 namespace {
@@ -122,7 +123,7 @@ TEST_F(ReplayConfigTest, ANameSaysMoreThanAnId) {
 
 TEST_F(ReplayConfigTest, HeadsAreHeldToTheirRecordingAndKeepTheRest) {
   config.heads = {gemini("a", 600), gemini("b", 601)};
-  config.poses.udp.emplace();
+  config.poses.inputs = {pose_input(UdpPoseInput{})};
   const ReplayConfig replay = this->replay({fan(600), fan(601)});
   ASSERT_EQ(replay.daemon.heads.size(), 2U);
   for (const HeadConfig& head : replay.daemon.heads) {
@@ -135,7 +136,7 @@ TEST_F(ReplayConfigTest, HeadsAreHeldToTheirRecordingAndKeepTheRest) {
   EXPECT_EQ(device_settings<GeminiConfig>(replay.daemon.heads[1]).device.sonar_id, 601);
   EXPECT_FALSE(device_settings<GeminiConfig>(config.heads[0]).device.plays_back)
       << "that of others is not changed";
-  EXPECT_FALSE(replay.daemon.poses.udp) << "nothing is rendered";
+  EXPECT_TRUE(replay.daemon.poses.inputs.empty()) << "nothing is rendered";
   EXPECT_TRUE(replay.daemon.poses.T_world_vehicle_initial);
 }
 
