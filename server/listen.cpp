@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,8 +99,8 @@ void print_places(const DaemonConfig& config, const render::World& world, const 
 void print_input(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   const PoseSource& source = inputs.source(index);
   const PoseStatistics& statistics = inputs.statistics(index);
-  const std::string received = source.received();
-  fmt::print("{}{}{}\n", printable(source.description()), received.empty() ? "" : " ", printable(received));
+  const std::optional<PublisherId> publisher = source.publisher();
+  fmt::print("{}{}\n", printable(source.description()), publisher ? " from " + to_string(*publisher) : "");
   print_names("names   ", source.entities());
   if (statistics.newest()) {
     fmt::print("  {}\n", to_string(statistics.in_all(now)));

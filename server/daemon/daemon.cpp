@@ -307,7 +307,7 @@ DaemonStatus Daemon::status() const {
   }
   for (std::size_t i = 0; i < inputs_->size(); ++i) {
     const PoseSource& source = inputs_->source(i);
-    status.inputs.push_back({source.description(), source.received(),
+    status.inputs.push_back({source.description(), source.publisher(),
                              inputs_->statistics(i).in_all(status.at), source.counters(),
                              look_at_stream(*inputs_, i, status.at)});
   }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/diagnosis/pose_stream.hpp"
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -152,11 +154,14 @@ std::optional<Finding> look_at_rate(const PoseStatistics& statistics, PingClock 
 
 std::vector<Finding> look_at_stream(const PoseInputs& inputs, std::size_t index, TimePoint now) {
   std::vector<Finding> findings;
-  const std::vector<std::string> publishers = inputs.publishers(index, now);
+  const std::vector<PublisherId> publishers = inputs.publishers(index, now);
   if (publishers.size() > 1) {
+    std::vector<std::string> names;
+    std::ranges::transform(publishers, std::back_inserter(names),
+                           [](const PublisherId& id) { return to_string(id); });
     findings.push_back(
         {"several_publishers", fmt::format("{} publishers send poses at the same time: {}. Stop all but one.",
-                                           publishers.size(), fmt::join(publishers, ", "))});
+                                           publishers.size(), fmt::join(names, ", "))});
   }
   // Stamps of publishers with different clocks show nothing.
   const PoseStatistics& statistics = inputs.statistics(index);

@@ -2,7 +2,8 @@
 #include "server/pose/pose_inputs.hpp"
 
 #include <algorithm>
-#include <string_view>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -64,13 +65,13 @@ void PoseInputs::stop() {
 }
 
 void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
-  std::string who = index < sources_.size() ? sources_[index]->received() : "";
-  constexpr std::string_view from = "from ";
-  if (!who.starts_with(from)) {
+  const std::optional<PublisherId> publisher =
+      index < sources_.size() ? sources_[index]->publisher() : std::nullopt;
+  if (!publisher) {
     return;
   }
   Publishers& publishers = publishers_[index];
-  publishers.try_emplace(who.substr(from.size()), Times{.first = now}).first->second.last = now;
+  publishers.try_emplace(*publisher, Times{.first = now}).first->second.last = now;
   if (publishers.size() > most_publishers) {
     std::erase_if(publishers, [now](const auto& known) { return now - known.second.last > at_once; });
   }
@@ -79,8 +80,8 @@ void PoseInputs::note_publisher(std::size_t index, TimePoint now) {
   }
 }
 
-std::vector<std::string> PoseInputs::publishers(std::size_t index, TimePoint now) const {
-  std::vector<std::string> recent;
+std::vector<PublisherId> PoseInputs::publishers(std::size_t index, TimePoint now) const {
+  std::vector<PublisherId> recent;
   for (const auto& [publisher, times] : publishers_[index]) {
     // A publisher that fell silent before another began was restarted, with a new port.
     const bool replaced = std::ranges::any_of(
@@ -108,9 +109,9 @@ void PoseInputs::report() {
     const PoseStatistics::Summary recent = statistics_[i]->take(clock_.now());
     const bool silent = recent.poses == 0;
     if (!silent || !told_silent_[i]) {
-      const std::string from = sources_[i]->received();
-      spdlog::info("{}: {}{}{}", sources_[i]->description(), from, from.empty() ? "" : " ",
-                   to_string(recent));
+      const std::optional<PublisherId> publisher = sources_[i]->publisher();
+      spdlog::info("{}: {}{}", sources_[i]->description(),
+                   publisher ? "from " + to_string(*publisher) + " " : "", to_string(recent));
     }
     told_silent_[i] = silent;
   }

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <boost/asio/steady_timer.hpp>
@@ -14,6 +13,7 @@
 #include "server/pose/pose_config.hpp"
 #include "server/pose/pose_source.hpp"
 #include "server/pose/pose_statistics.hpp"
+#include "server/pose/publisher_id.hpp"
 
 namespace sonard::server {
 
@@ -38,14 +38,14 @@ class PoseInputs {
   const PoseStatistics& statistics(std::size_t index) const { return *statistics_[index]; }
   /// Publishers that sent poses to an input within the last two seconds, except those that a later publisher
   /// replaced. Empty if the source does not distinguish publishers.
-  std::vector<std::string> publishers(std::size_t index, TimePoint now) const;
+  std::vector<PublisherId> publishers(std::size_t index, TimePoint now) const;
 
  private:
   /// Times of a publisher's first and newest pose.
   struct Times {
     TimePoint first{}, last{};
   };
-  using Publishers = std::map<std::string, Times>;
+  using Publishers = std::map<PublisherId, Times>;
 
   void note_publisher(std::size_t index, TimePoint now);
   void report_every_period();

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "protocol/pose/pose_codec.hpp"
 #include "server/clock/clock.hpp"
+#include "server/pose/publisher_id.hpp"
 
 namespace sonard::server {
 
@@ -64,9 +66,9 @@ class PoseSource {
   virtual const PoseSourceCounters& counters() const = 0;
   /// Further counters of the source, " name=number" each, for the log when it ends.
   virtual std::string details() const { return {}; }
-  /// Publisher of the newest pose: "from 127.0.0.1:41234"; empty before the first pose, and if the source has
-  /// only one publisher.
-  virtual std::string received() const { return {}; }
+  /// Publisher of the newest pose; nullopt before the first pose, and if the source does not distinguish
+  /// publishers.
+  virtual std::optional<PublisherId> publisher() const { return std::nullopt; }
   /// Names that a simulator sent, used or not: the first 256 that arrived.
   virtual std::vector<std::string> entities() const { return {}; }
   /// The stamp of the newest pose.

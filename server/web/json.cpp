@@ -119,10 +119,8 @@ json head_json(const HeadStatus& status, TimePoint at) {
 }
 
 json input_json(const PoseInputStatus& status) {
-  constexpr std::string_view from = "from ";
-  const std::string& publisher = status.publisher;
   return {{"input", status.input},
-          {"publisher", publisher.starts_with(from) ? publisher.substr(from.size()) : publisher},
+          {"publisher", status.publisher ? to_string(*status.publisher) : ""},
           {"poses", status.poses.poses},
           {"rate_hz", status.poses.rate_hz},
           {"age_s", status.poses.age ? json(seconds(*status.poses.age)) : json(nullptr)},

@@ -28,8 +28,8 @@ struct DaemonIdentity {
 };
 
 struct PoseInputStatus {
-  std::string input;      ///< PoseSource::description()
-  std::string publisher;  ///< PoseSource::received()
+  std::string input;                     ///< PoseSource::description()
+  std::optional<PublisherId> publisher;  ///< PoseSource::publisher()
   PoseStatistics::Summary poses;
   PoseSourceCounters counters;
   std::vector<Finding> findings;  ///< about this input

@@ -80,8 +80,8 @@ struct MavlinkPoseSource::Impl : std::enable_shared_from_this<MavlinkPoseSource:
   MavlinkPoseInput input;
   UdpListener listener;
   PoseSink sink;
-  std::optional<Endpoint> publisher;  // of the newest pose
-  bool pose_of_odometry = false;      // the newest pose is that of an ODOMETRY
+  std::optional<PublisherId> publisher;  // of the newest pose
+  bool pose_of_odometry = false;         // the newest pose is that of an ODOMETRY
   MavlinkPoses poses;
   mavlink::FrameCounters frames;
   Received received;
@@ -125,7 +125,7 @@ void MavlinkPoseSource::Impl::take(const mavlink::Frame& frame, TimePoint arriva
   }
   if (sample) {
     ++counters.samples;
-    publisher = listener.peer();
+    publisher = {listener.peer(), frame.system_id, frame.component_id};
     pose_of_odometry = std::holds_alternative<mavlink::Odometry>(*message);
     sink(*sample, arrival);
   } else {
@@ -258,10 +258,8 @@ std::string MavlinkPoseSource::details() const {
       poses.without_attitude, poses.not_wanted, poses.clock_restarts);
 }
 
-std::string MavlinkPoseSource::received() const {
-  return impl_->publisher ? fmt::format("from {} system {} component {}", endpoint_text(*impl_->publisher),
-                                        impl_->input.system_id, impl_->input.component_id)
-                          : std::string();
+std::optional<PublisherId> MavlinkPoseSource::publisher() const {
+  return impl_->publisher;
 }
 
 StampField MavlinkPoseSource::stamp_field() const {

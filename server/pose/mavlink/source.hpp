@@ -21,7 +21,7 @@ class MavlinkPoseSource final : public PoseSource {
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
   std::string details() const override;
-  std::string received() const override;
+  std::optional<PublisherId> publisher() const override;
   StampField stamp_field() const override;
   std::string remark() const override;
   std::string unreadable(TimePoint now) const override;

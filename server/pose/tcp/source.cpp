@@ -45,7 +45,7 @@ struct TcpPoseSource::Impl : std::enable_shared_from_this<TcpPoseSource::Impl> {
   PoseSink sink;
   PoseHold hold;
   std::chrono::milliseconds message_timeout;
-  std::optional<Endpoint> publisher;  // of the newest pose
+  std::optional<PublisherId> publisher;  // of the newest pose
   std::set<std::shared_ptr<Session>> sessions;
   PoseSourceCounters counters;
   UnreadableMessages unreadable;
@@ -146,7 +146,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
     if (sample) {
       newest_message_ = arrival;
       ++source_->counters.samples;
-      source_->publisher = peer_;
+      source_->publisher = {peer_};
       source_->sink(*sample, arrival);
       return;
     }
@@ -281,8 +281,8 @@ const PoseSourceCounters& TcpPoseSource::counters() const {
   return impl_->counters;
 }
 
-std::string TcpPoseSource::received() const {
-  return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
+std::optional<PublisherId> TcpPoseSource::publisher() const {
+  return impl_->publisher;
 }
 
 std::string TcpPoseSource::unreadable(TimePoint now) const {

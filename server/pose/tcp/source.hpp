@@ -29,7 +29,7 @@ class TcpPoseSource final : public PoseSource {
   void stop() override;
   std::string description() const override;
   const PoseSourceCounters& counters() const override;
-  std::string received() const override;
+  std::optional<PublisherId> publisher() const override;
   std::string unreadable(TimePoint now) const override;
   /// The listening address, after start().
   Endpoint local_endpoint() const;

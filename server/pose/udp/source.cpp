@@ -23,7 +23,7 @@ struct UdpPoseSource::Impl : std::enable_shared_from_this<UdpPoseSource::Impl> {
 
   UdpListener listener;
   PoseSink sink;
-  std::optional<Endpoint> publisher;  // of the newest pose
+  std::optional<PublisherId> publisher;  // of the newest pose
   PoseSourceCounters counters;
   Reasons complaints;
   UnreadableMessages unreadable;
@@ -40,7 +40,7 @@ void UdpPoseSource::Impl::take(std::span<const std::uint8_t> datagram, TimePoint
     return;
   }
   ++counters.samples;
-  publisher = listener.peer();
+  publisher = {listener.peer()};
   sink(*sample, arrival);
 }
 
@@ -81,8 +81,8 @@ const PoseSourceCounters& UdpPoseSource::counters() const {
   return impl_->counters;
 }
 
-std::string UdpPoseSource::received() const {
-  return impl_->publisher ? "from " + endpoint_text(*impl_->publisher) : std::string();
+std::optional<PublisherId> UdpPoseSource::publisher() const {
+  return impl_->publisher;
 }
 
 std::string UdpPoseSource::unreadable(TimePoint now) const {

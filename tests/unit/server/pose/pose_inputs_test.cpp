@@ -72,6 +72,8 @@ TEST_F(PoseInputsTest, ReportsWhileItIsHeardAndTellsOfSilenceOnce) {
   run_for(milliseconds{200});
   EXPECT_EQ(said("poses=0 "), 2U) << text_.str();
   EXPECT_EQ(delivered_.size(), 1U);
+  EXPECT_THAT(inputs.publishers(0, clock_.now()), testing::ElementsAre(*inputs.source(0).publisher()));
+  EXPECT_THAT(inputs.publishers(0, clock_.now() + std::chrono::seconds{3}), testing::IsEmpty());
   inputs.stop();
   EXPECT_EQ(said(": in total poses=1 "), 1U) << text_.str();
   EXPECT_EQ(said(": ended samples=1 malformed=0 bad_value=0 refused=0\n"), 1U) << text_.str();

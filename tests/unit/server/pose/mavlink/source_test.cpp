@@ -40,6 +40,7 @@ class MavlinkPoseSourceTest : public SourceTest {
 
 TEST_F(MavlinkPoseSourceTest, DeliversPosesOfBothKindsAndVersions) {
   const auto source = started();
+  EXPECT_FALSE(source->publisher());
   send(*source, test::heartbeat_frame() + test::attitude_frame(1000, 0, 0, 0, {1}) +
                     test::position_frame(1000, 1, 2, 3));
   send(*source, test::odometry_frame(5'000'000, 4, 5, 6));
@@ -49,6 +50,10 @@ TEST_F(MavlinkPoseSourceTest, DeliversPosesOfBothKindsAndVersions) {
   EXPECT_NEAR(delivered_[1].sample.T_world_vehicle.position_m.z, -6, 1e-9);
   EXPECT_EQ(source->counters().samples, 2U);
   EXPECT_THAT(source->details(), HasSubstr(" messages=4 bad_checksums=0 "));
+  ASSERT_TRUE(source->publisher());
+  EXPECT_EQ(to_string(*source->publisher()),
+            endpoint_text(source->publisher()->endpoint) + " system 1 component 1");
+  EXPECT_EQ(source->publisher()->endpoint.address, localhost);
 }
 
 TEST_F(MavlinkPoseSourceTest, DropsAndCountsWhatIsBrokenOrOfOthers) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sender of poses.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+
+#include "protocol/common/endpoint.hpp"
+
+namespace sonard::server {
+
+/// Identifies a publisher among the publishers of one source.
+struct PublisherId {
+  Endpoint endpoint;
+  /// MAVLink IDs; 0: the publisher uses another protocol.
+  std::uint8_t system_id = 0, component_id = 0;
+
+  bool operator==(const PublisherId&) const = default;
+  /// By address, then port.
+  std::strong_ordering operator<=>(const PublisherId& other) const;
+};
+
+/// For people: "127.0.0.1:41234", "127.0.0.1:41234 system 1 component 1".
+std::string to_string(const PublisherId& publisher);
+
+}  // namespace sonard::server
