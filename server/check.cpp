@@ -28,6 +28,7 @@
 #include "server/daemon/resolve_mounts.hpp"
 #include "server/devices/device_type.hpp"
 #include "server/diagnosis/sight.hpp"
+#include "server/error/error.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_input.hpp"
 #include "server/recording/glf_device.hpp"
@@ -364,8 +365,8 @@ void Check::check_poses() {
   for (const std::shared_ptr<const PoseInput>& input : poses.inputs) {
     try {
       sources.push_back(input->summary());
-    } catch (const PoseSourceError& error) {
-      problem(error.key, error.what());
+    } catch (const Error& error) {
+      problem(error.where, error.what());
     }
   }
   report_.summary.push_back(fmt::format("engine   {}", render::name_of(config_.engine)));

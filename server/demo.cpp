@@ -14,7 +14,6 @@
 #include <istream>
 #include <memory>
 #include <sstream>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -30,6 +29,7 @@
 #include "common/text/printable.hpp"
 #include "server/boost_process.hpp"
 #include "server/daemon/exit_codes.hpp"
+#include "server/error/error.hpp"
 
 namespace sonard::server {
 namespace {
@@ -46,24 +46,24 @@ fs::path folder_of_programs() {
   return fs::canonical("/proc/self/exe").parent_path();
 }
 
-/// A program or a file of the demo that is not beside sonard.
-struct MissingPart : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+/// A program or a file of the demo is not beside sonard.
+Error missing_part(const std::string& text) {
+  return {ErrorKind::configuration, "demo: " + text};
+}
 
-/// @throws MissingPart if a program that the demo starts is not beside sonard
+/// @throws Error if a program that the demo starts is not beside sonard
 void expect_programs() {
   for (const char* const name : {"posecast", "sonarview"}) {
     const fs::path program = folder_of_programs() / name;
     std::error_code ignored;
     if (!fs::exists(program, ignored)) {
-      throw MissingPart(
+      throw missing_part(
           fmt::format("{} does not exist (expected posecast and sonarview beside sonard)", program.string()));
     }
   }
 }
 
-/// Folder of the configurations. @throws MissingPart
+/// Folder of the configurations. @throws Error
 fs::path folder_of_configurations() {
   const fs::path programs = folder_of_programs();
   for (const char* const folder : {"../share/sonard/configs", "../../../configs"}) {
@@ -72,8 +72,8 @@ fs::path folder_of_configurations() {
       return fs::canonical(programs / folder);
     }
   }
-  throw MissingPart(fmt::format("{1} is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
-                                programs.string(), list_file));
+  throw missing_part(fmt::format("{1} is neither in {0}/../share/sonard/configs nor in {0}/../../../configs",
+                                 programs.string(), list_file));
 }
 
 /// A running program and its output lines.
@@ -314,10 +314,7 @@ std::vector<std::string> demo_names() {
   return names;
 }
 
-namespace {
-
-/// @throws MissingPart
-int run_found(const DemoOptions& options) {
+int run_demo(const DemoOptions& options) {
   const std::vector<std::string> names = demo_names();
   const std::string& name = options.name.empty() ? names.front() : options.name;
   if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -334,17 +331,6 @@ int run_found(const DemoOptions& options) {
   }
   const fs::path configurations = folder_of_configurations();
   return Demo(options, configurations, YAML::LoadFile((configurations / list_file).string())[name]).run();
-}
-
-}  // namespace
-
-int run_demo(const DemoOptions& options) {
-  try {
-    return run_found(options);
-  } catch (const MissingPart& error) {
-    fmt::print(stderr, "demo: {}\n", printable(error.what()));
-    return exit_config;
-  }
 }
 
 }  // namespace sonard::server

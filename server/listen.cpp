@@ -17,6 +17,7 @@
 #include "server/clock/clock.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/diagnosis/pose_stream.hpp"
+#include "server/error/error.hpp"
 #include "server/pose/pose_input.hpp"
 #include "server/pose/pose_inputs.hpp"
 #include "server/pose/posed_body.hpp"
@@ -145,7 +146,7 @@ int listen_to_poses(const DaemonConfig& config, const render::World& world,
       }
     }
     inputs.stop();
-  } catch (const PoseSourceError& error) {
+  } catch (const Error& error) {
     fmt::print(stderr, "{}\n", printable(error.what()));
     return exit_network;
   }

@@ -9,7 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -29,13 +29,11 @@
 #include "server/daemon/process.hpp"
 #include "server/demo.hpp"
 #include "server/devices/types/types.hpp"
+#include "server/error/error.hpp"
 #include "server/info/info.hpp"
 #include "server/listen.hpp"
-#include "server/logs/log_file.hpp"
 #include "server/offline/arguments.hpp"
-#include "server/offline/output_folder.hpp"
 #include "server/offline/render_run.hpp"
-#include "server/offline/vehicle_trajectory.hpp"
 #include "server/program_log/json_lines.hpp"
 #include "server/program_log/stderr_sink.hpp"
 #include "server/reload.hpp"
@@ -126,13 +124,13 @@ void set_log(const std::string& level, const std::string& format) {
   }
 }
 
-/// Prints all lines of a StartError, with the place of its key.
-void print_start_error(const LoadedConfig& loaded, const StartError& error) {
-  print_error(loaded.problem_with(error.key, error.what()));
-  for (const std::string& line : error.more) {
-    print_error(loaded.problem_with(error.key, line));
-  }
-}
+/// What the error handler needs to know of the running command.
+struct Run {
+  /// Gives the places of keys; nullopt: the command reads no configuration, or shows no places.
+  std::optional<LoadedConfig> loaded;
+  /// Called with the reason if the command cannot go on; may be empty.
+  std::function<void(const std::string& why)> go_back;
+};
 
 /// Loads CONFIG and sets up the log as configured.
 /// @param text of CONFIG
@@ -153,65 +151,32 @@ LoadedConfig load_and_log(const CommandLine& arguments, const std::string& text)
 }
 
 /// @param argv of main()
-/// @param go_back called with the reason if the daemon cannot start
-int run(const CommandLine& arguments, const std::string& text, char** argv,
-        const std::function<void(const std::string&)>& go_back) {
-  const LoadedConfig loaded = load_and_log(arguments, text);
-  Reload reload(loaded.config, text);
-  try {
-    const int code =
-        run_daemon(loaded.config, [&](const std::stop_token& stop) { return reload.check(stop); });
-    if (code != begins_anew) {
-      return code;
-    }
-    reload.begin_anew(argv);
-    return exit_clean;
-  } catch (const StartError& error) {
-    print_start_error(loaded, error);
-    go_back(error.what());
-    return error.exit_code;
-  }
-}
-
-/// @param argv of main()
-int run(const CommandLine& arguments, char** argv) {
+int run(const CommandLine& arguments, char** argv, Run& running) {
   const InheritedConfig inherited = inherit_config();
-  const auto go_back = [&](const std::string& why) {
-    if (inherited.fallback) {
+  if (inherited.fallback) {
+    running.go_back = [fallback = *inherited.fallback, argv](const std::string& why) {
       spdlog::error("the new configuration failed, returning to the previous one: {}", why);
-      go_back_to(*inherited.fallback, argv);
-    }
-  };
-  try {
-    return run(arguments, inherited.text ? *inherited.text : read_config(arguments.config), argv, go_back);
-  } catch (const std::exception& error) {
-    go_back(error.what());
-    throw;
+      go_back_to(fallback, argv);
+    };
   }
+  const std::string text = inherited.text ? *inherited.text : read_config(arguments.config);
+  const LoadedConfig& loaded = running.loaded.emplace(load_and_log(arguments, text));
+  Reload reload(loaded.config, text);
+  const int code = run_daemon(loaded.config, [&](const std::stop_token& stop) { return reload.check(stop); });
+  if (code != begins_anew) {
+    return code;
+  }
+  reload.begin_anew(argv);
+  return exit_clean;
 }
 
-int replay(const CommandLine& arguments) {
-  LoadedConfig loaded;
+int replay(const CommandLine& arguments, Run& running) {
   if (arguments.config.empty()) {
     set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
-  } else {
-    loaded = load_and_log(arguments, read_config(arguments.config));
+    return replay(arguments.log, std::nullopt, arguments.timing);
   }
-  try {
-    return replay(arguments.log, arguments.config.empty() ? std::nullopt : std::optional(loaded.config),
-                  arguments.timing);
-  } catch (const StartError& error) {
-    if (arguments.config.empty()) {
-      print_error(error.what());
-    } else {
-      print_start_error(loaded, error);
-    }
-    return error.exit_code;
-  }
-}
-
-int exit_code_of(const ConfigError& error) {
-  return error.only_of_network() ? exit_network : exit_config;
+  running.loaded = load_and_log(arguments, read_config(arguments.config));
+  return replay(arguments.log, running.loaded->config, arguments.timing);
 }
 
 /// @throws ConfigError, unless it is printed as JSON
@@ -239,61 +204,59 @@ int check(const CommandLine& arguments) {
       throw;
     }
     json_goes_out(report_json(arguments.config, error));
-    return exit_code_of(error);
+    return exit_code_of(error.kind);
   }
 }
 
-int render_offline(const OfflineArguments& arguments) {
-  const LoadedConfig loaded = load_config(arguments.config(), head_types());
+int render_offline(const OfflineArguments& arguments, Run& running) {
+  const LoadedConfig& loaded = running.loaded.emplace(load_config(arguments.config(), head_types()));
   for (const std::string& warning : loaded.warning_lines()) {
     print_error("warning: " + warning);
   }
-  try {
-    return render_trajectory(loaded, arguments.options());
-  } catch (const StartError& error) {
-    print_start_error(loaded, error);
-    return error.exit_code;
-  }
+  return render_trajectory(loaded, arguments.options());
 }
 
-/// Runs a command and maps its exceptions to exit codes.
-template <typename Command>
-int guarded(const Command& command) {
+/// Any exception as an Error: those of libraries and of rooms below the server have no kind of their own.
+Error as_error(const std::exception& error) {
+  if (const auto* known = dynamic_cast<const Error*>(&error)) {
+    return *known;
+  }
+  if (dynamic_cast<const pose::TrajectoryError*>(&error) != nullptr) {
+    return {ErrorKind::configuration, error.what()};
+  }
+  if (dynamic_cast<const render::RequestError*>(&error) != nullptr) {
+    return {ErrorKind::configuration, fmt::format("cannot render: {}", error.what())};
+  }
+  if (dynamic_cast<const render::RendererError*>(&error) != nullptr) {
+    return {ErrorKind::renderer, fmt::format("renderer: {}", error.what())};
+  }
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
+    return {ErrorKind::usage, error.what()};  // of an option whose meaning depends on the configuration
+  }
+  if (const auto sentence = exhausted(error)) {
+    return {ErrorKind::exhausted, *sentence};
+  }
+  return {ErrorKind::internal, fmt::format("defect: {}", error.what())};
+}
+
+/// Runs a command; prints its error, if any, and maps it to an exit code.
+int guarded(Run& running, const std::function<int()>& command) {
   try {
     return command();
-  } catch (const ConfigError& error) {
+  } catch (const std::exception& exception) {
+    const Error error = as_error(exception);
     for (const std::string& line : error.lines()) {
-      print_error(line);
+      print_error(running.loaded && !error.where.empty() ? running.loaded->problem_with(error.where, line)
+                                                         : line);
     }
-    return exit_code_of(error);
-  } catch (const pose::TrajectoryError& error) {
-    print_error(error.what());
-    return exit_config;
-  } catch (const render::RequestError& error) {
-    print_error(fmt::format("cannot render: {}", error.what()));
-    return exit_config;
-  } catch (const TooManyPings& error) {
-    print_error(error.what());
-    return exit_usage;
-  } catch (const OutputError& error) {
-    print_error(error.what());
-    return exit_output;
-  } catch (const CLI::ValidationError& error) {  // from an option whose meaning depends on the configuration
-    print_error(error.what());
-    return exit_usage;
-  } catch (const LogError& error) {
-    print_error(error.what());
-    return exit_config;
-  } catch (const render::RendererError& error) {
-    print_error(fmt::format("renderer: {}", error.what()));
-    return exit_renderer;
-  } catch (const std::exception& error) {
-    if (const auto sentence = exhausted(error)) {
-      print_error(*sentence);
-      return exit_exhausted;
+    const int code = exit_code_of(error.kind);
+    if (const auto go_back = std::exchange(running.go_back, {})) {
+      return guarded(running, [&] {
+        go_back(exception.what());
+        return code;
+      });
     }
-    print_error(fmt::format("defect: {}", error.what()));
-    return exit_internal;
+    return code;
   }
 }
 
@@ -455,9 +418,10 @@ int main_program(int argc, char** argv) {
     ignore_harmless_signals();
     let_orders_to_end();
   }
-  return guarded([&] {
+  Run running;
+  return guarded(running, [&] {
     if (run_command->parsed()) {
-      return run(arguments, argv);
+      return run(arguments, argv, running);
     }
     if (demo_command->parsed()) {
       if (arguments.demo_s > 0) {
@@ -466,14 +430,14 @@ int main_program(int argc, char** argv) {
       return run_demo(arguments.demo);
     }
     if (render_command->parsed()) {
-      return render_offline(offline);
+      return render_offline(offline, running);
     }
     if (info_command->parsed()) {
       info(arguments.log, arguments.info);
       return static_cast<int>(exit_clean);
     }
     if (replay_command->parsed()) {
-      return replay(arguments);
+      return replay(arguments, running);
     }
     if (check_command->parsed()) {
       return check(arguments);

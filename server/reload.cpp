@@ -130,8 +130,8 @@ std::optional<std::string> missing(const LoadedConfig& wanted, const DaemonConfi
                                                                      in_use.recording->directory, ignored))) {
     try {
       try_recording_into(recording->directory);
-    } catch (const RecordingError& error) {
-      return wanted.problem_with("recording.directory", error.what());
+    } catch (const Error& error) {
+      return wanted.problem_with(error.where, error.what());
     }
   }
   return std::nullopt;
@@ -172,8 +172,6 @@ std::optional<std::string> Reload::check(const std::stop_token& stop) {
     }
     checked_ = std::move(text);
     return std::nullopt;
-  } catch (const ConfigError& error) {
-    return error.lines().front();
   } catch (const std::exception& error) {
     return error.what();
   }

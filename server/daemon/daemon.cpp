@@ -37,6 +37,7 @@
 #include "server/devices/ping_dump.hpp"
 #include "server/devices/playback.hpp"
 #include "server/diagnosis/pose_stream.hpp"
+#include "server/error/error.hpp"
 #include "server/net/interfaces.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/pose_history.hpp"
@@ -57,15 +58,6 @@ std::string head_key(std::size_t index, const std::string& rest) {
   return fmt::format("heads[{}].{}", index, rest);
 }
 
-std::unique_ptr<PoseInputs> make_inputs(asio::io_context& io, const DaemonConfig& config, const Clock& clock,
-                                        const PoseSink& sink, const PoseHold& hold) {
-  try {
-    return std::make_unique<PoseInputs>(io, config.poses, clock, sink, hold);
-  } catch (const PoseSourceError& error) {
-    throw StartError(error.key, exit_config, error.what());
-  }
-}
-
 constexpr unsigned threads_of_opengl = 6;  // Mesa's, in addition to one per core
 
 // By head; null for a head that dumps nothing.
@@ -77,7 +69,7 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>&
       try {
         dumps[i] = std::make_unique<PingDump>(*head.dump_directory, head.name);
       } catch (const std::exception& error) {
-        throw StartError(head_key(i, "dump.directory"), exit_config, error.what());
+        throw Error(ErrorKind::configuration, error.what(), head_key(i, "dump.directory"));
       }
     }
   }
@@ -86,14 +78,8 @@ std::vector<std::unique_ptr<PingDump>> make_dumps(const std::vector<HeadConfig>&
 
 // Null if nothing is recorded.
 std::unique_ptr<Recorder> make_recorder(const DaemonConfig& config) {
-  if (!config.recording) {
-    return nullptr;
-  }
-  try {
-    return std::make_unique<Recorder>(*config.recording, recorded_heads(config.heads));
-  } catch (const RecordingError& error) {
-    throw StartError("recording.directory", exit_config, error.what());
-  }
+  return config.recording ? std::make_unique<Recorder>(*config.recording, recorded_heads(config.heads))
+                          : nullptr;
 }
 
 // Null if no page is served.
@@ -104,7 +90,7 @@ std::unique_ptr<WebServer> make_page(const DaemonConfig& config) {
   try {
     return std::make_unique<WebServer>(*config.web);
   } catch (const SocketError& error) {
-    throw StartError("web.bind", exit_network, error.what());
+    throw Error(error.kind, error.what(), "web.bind");
   }
 }
 
@@ -137,7 +123,6 @@ class Daemon {
   void say_what_the_gpu_may_miss(const std::vector<HeadConfig>& heads) const;
   std::string engine_text() const;
   void warm_up(const std::vector<HeadConfig>& heads) const;
-  void start_inputs();
   void poses_changed();
   void look_at_streams();
   void look_at_addresses();
@@ -189,8 +174,8 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       playback_timer_(io_),
       poses_(config.poses),
       intake_(io_, poses_, {[this] { poses_changed(); }, [this] { return pose_lead(); }}),
-      inputs_(make_inputs(
-          io_, config, clock_,
+      inputs_(std::make_unique<PoseInputs>(
+          io_, config.poses, clock_,
           [this](const pose::PoseSample& sample, TimePoint arrival) { intake_.take(sample, arrival); },
           [this] { return intake_.hold(); })),
       dumps_(make_dumps(config.heads)),
@@ -215,8 +200,8 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       heads_.push_back(std::make_unique<Head>(config.heads[i], static_cast<int>(i), services));
     } catch (const SocketError& error) {
       const SocketTrouble trouble = trouble_of(error, type_of(config.heads[i]));
-      throw StartError(head_key(i, trouble.key), trouble.of_network ? exit_network : exit_config,
-                       error.what());
+      throw Error(trouble.of_network ? ErrorKind::network : ErrorKind::configuration, error.what(),
+                  head_key(i, trouble.key));
     }
   }
   for (PlannedSocket& socket : planned_sockets(config)) {
@@ -224,7 +209,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
       other_sockets_.push_back(std::move(socket));
     }
   }
-  start_inputs();
+  inputs_->start();
   warm_up(config.heads);
   say_what_the_gpu_may_miss(config.heads);
   start_page(config, world);
@@ -337,14 +322,6 @@ RenderServiceHooks Daemon::hooks() {
     }
   };
   return hooks;
-}
-
-void Daemon::start_inputs() {
-  try {
-    inputs_->start();
-  } catch (const PoseSourceError& error) {
-    throw StartError(error.key, exit_network, error.what());
-  }
 }
 
 void Daemon::poses_changed() {
@@ -597,14 +574,14 @@ render::World load_world_of(DaemonConfig& config) {
       spdlog::info("world {}: left out: {}", world.name, line);
     }
     for (const ConfigProblem& problem : resolve_mounts(config, world)) {
-      throw StartError(problem.key, exit_config, problem.message);
+      throw Error(ErrorKind::configuration, problem.message, problem.key);
     }
     return world;
   } catch (const render::WorldError& error) {
     for (const std::string& line : error.warnings) {
       spdlog::warn("{}", line);
     }
-    throw StartError("world.file", exit_config, error.what(), error.more);
+    throw Error(ErrorKind::configuration, error.what(), "world.file", error.more);
   }
 }
 
@@ -624,7 +601,8 @@ int run_daemon(DaemonConfig config, const ReloadCheck& may_begin_anew) {
     try {
       check_sampling_of(head);
     } catch (const render::RequestError& error) {
-      throw StartError("sampling", exit_config, fmt::format("head '{}': {}", head.name, error.what()));
+      throw Error(ErrorKind::configuration, fmt::format("head '{}': {}", head.name, error.what()),
+                  "sampling");
     }
   }
   const render::RendererOptions options = renderer_options(config);

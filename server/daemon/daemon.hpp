@@ -4,11 +4,8 @@
 
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <stop_token>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "renderer/renderer_options.hpp"
 #include "renderer/scene/world.hpp"
@@ -19,24 +16,13 @@ namespace sonard::server {
 
 class Playback;
 
-/// A configuration value that proved unusable at start: world missing, address taken. what() is one line.
-struct StartError : std::runtime_error {
-  StartError(std::string config_key, int code, const std::string& what,
-             std::vector<std::string> what_else = {})
-      : std::runtime_error(what), key(std::move(config_key)), exit_code(code), more(std::move(what_else)) {}
-
-  std::string key;                ///< "heads[0].network.bind"
-  int exit_code;                  ///< of server/daemon/exit_codes.hpp
-  std::vector<std::string> more;  ///< other problems with the same key
-};
-
 /// Reads the world of a configuration.
 /// @throws render::WorldError, also if the world has no triangles and is not declared open water
 render::World read_world(const DaemonConfig& config);
 
 /// Reads the world and resolves configuration values that depend on it (resolve_mounts()). Logs warnings and
 /// ignored parts of the world.
-/// @throws StartError
+/// @throws Error
 render::World load_world_of(DaemonConfig& config);
 
 /// Options of the renderer for a configuration.
@@ -53,6 +39,7 @@ using ReloadCheck = std::function<std::optional<std::string>(const std::stop_tok
 /// @param may_begin_anew called at SIGHUP. Empty: SIGHUP only logs a line.
 /// @return exit_clean; begins_anew; exit_renderer if the renderer fails while serving; exit_internal;
 /// exit_exhausted
+/// @throws Error if a value of the configuration proves unusable: a world is missing, an address is taken
 int run_daemon(DaemonConfig config, const ReloadCheck& may_begin_anew = {});
 
 inline constexpr int begins_anew = -1;  ///< not an exit code: the daemon has ended and must be started again

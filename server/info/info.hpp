@@ -15,7 +15,7 @@ struct InfoOptions {
   std::optional<double> utc_offset_h;             ///< of a .glf's times; nullopt: this machine's zone
 };
 
-/// Prints the contents to standard output, and problems of the log to standard error. @throws LogError
+/// Prints the contents to standard output, and problems of the log to standard error. @throws Error
 void info(const std::filesystem::path& log, const InfoOptions& options);
 
 }  // namespace sonard::server

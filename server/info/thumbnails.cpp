@@ -40,7 +40,7 @@ void write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
   if (!std::ofstream(path, std::ios::binary)
            .write(png.data(), static_cast<std::streamsize>(png.size()))
            .flush()) {
-    throw LogError(fmt::format("{}: cannot be written", path.string()));
+    throw Error(ErrorKind::configuration, fmt::format("{}: cannot be written", path.string()));
   }
 }
 
@@ -103,7 +103,8 @@ std::uint64_t write_thumbnails(const LogReader& reader, const LogFile& file,
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw LogError(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+    throw Error(ErrorKind::configuration,
+                fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   }
   std::uint64_t written = 0;
   for (const LoggedHead& head : reader.heads()) {

@@ -12,7 +12,7 @@ namespace sonard::server {
 /// Writes each `every`-th ping of each multibeam head as a fan seen from above, and each `every`-th sweep of
 /// each scanning head (recorded_sweeps.hpp): FOLDER/<name or id>_000012.png, where 0 is the head's first.
 /// Creates the folder; overwrites files.
-/// @return number of files. @throws LogError naming the file that cannot be written or the head that cannot
+/// @return number of files. @throws Error naming the file that cannot be written or the head that cannot
 /// be drawn
 std::uint64_t write_thumbnails(const LogReader& reader, const LogFile& file,
                                const std::filesystem::path& folder, std::uint64_t every);

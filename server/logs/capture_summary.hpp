@@ -7,7 +7,7 @@
 namespace sonard::server {
 
 /// Adds the pings that `ping_in` finds, with their capture times; other packets are counted by transport.
-/// @throws LogError if the file is broken at its start
+/// @throws Error if the file is broken at its start
 void summarise_capture(LogSummary& log, const LogFile& file, const PingFinder& ping_in);
 
 }  // namespace sonard::server

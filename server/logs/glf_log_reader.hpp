@@ -14,7 +14,7 @@ namespace sonard::server {
 class GlfLogReader final : public LogReader {
  public:
   /// Unpacks each image once: a damaged image is not a ping, but a problem().
-  /// @throws LogError
+  /// @throws Error
   explicit GlfLogReader(const LogFile& file);
 
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;

@@ -61,8 +61,8 @@ LogFile::LogFile(std::filesystem::path path) : path_(std::move(path)), file_(pat
   kind_ = find_kind();
 }
 
-LogError LogFile::error(std::string_view what) const {
-  return LogError(fmt::format("{}: {}", path_.string(), what));
+Error LogFile::error(std::string_view what) const {
+  return {ErrorKind::configuration, fmt::format("{}: {}", path_.string(), what)};
 }
 
 LogKind LogFile::find_kind() const {

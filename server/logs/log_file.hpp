@@ -5,17 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
-#include <stdexcept>
 #include <string_view>
 
+#include "server/error/error.hpp"
 #include "server/logs/mapped_file.hpp"
 
 namespace sonard::server {
-
-/// A log that cannot be used. what() is one line that names the file.
-struct LogError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 enum class LogKind {
   glf,     ///< packed (docs/logs.md 1)
@@ -32,15 +27,15 @@ class LogFile {
  public:
   /// Detects the kind by the first bytes, whatever the file's name. If they are unknown, by its name, because
   /// a log may be damaged there.
-  /// @throws LogError if the file cannot be read or is of no known kind
+  /// @throws Error if the file cannot be read or is of no known kind
   explicit LogFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
   std::span<const std::uint8_t> bytes() const { return file_.bytes(); }
   LogKind kind() const { return kind_; }
 
-  /// "PATH: what"
-  LogError error(std::string_view what) const;
+  /// A log that cannot be used: "PATH: what".
+  Error error(std::string_view what) const;
 
  private:
   LogKind find_kind() const;

@@ -52,7 +52,7 @@ class LogReader {
   /// In the order of their first pings.
   const std::vector<LoggedHead>& heads() const { return heads_; }
   /// bins * beams samples, bin after bin from the nearest, beams from port to starboard.
-  /// @throws LogError if they cannot be unpacked
+  /// @throws Error if they cannot be unpacked
   virtual std::vector<std::uint8_t> samples(const LoggedPing& ping) const = 0;
   /// Problems of the log, one phrase each: cut, not closed, damaged inside.
   virtual std::vector<std::string> problems() const = 0;
@@ -68,7 +68,7 @@ class LogReader {
   std::vector<LoggedHead> heads_;
 };
 
-/// @throws LogError if `file` is broken at its start or its kind holds no images (.pcapng). Undecodable pings
+/// @throws Error if `file` is broken at its start or its kind holds no images (.pcapng). Undecodable pings
 /// are left out. `file` must outlive the recording.
 std::unique_ptr<LogReader> open_log(const LogFile& file);
 

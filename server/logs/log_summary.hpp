@@ -77,7 +77,7 @@ class CaptureReader {
 using PingFinder = std::function<std::optional<CapturedPing>(std::span<const std::uint8_t> datagram)>;
 
 /// @param ping_in finds the pings of a .pcapng
-/// @throws LogError if the log is broken at its start
+/// @throws Error if the log is broken at its start
 LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
 
 /// Adds a ping; times may come in any order, because summarise() sorts them.

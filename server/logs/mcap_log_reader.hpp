@@ -14,7 +14,7 @@ namespace sonard::server {
 
 class McapLogReader final : public LogReader {
  public:
-  /// @throws LogError
+  /// @throws Error
   explicit McapLogReader(const LogFile& file);
 
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override;

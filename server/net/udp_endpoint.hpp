@@ -7,9 +7,10 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "server/error/error.hpp"
 #include "server/net/datagram.hpp"
 
 namespace boost::asio {
@@ -19,8 +20,8 @@ class io_context;
 namespace sonard::server {
 
 /// The OS refused a socket. what() has operation, address and reason.
-struct SocketError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+struct SocketError : Error {
+  explicit SocketError(const std::string& text) : Error(ErrorKind::network, text) {}
 };
 
 /// Throws with a text like "cannot bind UDP 127.0.0.1:5: Address already in use" for the operation "bind UDP

@@ -14,8 +14,8 @@ std::vector<int> first_pings_of(std::size_t frames, Survey& survey) {
   std::vector<int> first_pings;
   for (int pings = static_cast<int>(frames); first_pings.size() <= frames; pings *= 2) {
     if (pings > most_pings) {
-      throw TooManyPings(
-          fmt::format("{} poses are too many (expected {} pings at most)", frames, most_pings));
+      throw Error(ErrorKind::usage,
+                  fmt::format("{} poses are too many (expected {} pings at most)", frames, most_pings));
     }
     first_pings = survey.frames(pings);
   }

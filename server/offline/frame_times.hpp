@@ -11,7 +11,7 @@ namespace sonard::server {
 /// Times at the requested rate, or else at the head's highest rate. With one frame for each pose
 /// (OfflineOptions), all pings of a frame are at the stamp of its pose.
 /// @param survey gives the number of pings of each frame
-/// @throws TooManyPings
+/// @throws Error
 PingTimes frame_times(const VehicleTrajectory& trajectory, const OfflineOptions& options, Survey& survey);
 
 }  // namespace sonard::server

@@ -26,9 +26,9 @@ class GlfFile {
           std::uint64_t most_dat_size = usual_most_dat_size);
   ~GlfFile();
 
-  /// @throws OutputError
+  /// @throws Error
   void add(const glf::ImageRecord& image);
-  /// @return the names of the logs. @throws OutputError
+  /// @return the names of the logs. @throws Error
   std::vector<std::string> close();
 
  private:

@@ -46,14 +46,14 @@ void McapFile::publish(const std::string& name) {
   log_.close();
   check();
   if (std::rename((folder_.path() / part_name).c_str(), (folder_.path() / name).c_str()) != 0) {
-    throw OutputError(folder_.path() / name, "cannot create it: " + std::generic_category().message(errno));
+    throw output_error(folder_.path() / name, "cannot create it: " + std::generic_category().message(errno));
   }
   spdlog::info("render: wrote {}", (folder_.path() / name).string());
 }
 
 void McapFile::check() const {
   if (log_.file().failed()) {
-    throw OutputError(folder_.path(), "cannot write the .mcap file in it: " + log_.file().error().message());
+    throw output_error(folder_.path(), "cannot write the .mcap file in it: " + log_.file().error().message());
   }
 }
 

@@ -17,13 +17,13 @@ namespace sonard::server {
 class McapFile {
  public:
   /// @param heads of the configuration; must outlive this object
-  /// @throws OutputError
+  /// @throws Error
   McapFile(const OutputFolder& folder, const std::vector<HeadConfig>& heads);
 
   /// @param head index in the configuration
-  /// @throws OutputError
+  /// @throws Error
   void add(int head, const PingSent& ping);
-  /// @throws OutputError
+  /// @throws Error
   void publish(const std::string& name);
 
  private:

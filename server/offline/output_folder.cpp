@@ -29,7 +29,7 @@ constexpr const char* lock_name = ".part-lock";
 constexpr mode_t file_mode = 0644;  // mkstemp creates files that only the owner can read
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& doing) {
-  throw OutputError(path, "cannot " + doing + ": " + std::generic_category().message(errno));
+  throw output_error(path, "cannot " + doing + ": " + std::generic_category().message(errno));
 }
 
 bool is_part(const std::string& name) {
@@ -99,6 +99,10 @@ std::string differences(const std::string& before, const std::string& now) {
 
 }  // namespace
 
+Error output_error(const std::filesystem::path& path, const std::string& what) {
+  return {ErrorKind::output, path.string() + ": " + what};
+}
+
 PartFile::PartFile(const std::filesystem::path& folder) : folder_(folder) {
   std::string name = (folder / (std::string(part_prefix) + "XXXXXX")).string();
   file_ = mkstemp(name.data());
@@ -155,7 +159,7 @@ OutputFolder::OutputFolder(std::filesystem::path folder) : folder_(std::move(fol
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) {
-    throw OutputError(folder_, "cannot create the folder: " + error.message());
+    throw output_error(folder_, "cannot create the folder: " + error.message());
   }
 }
 
@@ -173,7 +177,7 @@ std::string OutputFolder::read(const std::string& name) const {
   std::ifstream file(folder_ / name, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
   if (!file) {
-    throw OutputError(folder_ / name, "cannot be read");
+    throw output_error(folder_ / name, "cannot be read");
   }
   return bytes;
 }
@@ -195,16 +199,16 @@ void OutputFolder::claim(const std::string& manifest, bool overwrite) const {
       return;
     }
     if (!overwrite) {
-      throw OutputError(folder_ / manifest_name,
-                        fmt::format("the folder contains another run: {} (expected the same settings and "
-                                    "files, another folder, or --overwrite)",
-                                    differences(before, manifest)));
+      throw output_error(folder_ / manifest_name,
+                         fmt::format("the folder contains another run: {} (expected the same settings and "
+                                     "files, another folder, or --overwrite)",
+                                     differences(before, manifest)));
     }
   } else if (!overwrite && !names_of(is_frame_or_log).empty()) {
-    throw OutputError(folder_,
-                      fmt::format("the folder contains frames or logs, but no {} of their run (expected "
-                                  "an empty folder, another folder, or --overwrite)",
-                                  manifest_name));
+    throw output_error(folder_,
+                       fmt::format("the folder contains frames or logs, but no {} of their run (expected "
+                                   "an empty folder, another folder, or --overwrite)",
+                                   manifest_name));
   }
   if (overwrite) {
     remove_if(is_frame_or_log);
@@ -225,7 +229,7 @@ std::vector<std::string> OutputFolder::names_of(bool (*wanted)(const std::string
     }
   }
   if (error) {
-    throw OutputError(folder_, "cannot be listed: " + error.message());
+    throw output_error(folder_, "cannot be listed: " + error.message());
   }
   return names;
 }

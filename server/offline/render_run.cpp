@@ -65,8 +65,8 @@ std::size_t chosen_head(const LoadedConfig& loaded, const std::string& name) {
       return i;
     }
   }
-  throw StartError("heads", exit_config,
-                   fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")));
+  throw Error(ErrorKind::configuration,
+              fmt::format("no head is named '{}' (expected {})", name, fmt::join(names, " or ")), "heads");
 }
 
 /// The configuration with the seeds of the command line, if given, instead of the head's own.
@@ -88,7 +88,7 @@ HeadPlace place_of(const std::vector<HeadConfig>& heads, std::size_t head) {
   return place;
 }
 
-/// @throws StartError, pose::TrajectoryError
+/// @throws Error, pose::TrajectoryError
 VehicleTrajectory trajectory_with_bodies(const OfflineOptions& options, const render::World& world,
                                          const std::string& vehicle_model) {
   VehicleTrajectory trajectory(pose::load_trajectory(options.trajectory, options.axes), vehicle_model);
@@ -102,9 +102,10 @@ VehicleTrajectory trajectory_with_bodies(const OfflineOptions& options, const re
           names.push_back(body.name);
         }
       }
-      throw StartError(
-          "world.file", exit_config,
-          fmt::format("--body: '{}' cannot be moved (expected one of {})", way.body, fmt::join(names, ", ")));
+      throw Error(
+          ErrorKind::configuration,
+          fmt::format("--body: '{}' cannot be moved (expected one of {})", way.body, fmt::join(names, ", ")),
+          "world.file");
     }
     trajectory.add({way.body, pose::load_trajectory(way.trajectory, options.axes)});
   }
@@ -170,8 +171,8 @@ std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, s
                                      options, truth);
 }
 
-OutputError not_of_this_frame(const std::filesystem::path& file) {
-  return {file, "does not contain the samples of this frame (delete it to render it again)"};
+Error not_of_this_frame(const std::filesystem::path& file) {
+  return output_error(file, "does not contain the samples of this frame (delete it to render it again)");
 }
 
 std::uint32_t crc_of(const std::filesystem::path& path) {
@@ -232,25 +233,25 @@ render::RendererOptions tested(render::RendererOptions options) {
   return options;
 }
 
-/// @throws StartError, pose::TrajectoryError if there are no frames
+/// @throws Error, also if there are no frames
 std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, std::size_t head,
                                          const VehicleTrajectory& trajectory, const OfflineOptions& options,
                                          BodyTruth* truth) {
   try {
     check_sampling_of(heads[head]);
   } catch (const render::RequestError& error) {
-    throw StartError("sampling", exit_config, error.what());
+    throw Error(ErrorKind::configuration, error.what(), "sampling");
   }
   std::unique_ptr<FrameSource> frames = make_source(heads, head, trajectory, options, truth);
   if (frames->count() == 0) {
-    throw pose::TrajectoryError(fmt::format("{}: ends before the first sweep of head '{}' does",
-                                            options.trajectory.string(), heads[head].name));
+    throw Error(ErrorKind::configuration, fmt::format("{}: ends before the first sweep of head '{}' does",
+                                                      options.trajectory.string(), heads[head].name));
   }
   return frames;
 }
 
 /// The world; if the head hides the vehicle, the vehicle's body has no parts.
-/// @throws StartError
+/// @throws Error
 render::World world_without_hidden(DaemonConfig& config, std::size_t head) {
   render::World world = load_world_of(config);
   for (render::Body& body : world.bodies) {
@@ -277,11 +278,12 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       folder_(options.out) {
   warn_of_rate(*frames_, config_.heads[head_].name);
   if (options.clean_pictures && options.truth && world_.bodies.size() > 255) {
-    throw StartError(
-        "world.file", exit_config,
+    throw Error(
+        ErrorKind::configuration,
         fmt::format("--clean-png: a mask has 8 bits, too few for the {} bodies of the world (expected at "
                     "most 255; omit --truth or --clean-png)",
-                    world_.bodies.size()));
+                    world_.bodies.size()),
+        "world.file");
   }
   const OutputFolder::Lock lock(folder_);
   choose_engine();

@@ -10,7 +10,7 @@ namespace sonard::server {
 /// Renders the missing frames of this process. The process that finds all frames of all processes at its end
 /// also makes the logs. docs/offline.md describes the files.
 /// @return exit_clean
-/// @throws StartError, OutputError, pose::TrajectoryError, render::RequestError, render::RendererError
+/// @throws Error, pose::TrajectoryError, render::RequestError, render::RendererError
 int render_trajectory(const LoadedConfig& loaded, const OfflineOptions& options);
 
 }  // namespace sonard::server

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "server/error/error.hpp"
 #include "server/pose/to_render.hpp"
 
 namespace sonard::server {
@@ -29,7 +30,8 @@ int PingTimes::count_until(std::int64_t end_ns) const {
   }
   const double periods = static_cast<double>(end_ns - start_ns) / period_ns;
   if (!(periods < most_pings)) {
-    throw TooManyPings(fmt::format("{:.0f} pings are too many (expected {} at most)", periods, most_pings));
+    throw Error(ErrorKind::usage,
+                fmt::format("{:.0f} pings are too many (expected {} at most)", periods, most_pings));
   }
   auto last = static_cast<int>(periods);
   // The quotient may be one off if a ping is exactly at the end.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,11 +15,6 @@ namespace sonard::server {
 /// in a run
 inline constexpr int most_pings = 10'000'000;
 
-/// More pings than can be numbered. what() is one line.
-struct TooManyPings : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 /// Pings at regular times of a trajectory, from its first stamp on, or at given stamps.
 struct PingTimes {
   std::int64_t start_ns = 0;
@@ -29,7 +23,7 @@ struct PingTimes {
 
   std::int64_t at(std::int64_t ping) const;
   /// Number of pings up to and including `end_ns`; at least one.
-  /// @throws TooManyPings
+  /// @throws Error if there are more pings than can be numbered
   int count_until(std::int64_t end_ns) const;
 };
 

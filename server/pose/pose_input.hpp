@@ -57,7 +57,7 @@ class PoseInput {
   const PoseSourceType& type() const { return type_; }
 
   /// For `sonard check`: "UDP 127.0.0.1:14600".
-  /// @throws PoseSourceError if the input needs a file that cannot be used
+  /// @throws Error if the input needs a file that cannot be used
   virtual std::string summary() const = 0;
   /// The socket that it binds; nullopt: it binds none.
   virtual std::optional<PlannedSocket> socket() const { return std::nullopt; }
@@ -71,7 +71,7 @@ class PoseInput {
   }
   /// @param clock outlives the source, like `io`
   /// @param hold may be empty: publishers then never wait
-  /// @throws PoseSourceError
+  /// @throws Error
   virtual std::unique_ptr<PoseSource> open(boost::asio::io_context& io, const Clock& clock, PoseSink sink,
                                            PoseHold hold) const = 0;
 

@@ -23,11 +23,11 @@ namespace sonard::server {
 class PoseInputs {
  public:
   /// Every pose of every source goes to `sink`. `hold` may be empty: publishers then never wait.
-  /// @throws PoseSourceError
+  /// @throws Error
   PoseInputs(boost::asio::io_context& io, const PoseConfig& config, const Clock& clock, PoseSink sink,
              PoseHold hold = {}, std::chrono::milliseconds report_period = std::chrono::seconds{10});
 
-  /// @throws PoseSourceError
+  /// @throws Error
   void start();
   void stop();
 

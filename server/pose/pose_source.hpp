@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "protocol/pose/pose_codec.hpp"
@@ -15,15 +13,6 @@
 #include "server/pose/publisher_id.hpp"
 
 namespace sonard::server {
-
-/// A source cannot be used: the OS refused a socket, or a file is wrong. what() is one line with source,
-/// address or file, operation and reason.
-struct PoseSourceError : std::runtime_error {
-  explicit PoseSourceError(const std::string& what, std::string config_key = "poses")
-      : std::runtime_error(what), key(std::move(config_key)) {}
-
-  std::string key;  ///< of the configuration
-};
 
 /// Receives each pose and the time of its arrival. Called on the I/O thread.
 using PoseSink = std::function<void(const pose::PoseSample&, TimePoint arrival)>;
@@ -58,7 +47,7 @@ class PoseSource {
   virtual ~PoseSource() = default;
 
   /// Starts to deliver poses. Called once.
-  /// @throws PoseSourceError
+  /// @throws Error
   virtual void start() = 0;
   virtual void stop() = 0;
   /// "pose stream udp 127.0.0.1:14600"; after start(), with the port that the kernel chose.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "protocol/pose/pose_codec.hpp"
-#include "server/pose/pose_source.hpp"
+#include "server/error/error.hpp"
 
 namespace sonard::server {
 
@@ -19,7 +19,7 @@ void UdpListener::start(Handler handler) {
   try {
     socket_.emplace(io_, local_, UdpEndpoint::Sharing::alone, pose::max_message_bytes);
   } catch (const SocketError& error) {
-    throw PoseSourceError(name_ + ": " + error.what());
+    throw Error(ErrorKind::network, name_ + ": " + error.what(), "poses");
   }
   local_ = socket_->local_endpoint();
   open_ = true;

@@ -25,7 +25,7 @@ class UdpListener {
               const Clock& clock);
 
   /// Binds and listens. Called once.
-  /// @throws PoseSourceError
+  /// @throws Error
   void start(Handler handler);
   /// Closes the socket; the handler is not called any more.
   void close();

@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "server/error/error.hpp"
 #include "server/recording/glf_packing.hpp"
 #include "server/recording/log_set.hpp"
 #include "server/recording/recovery.hpp"
@@ -37,6 +38,10 @@ constexpr std::chrono::seconds sync_period{1};
 constexpr std::chrono::milliseconds clocks_agree{1};
 constexpr std::chrono::seconds report_period{2};
 
+[[noreturn]] void fail(const std::string& text) {
+  throw Error(ErrorKind::configuration, text, "recording.directory");
+}
+
 /// An exclusive lock on a folder; it ends with the process.
 class DirectoryLock {
  public:
@@ -51,10 +56,10 @@ class DirectoryLock {
       error = {errno, std::generic_category()};
     }
     if (error) {
-      throw RecordingError(fmt::format("cannot write into {}: {}", directory.string(), error.message()));
+      fail(fmt::format("cannot write into {}: {}", directory.string(), error.message()));
     }
     if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-      throw RecordingError(fmt::format("another daemon records into {}", directory.string()));
+      fail(fmt::format("another daemon records into {}", directory.string()));
     }
   }
   ~DirectoryLock() { ::close(fd_); }

@@ -14,12 +14,7 @@
 
 namespace sonard::server {
 
-/// The folder of the logs cannot be used. what() has its name and the reason.
-struct RecordingError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// Locks a folder for a moment, if it exists. @throws RecordingError if another daemon records into it
+/// Locks a folder for a moment, if it exists. @throws Error if another daemon records into it
 void try_recording_into(const std::filesystem::path& directory);
 
 /// Counters; they only grow.
@@ -49,7 +44,7 @@ class Recorder {
 
   /// Creates the folder, locks it against other daemons, recovers its logs (recovery.hpp), then starts the
   /// thread.
-  /// @throws RecordingError
+  /// @throws Error
   Recorder(const RecordingConfig& config, std::vector<HeadToRecord> heads);
   /// Calls stop().
   ~Recorder();

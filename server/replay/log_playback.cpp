@@ -29,7 +29,7 @@ class LogRenderer final : public PingRenderer {
   render::PingSamples render_ping(const render::PingRequest& request, int head) override {
     try {
       return samples_of(*heads_.at(static_cast<std::size_t>(head)).logged, request.ping_number);
-    } catch (const LogError& error) {
+    } catch (const Error& error) {
       throw render::RequestError(error.what());
     }
   }

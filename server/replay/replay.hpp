@@ -12,7 +12,7 @@ namespace sonard::server {
 /// Serves until the last ping is sent or a signal arrives.
 /// @param config addresses and timing of the heads; nullopt: on loopback
 /// @return exit code of serve()
-/// @throws LogError, StartError
+/// @throws Error, Error
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing);
 
 }  // namespace sonard::server

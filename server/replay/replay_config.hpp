@@ -17,14 +17,14 @@ struct ReplayConfig {
 
 /// Heads on loopback, from 127.0.0.2 up: first the multibeam heads, then the scanning ones. The log gives
 /// their type, by name or by its format.
-/// @throws LogError if a head is of an unknown type
+/// @throws Error if a head is of an unknown type
 DaemonConfig loopback_config(const std::vector<LoggedHead>& logged, const LogFile& file);
 
 /// Gives every head of `config` the recorded head with its name, or else with its device ID, among the heads
 /// that are scanning, or not, as it is. If `config` has only one head of that sort and so has the recording,
 /// the two match whatever their names. Heads without a recording are left out, with a warning. Poses are left
 /// out, because nothing is rendered. Errors that clients will see are logged.
-/// @throws LogError if no head is left, a head cannot send its recording, or the times span too long
+/// @throws Error if no head is left, a head cannot send its recording, or the times span too long
 ReplayConfig replay_config(DaemonConfig config, const std::vector<LoggedHead>& logged, const LogFile& file);
 
 }  // namespace sonard::server

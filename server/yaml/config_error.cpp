@@ -17,6 +17,11 @@ std::vector<ConfigProblem> in_file_order(std::vector<ConfigProblem> problems) {
   return problems;
 }
 
+ErrorKind kind_of(const std::vector<ConfigProblem>& problems) {
+  return std::ranges::all_of(problems, &ConfigProblem::of_network) ? ErrorKind::network
+                                                                   : ErrorKind::configuration;
+}
+
 }  // namespace
 
 SourcePosition nearest_position(const KeyPositions& positions, std::string_view key) {
@@ -51,12 +56,10 @@ std::vector<std::string> problem_lines(const std::filesystem::path& file,
 }
 
 ConfigError::ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems)
-    : std::runtime_error(problem_text(file, in_file_order(problems).front())),
-      file_(file),
-      problems_(in_file_order(std::move(problems))) {}
-
-bool ConfigError::only_of_network() const {
-  return std::ranges::all_of(problems_, &ConfigProblem::of_network);
+    : Error(kind_of(problems), problem_text(file, in_file_order(problems).front())),
+      problems_(in_file_order(std::move(problems))) {
+  more = problem_lines(file, problems_);
+  more.erase(more.begin());
 }
 
 }  // namespace sonard::server

@@ -5,10 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "server/error/error.hpp"
 
 namespace sonard::server {
 
@@ -44,21 +45,17 @@ std::string problem_text(const std::filesystem::path& file, const ConfigProblem&
 std::vector<std::string> problem_lines(const std::filesystem::path& file,
                                        const std::vector<ConfigProblem>& problems);
 
-/// All problems of one file. what() is the first problem in one line.
-class ConfigError : public std::runtime_error {
+/// All problems of one file, one line each. Its kind is `network` if the file itself is valid and only needs
+/// the network to be up.
+class ConfigError : public Error {
  public:
   /// @param problems at least one
   ConfigError(const std::filesystem::path& file, std::vector<ConfigProblem> problems);
 
   /// In the order of the file.
   const std::vector<ConfigProblem>& problems() const { return problems_; }
-  /// One line for each problem.
-  std::vector<std::string> lines() const { return problem_lines(file_, problems_); }
-  /// Whether the file itself is valid, and only needs the network to be up.
-  bool only_of_network() const;
 
  private:
-  std::filesystem::path file_;
   std::vector<ConfigProblem> problems_;
 };
 

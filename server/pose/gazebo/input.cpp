@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "server/error/error.hpp"
 #include "server/pose/gazebo/source.hpp"
 #include "server/yaml/pose_section.hpp"
 #include "server/yaml/status_section.hpp"
@@ -44,7 +45,7 @@ class GazeboInput final : public PoseInputWith<GazeboPoseInput> {
 #ifdef SONARD_HAS_GAZEBO
     return std::make_unique<GazeboPoseSource>(io, settings, clock, std::move(sink));
 #else
-    throw PoseSourceError("this sonard was built without Gazebo Transport", "poses.gazebo");
+    throw Error(ErrorKind::configuration, "this sonard was built without Gazebo Transport", "poses.gazebo");
 #endif
   }
 };

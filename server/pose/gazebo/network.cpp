@@ -17,8 +17,8 @@
 
 #include <fmt/format.h>
 
+#include "server/error/error.hpp"
 #include "server/net/interfaces.hpp"
-#include "server/pose/pose_source.hpp"
 
 namespace sonard::server {
 namespace {
@@ -64,8 +64,9 @@ void drop_other_machines(int socket) {
   }};
   const sock_fprog filter{static_cast<unsigned short>(program.size()), program.data()};
   if (setsockopt(socket, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) != 0) {
-    throw PoseSourceError(
-        fmt::format("pose gazebo: cannot limit discovery to this machine: {}", std::strerror(errno)));
+    throw Error(ErrorKind::network,
+                fmt::format("pose gazebo: cannot limit discovery to this machine: {}", std::strerror(errno)),
+                "poses");
   }
 }
 
@@ -74,8 +75,9 @@ void drop_other_machines(int socket) {
 void set_gazebo_address(Ipv4 address) {
   const std::string text = address_text(address);
   if (const auto own = interface_addresses(); !own.empty() && !owner_of(address, own)) {
-    throw PoseSourceError(
-        fmt::format("pose gazebo: {} is not an address of this machine (poses.gazebo.address)", text));
+    throw Error(ErrorKind::network,
+                fmt::format("pose gazebo: {} is not an address of this machine (poses.gazebo.address)", text),
+                "poses");
   }
   setenv("IGN_IP", text.c_str(), /*overwrite=*/1);
   setenv("GZ_IP", text.c_str(), /*overwrite=*/1);

@@ -8,12 +8,12 @@ namespace sonard::server {
 
 /// Call it before the first node: the library then joins discovery on the interface with this address, and
 /// listens there on TCP.
-/// @throws PoseSourceError if this machine does not have the address; the library would use another one
+/// @throws Error if this machine does not have the address; the library would use another one
 void set_gazebo_address(Ipv4 address);
 
 /// Call it after the first node. The library receives discovery on all addresses, whatever its own address.
 /// From now on these sockets drop all datagrams of other machines.
-/// @throws PoseSourceError
+/// @throws Error
 void keep_gazebo_to_this_machine();
 
 }  // namespace sonard::server

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <utility>
 
+#include "server/error/error.hpp"
 #include "server/net/addresses.hpp"
 #include "server/pose/gazebo/entity_poses.hpp"
 #include "server/pose/gazebo/network.hpp"
@@ -217,7 +218,8 @@ void GazeboPoseSource::start() {
   const GazeboPoseInput& input = impl_->input;
   gazebo::transport::NodeOptions options;
   if (!input.partition.empty() && !options.SetPartition(input.partition)) {
-    throw PoseSourceError(fmt::format("pose gazebo: '{}' is not a valid partition", input.partition));
+    throw Error(ErrorKind::network,
+                fmt::format("pose gazebo: '{}' is not a valid partition", input.partition), "poses");
   }
   take_lines_of_the_library();
   set_gazebo_address(input.address);
@@ -230,7 +232,8 @@ void GazeboPoseSource::start() {
     impl->on_message(data, size, info.Type());
   };
   if (!subscription_->node.SubscribeRaw(input.topic, receive)) {
-    throw PoseSourceError(fmt::format("pose gazebo: cannot subscribe to '{}'", input.topic));
+    throw Error(ErrorKind::network, fmt::format("pose gazebo: cannot subscribe to '{}'", input.topic),
+                "poses");
   }
 }
 

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "server/error/error.hpp"
 #include "server/net/tcp_listener.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/pose/unreadable_messages.hpp"
@@ -259,7 +260,7 @@ void TcpPoseSource::start() {
   try {
     impl_->listener->open();
   } catch (const SocketError& error) {
-    throw PoseSourceError(std::string("pose stream tcp: ") + error.what());
+    throw Error(ErrorKind::network, std::string("pose stream tcp: ") + error.what(), "poses");
   }
   impl_->listener->start([weak = impl_->weak_from_this()](tcp::socket socket, const Endpoint& peer) {
     if (const auto self = weak.lock()) {

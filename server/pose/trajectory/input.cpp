@@ -7,6 +7,7 @@
 
 #include "common/text/counted.hpp"
 #include "protocol/pose/trajectory.hpp"
+#include "server/error/error.hpp"
 #include "server/pose/to_render.hpp"
 #include "server/pose/trajectory/source.hpp"
 
@@ -30,7 +31,7 @@ class PlayedTrajectory final : public PoseInputWith<TrajectoryInput> {
   std::optional<FirstPose> first_pose() const override {
     try {
       return FirstPose{file_key, to_render(load().points().front().T_world_vehicle)};
-    } catch (const PoseSourceError&) {  // summary() throws it, too
+    } catch (const Error&) {  // summary() throws it, too
       return std::nullopt;
     }
   }
@@ -45,7 +46,7 @@ class PlayedTrajectory final : public PoseInputWith<TrajectoryInput> {
     try {
       return pose::load_trajectory(settings.file, settings.axes);
     } catch (const pose::TrajectoryError& error) {
-      throw PoseSourceError(error.what(), file_key);
+      throw Error(ErrorKind::configuration, error.what(), file_key);
     }
   }
 };

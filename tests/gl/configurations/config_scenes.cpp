@@ -54,7 +54,7 @@ DaemonConfig load(const fs::path& file) {
   try {
     return server::load_config(file, text, server::head_types()).config;
   } catch (const server::ConfigError& error) {
-    if (!error.only_of_network()) {
+    if (error.kind != server::ErrorKind::network) {
       throw;
     }
   }
@@ -80,7 +80,7 @@ std::vector<render::Pose> own_poses(const DaemonConfig& config, const render::Wo
   if (config.poses.T_world_vehicle_initial) {
     poses.push_back(*config.poses.T_world_vehicle_initial);
   }
-  if (const auto* trajectory = settings_of<TrajectoryInput>(config.poses)) {
+  if (const auto* trajectory = server::settings_of<server::TrajectoryInput>(config.poses)) {
     add_poses(pose::load_trajectory(trajectory->file, trajectory->axes), more, poses);
   }
   for (const auto& demo : YAML::LoadFile(demos.string())) {

@@ -164,14 +164,14 @@ TEST_F(GazeboPoseSourceTest, RefusesAnAddressThatIsNotOfThisMachine) {
   input.topic = "/elsewhere";
   input.address = 0xC0000201;  // 192.0.2.1, of documents (RFC 5737)
   GazeboPoseSource source{io_, input, clock_, sink_};
-  EXPECT_THROW(source.start(), PoseSourceError);
+  EXPECT_THROW(source.start(), Error);
 }
 
 TEST_F(GazeboPoseSourceTest, RefusesATopicThatIsNone) {
   GazeboPoseInput input;
   input.topic = "no topic";
   GazeboPoseSource source{io_, input, clock_, sink_};
-  EXPECT_THROW(source.start(), PoseSourceError);
+  EXPECT_THROW(source.start(), Error);
 }
 
 }  // namespace

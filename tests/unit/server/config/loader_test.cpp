@@ -587,7 +587,7 @@ TEST_F(Loader, AnInterfaceThatIsNotThereIsAMatterOfTheNetwork) {
     try {
       load_config(folder_ / "config.yaml", head_types());
     } catch (const ConfigError& error) {
-      return std::pair(error.only_of_network(), error.lines());
+      return std::pair(error.kind == ErrorKind::network, error.lines());
     }
     return std::pair(false, std::vector<std::string>{});
   };

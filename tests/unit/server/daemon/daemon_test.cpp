@@ -264,9 +264,9 @@ TEST_F(DaemonTest, AddressInUseNamesTheKey) {
   try {
     serve(config, {}, test::fake_renderer_factory(renderer));
     FAIL() << "no exception";
-  } catch (const StartError& error) {
-    EXPECT_EQ(error.key, "heads[0].network.bind");
-    EXPECT_EQ(error.exit_code, exit_network);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where, "heads[0].network.bind");
+    EXPECT_EQ(exit_code_of(error.kind), exit_network);
   }
 }
 

@@ -156,13 +156,13 @@ Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& w
         try {
           const auto samples = recording->samples(ping);
           read.emplace_back(samples.begin(), samples.end());
-        } catch (const LogError&) {
+        } catch (const Error&) {
         }
       }
     }
     outcome.problems = summarise(file, [](auto) { return std::nullopt; }).problems;
     outcome.opened = true;
-  } catch (const LogError& error) {
+  } catch (const Error& error) {
     outcome.problems.emplace_back(error.what());
   }
   outcome.pings = read.size();
@@ -359,7 +359,7 @@ TEST(Damage, ATextWithTheNameOfALogIsCalledNoLog) {
   EXPECT_THAT(outcome_of(".mcap", bytes, {}).problems, ElementsAre(HasSubstr("is not an .mcap log")));
   const test::TemporaryLog temporary(".pcapng", bytes);
   const LogFile file(temporary.path());
-  EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }), LogError);
+  EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }), Error);
 }
 
 TEST(Damage, AGlfWithoutBlocksAfterAPlaceSaysHowManyBytesAreNotRead) {

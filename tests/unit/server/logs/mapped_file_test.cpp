@@ -48,7 +48,7 @@ TEST(LogFile, NamesTheMissingRight) {
   try {
     const LogFile log(folder.path() / "a.mcap");
     FAIL() << "it was read";
-  } catch (const LogError& error) {
+  } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::EndsWith("a.mcap: cannot be opened: Permission denied"));
   }
 }

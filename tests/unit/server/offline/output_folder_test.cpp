@@ -85,7 +85,7 @@ TEST_F(OutputFolderTest, FramesWithoutARunAreRefused) {
     folder.write(name, "x");
     EXPECT_THAT(
         [&] { folder.claim("{1}", false); },
-        testing::ThrowsMessage<OutputError>(AllOf(
+        testing::ThrowsMessage<Error>(AllOf(
             StartsWith(folder.path().string() + ": the folder contains frames or logs, but no run.json"),
             HasSubstr("--overwrite"))))
         << name;
@@ -104,7 +104,7 @@ TEST_F(OutputFolderTest, AnotherRunIsRefusedByName) {
   try {
     folder.claim("{2}", false);
     FAIL() << "taken";
-  } catch (const OutputError& error) {
+  } catch (const Error& error) {
     EXPECT_THAT(error.what(), StartsWith((folder.path() / "run.json").string() + ": "));
     EXPECT_THAT(error.what(), HasSubstr("--overwrite"));
   }
@@ -117,7 +117,7 @@ TEST_F(OutputFolderTest, AnotherRunIsToldByWhatDiffers) {
     folder.claim(before, false);
     try {
       folder.claim(now, false);
-    } catch (const OutputError& error) {
+    } catch (const Error& error) {
       return std::string(error.what());
     }
     return std::string("none");
@@ -197,15 +197,15 @@ TEST(OutputFolder, SaysWhatItCannotMakeOrWrite) {
   try {
     OutputFolder("/proc/sonard");
     FAIL() << "made";
-  } catch (const OutputError& error) {
+  } catch (const Error& error) {
     EXPECT_THAT(error.what(), StartsWith("/proc/sonard: cannot create the folder: "));
   }
-  EXPECT_THROW(OutputFolder("/proc").write("x", "y"), OutputError);
+  EXPECT_THROW(OutputFolder("/proc").write("x", "y"), Error);
 }
 
 TEST(OutputFolder, SaysWhatItCannotRead) {
   const test::TemporaryFolder temporary;
-  EXPECT_THROW((void)OutputFolder(temporary.path()).read("missing"), OutputError);
+  EXPECT_THROW((void)OutputFolder(temporary.path()).read("missing"), Error);
 }
 
 }  // namespace

@@ -287,14 +287,14 @@ TEST_F(RecorderTest, LocksItsFolder) {
   try {
     const Recorder second(config, test::one_head());
     FAIL() << "two recorders share a folder";
-  } catch (const RecordingError& error) {
+  } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(config.directory.string()), std::string::npos);
   }
 }
 
 TEST_F(RecorderTest, SaysWhyAFolderCannotBeUsed) {
   test::write_file(folder.path() / "made", {1});
-  EXPECT_THROW(Recorder(config, test::one_head()), RecordingError);
+  EXPECT_THROW(Recorder(config, test::one_head()), Error);
 }
 
 TEST_F(RecorderTest, NamesAndTimesFollowTheZone) {

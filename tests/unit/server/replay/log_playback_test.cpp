@@ -194,7 +194,7 @@ class PlacesAsSamples final : public LogReader {
  public:
   std::vector<std::uint8_t> samples(const LoggedPing& ping) const override {
     if (ping.settings.beams == 1) {
-      throw LogError("a.mcap: a ping cannot be read");
+      throw Error(ErrorKind::configuration, "a.mcap: a ping cannot be read");
     }
     const int count = ping.settings.bins * ping.settings.beams;
     return std::vector<std::uint8_t>(static_cast<std::size_t>(count), static_cast<std::uint8_t>(ping.place));

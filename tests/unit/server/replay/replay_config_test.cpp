@@ -91,7 +91,7 @@ struct ReplayConfigTest : testing::Test {
   std::string complaint(const std::function<void()>& play) const {
     try {
       play();
-    } catch (const LogError& error) {
+    } catch (const Error& error) {
       const std::string before = path.string() + ": ";
       EXPECT_THAT(error.what(), StartsWith(before));
       return std::string(error.what()).substr(before.size());

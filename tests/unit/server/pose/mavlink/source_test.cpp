@@ -132,7 +132,7 @@ TEST_F(MavlinkPoseSourceTest, NamesItselfAndWhatTheOsRefuses) {
   try {
     second.start();
     FAIL() << "two sockets on one port";
-  } catch (const PoseSourceError& error) {
+  } catch (const Error& error) {
     EXPECT_EQ(error.what(), "pose mavlink udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
                                 ": Address already in use");
   }

@@ -256,7 +256,7 @@ TEST_F(TcpPoseSourceTest, NamesAddressAndOperationWhenTheOsRefuses) {
   try {
     second.start();
     FAIL() << "two listeners on one port";
-  } catch (const PoseSourceError& error) {
+  } catch (const Error& error) {
     EXPECT_EQ(error.what(), "pose stream tcp: cannot bind TCP " + endpoint_text(first->local_endpoint()) +
                                 ": Address already in use");
   }

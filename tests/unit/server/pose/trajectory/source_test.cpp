@@ -76,8 +76,8 @@ TEST_F(TrajectoryPoseSourceTest, ABadFileIsReportedAtOnce) {
   try {
     open({path, false, 1.0, pose::Axes::enu_flu});
     FAIL() << "no error";
-  } catch (const PoseSourceError& error) {
-    EXPECT_EQ(error.key, "poses.trajectory.file");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where, "poses.trajectory.file");
     EXPECT_EQ(error.what(), path.string() + ":4: x is not finite");
   }
 }

@@ -119,7 +119,7 @@ TEST_F(UdpPoseSourceTest, NamesAddressAndOperationWhenTheOsRefuses) {
   try {
     second.start();
     FAIL() << "two sockets on one port";
-  } catch (const PoseSourceError& error) {
+  } catch (const Error& error) {
     EXPECT_EQ(error.what(), "pose stream udp: cannot bind UDP " + endpoint_text(first->local_endpoint()) +
                                 ": Address already in use");
   }
