@@ -13,13 +13,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include "renderer/acoustics/water.hpp"
-#include "server/config/head_section.hpp"
 #include "server/config/overlaps.hpp"
-#include "server/net/addresses.hpp"
+#include "server/heads/head_section.hpp"
 #include "server/pose/section.hpp"
 #include "server/pose/types/types.hpp"
-#include "server/yaml/network_section.hpp"
-#include "server/yaml/status_section.hpp"
+#include "server/recording/section.hpp"
+#include "server/web/section.hpp"
 #include "server/yaml/yaml_section.hpp"
 #include "server/yaml/yaml_trouble.hpp"
 #include "server/yaml/yaml_unclosed.hpp"
@@ -249,68 +248,6 @@ void read_skip(YamlSection& section, render::SkipSwitches& skip) {
   }
 }
 
-void read_recording(YamlSection& section, const std::filesystem::path& folder, RecordingConfig& recording) {
-  section.introduce(
-      "[logs.md](logs.md#5-recording) describes the formats, full disks, and the files that a killed daemon "
-      "leaves.");
-  section.require("directory", "a folder for the logs");
-  section.path("directory", recording.directory, folder,
-               "folder of the logs, created if missing; only one daemon at a time can use it");
-  section.boolean("glf", recording.glf, "writes a `.glf` for each head whose users work with such logs");
-  section.boolean("mcap", recording.mcap,
-                  "writes one MCAP file with images, poses, and the bytes of both directions");
-  section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
-                  "includes the bytes of both directions, which images and replay do not need");
-  section.boolean("mcap_foxglove", recording.mcap_foxglove,
-                  "also writes each ping as Foxglove shows it: picture, pose, points");
-  section.choice("mcap_compression", recording.mcap_zstd, {{"none", false}, {"zstd", true}},
-                 "compression of each chunk of the MCAP file (1 MiB or one second)");
-  section.boolean("pcapng", recording.pcapng,
-                  "writes one capture for Wireshark with the bytes of both directions");
-  if (!recording.glf && !recording.mcap && !recording.pcapng) {
-    section.report("directory", "no kind of log is selected (expected glf, mcap or pcapng to be true)");
-  }
-  std::uint64_t mebibytes = recording.rotate_bytes >> 20;
-  section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and another ping may follow
-                  "size of a file at which sonard closes all files and begins new ones");
-  recording.rotate_bytes = mebibytes << 20;
-  section.duration("rotate_min", recording.rotate_after, Range::from(0.05, 10'080.0),
-                   "time in minutes after which sonard closes all files and begins new ones");
-  section.choice("zone", recording.zone, {{"utc", RecordingZone::utc}, {"local", RecordingZone::local}},
-                 "time zone of times in a `.glf`, which does not state its zone, and in file names");
-  section.choice("sync", recording.sync,
-                 {{"never", RecordingSync::never},
-                  {"on_close", RecordingSync::on_close},
-                  {"every_second", RecordingSync::every_second}},
-                 "when files are forced onto the disk, against power cuts");
-  mebibytes = recording.queue_bytes >> 20;
-  section.integer("queue_mib", mebibytes, 1, 16'384,
-                  "maximum amount of data that waits to be written; more is dropped and counted");
-  recording.queue_bytes = mebibytes << 20;
-  section.duration("stop_deadline_s", recording.stop_deadline, Range::from(0.0, 3600.0),
-                   "maximum wait for the disk when the daemon ends; the log names lost data");
-}
-
-void read_web(YamlSection& section, WebConfig& web) {
-  section.introduce(
-      "A page in the browser shows the images of each head, the world, the poses and current problems "
-      "([page.md](page.md)). Monitors read `/health`, `/ready`, `/metrics` and `/api/status`.");
-  read_socket(section, web.bind, web.allow, endpoint_form,
-              "HTTP address of the page; the demo uses 127.0.0.1:8014",
-              "address blocks that may open the page");
-  section.text("token", web.token,
-               "clients that send this token may also change state, for example start or stop the recording; "
-               "browsers on this machine need no token");
-  section.default_is("token", "no token: only browsers on this machine may change state");
-  constexpr TextForm origins{"an origin such as https://example.org", "origins", R"("type": "string")"};
-  section.parsed_list("origins", web.origins, &any_text, origins,
-                      "other sites whose pages may connect from a browser");
-  section.integer("max_viewers", web.max_viewers, 1, 1000,
-                  "maximum number of WebSockets at a time; monitors always connect");
-  section.integer("max_viewers_per_peer", web.max_viewers_per_peer, 1, 1000,
-                  "maximum number of WebSockets (one per tab) from one address or proxy");
-}
-
 void read_document(YamlSection& root, std::span<const HeadType* const> types, DaemonConfig& config) {
   HeadContext context;
   context.folder = config.file.parent_path();
@@ -364,11 +301,10 @@ void read_document(YamlSection& root, std::span<const HeadType* const> types, Da
       section.warn_if_given("adaptive_quality", "pings follow the stamps of the poses (`poses.clock`)");
     }
   });
-  root.section(
-      "recording", "logs of the heads' data; without this section, sonard records no logs",
-      [&](YamlSection& section) { read_recording(section, context.folder, config.recording.emplace()); });
+  root.section("recording", "logs of the heads' data; without this section, sonard records no logs",
+               [&](YamlSection& section) { config.recording = read_recording(section, context.folder); });
   root.section("web", "web page for viewing, and metrics; without this section, there is no page",
-               [&](YamlSection& section) { read_web(section, config.web.emplace()); });
+               [&](YamlSection& section) { config.web = read_web(section); });
   root.require("heads", "a list of sonar heads");
   root.sections("heads", "sonar heads, one or more",
                 [&](YamlSection& section) { config.heads.push_back(read_head(section, context, types)); });

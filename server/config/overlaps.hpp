@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/config/config.hpp"
-#include "server/config/head_type.hpp"
+#include "server/heads/head_type.hpp"
 #include "server/yaml/config_error.hpp"
 
 namespace sonard::server {

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "server/config/head_type.hpp"
+#include "server/heads/head_type.hpp"
 #include "server/pose/pose_input.hpp"
 
 namespace sonard::server {

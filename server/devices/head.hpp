@@ -10,7 +10,7 @@
 
 #include "renderer/skip_ledger.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
 
 namespace boost::asio {
 class io_context;

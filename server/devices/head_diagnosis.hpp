@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/head_status.hpp"
 #include "server/diagnosis/finding.hpp"
 #include "server/diagnosis/sight.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/pose/poses_used.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "protocol/common/ping_job.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/pose/pose_history.hpp"
 #include "server/pose/poses_used.hpp"
 #include "server/pose/simulated_ping_times.hpp"

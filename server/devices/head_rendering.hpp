@@ -9,8 +9,8 @@
 #include "renderer/ping.hpp"
 #include "renderer/skip_ledger.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/render_load.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/program_log/peer_log.hpp"
 #include "server/rendering/render_service.hpp"
 

@@ -13,7 +13,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
-#include "server/config/config.hpp"
 #include "server/diagnosis/triangles.hpp"
 
 namespace sonard::server {

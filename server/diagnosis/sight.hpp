@@ -15,6 +15,9 @@
 
 namespace sonard::server {
 
+/// A larger distance between the origins of a vehicle and its sonar is suspicious: vehicles are smaller.
+inline constexpr double longest_arm_m = 10.0;
+
 /// Pose and range of a sonar, and results of its newest ping.
 struct Sight {
   render::Pose T_world_vehicle;

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/offline/output_folder.hpp"
 #include "server/recording/mcap_log_writer.hpp"
+#include "server/recording/recording_config.hpp"
 
 namespace sonard::server {
 

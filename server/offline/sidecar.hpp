@@ -11,7 +11,7 @@
 #include "protocol/npy/npy_file.hpp"
 #include "renderer/picture/sector_geometry.hpp"
 #include "renderer/pose.hpp"
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/offline/body_truth.hpp"
 #include "server/offline/options.hpp"
 #include "server/offline/vehicle_trajectory.hpp"

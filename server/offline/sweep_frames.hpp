@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "renderer/picture/sweep_image.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/survey.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/offline/body_truth.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/options.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "protocol/glf/records.hpp"
-#include "server/config/head_type.hpp"
+#include "server/heads/head_type.hpp"
 
 namespace sonard::server {
 

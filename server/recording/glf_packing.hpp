@@ -11,8 +11,8 @@
 
 #include "protocol/glf/deflate.hpp"
 #include "protocol/glf/packer.hpp"
-#include "server/config/config.hpp"
 #include "server/recording/append_file.hpp"
+#include "server/recording/recording_config.hpp"
 
 namespace sonard::server {
 

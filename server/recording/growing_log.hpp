@@ -7,8 +7,8 @@
 #include <span>
 #include <system_error>
 
-#include "server/config/config.hpp"
 #include "server/recording/append_file.hpp"
+#include "server/recording/recording_config.hpp"
 
 namespace sonard::server {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "server/config/config.hpp"
 #include "server/recording/events.hpp"
 #include "server/recording/growing_log.hpp"
+#include "server/recording/recording_config.hpp"
 
 namespace sonard::server {
 

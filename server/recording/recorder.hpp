@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
 #include "server/recording/event_queue.hpp"
 #include "server/recording/log_writer.hpp"
+#include "server/recording/recording_config.hpp"
 
 namespace sonard::server {
 

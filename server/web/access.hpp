@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "server/config/config.hpp"
+#include "server/web/web_config.hpp"
 
 namespace sonard::server {
 

@@ -17,12 +17,12 @@
 
 #include "renderer/scene/world.hpp"
 #include "server/clock/clock.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/ping_viewer.hpp"
 #include "server/program_log/reasons.hpp"
 #include "server/web/connections.hpp"
 #include "server/web/shared_text.hpp"
 #include "server/web/status.hpp"
+#include "server/web/web_config.hpp"
 
 namespace sonard::server {
 

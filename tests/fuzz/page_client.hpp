@@ -17,10 +17,10 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "renderer/scene/world.hpp"
-#include "server/config/config.hpp"
 #include "server/web/http_session.hpp"
 #include "server/web/site.hpp"
 #include "server/web/status.hpp"
+#include "server/web/web_config.hpp"
 
 namespace sonard::fuzz {
 

@@ -18,9 +18,10 @@
 #include "protocol/gemini/ping_settings.hpp"
 #include "renderer/acoustics/receiver.hpp"
 #include "renderer/ping.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/gemini/settings.hpp"
 #include "server/devices/gemini/type.hpp"
+#include "server/heads/head_config.hpp"
+#include "server/net/addresses.hpp"
 
 namespace sonard::test {
 

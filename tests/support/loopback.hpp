@@ -5,7 +5,7 @@
 #include <unistd.h>
 #include <cstdint>
 
-#include "server/config/config.hpp"
+#include "server/net/addresses.hpp"
 
 namespace sonard::test {
 

@@ -10,9 +10,9 @@
 
 #include "protocol/micron/codec.hpp"
 #include "renderer/acoustics/receiver.hpp"
-#include "server/config/config.hpp"
 #include "server/devices/micron/settings.hpp"
 #include "server/devices/micron/type.hpp"
+#include "server/heads/head_config.hpp"
 
 namespace sonard::test {
 

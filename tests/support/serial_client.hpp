@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/config/config.hpp"
+#include "server/net/addresses.hpp"
 
 namespace sonard::test {
 

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "protocol/gemini/device_config.hpp"
-#include "server/config/config.hpp"
-#include "server/config/device_settings.hpp"
+#include "server/heads/device_settings.hpp"
+#include "server/heads/head_config.hpp"
+#include "server/net/addresses.hpp"
 #include "server/net/faulty_link.hpp"
 #include "server/yaml/status_destination.hpp"
 

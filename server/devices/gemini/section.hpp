@@ -2,8 +2,8 @@
 // Reads the section of a head of type `gemini_720i`.
 #pragma once
 
-#include "server/config/head_section.hpp"
 #include "server/devices/gemini/config.hpp"
+#include "server/heads/head_section.hpp"
 
 namespace sonard::server {
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "server/config/config.hpp"
 #include "server/devices/survey.hpp"
+#include "server/heads/head_config.hpp"
 
 namespace sonard::server {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "protocol/micron/device_config.hpp"
-#include "server/config/config.hpp"
-#include "server/config/device_settings.hpp"
+#include "server/heads/device_settings.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/net/serial_port.hpp"
 
 namespace sonard::server {

@@ -7,8 +7,9 @@
 #include <string>
 
 #include "protocol/oculus/device_config.hpp"
-#include "server/config/config.hpp"
-#include "server/config/device_settings.hpp"
+#include "server/heads/device_settings.hpp"
+#include "server/heads/head_config.hpp"
+#include "server/net/addresses.hpp"
 #include "server/yaml/status_destination.hpp"
 
 namespace sonard::server {

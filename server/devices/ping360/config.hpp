@@ -10,8 +10,8 @@
 #include "protocol/ping360/device_config.hpp"
 #include "renderer/acoustics/transducer.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/config/config.hpp"
-#include "server/config/device_settings.hpp"
+#include "server/heads/device_settings.hpp"
+#include "server/heads/head_config.hpp"
 #include "server/net/serial_port.hpp"
 #include "server/net/udp_transport.hpp"
 

@@ -2,8 +2,8 @@
 // Reads the section of a head of type `ping360`.
 #pragma once
 
-#include "server/config/head_section.hpp"
 #include "server/devices/ping360/config.hpp"
+#include "server/heads/head_section.hpp"
 
 namespace sonard::server {
 

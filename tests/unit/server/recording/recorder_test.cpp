@@ -14,6 +14,7 @@
 #include "protocol/log/log_messages.hpp"
 #include "protocol/mcap/reader.hpp"
 #include "protocol/pcapng/blocks.hpp"
+#include "server/error/error.hpp"
 #include "tests/support/wait_for.hpp"
 #include "tests/unit/server/recording/fixture.hpp"
 

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
+#include "server/heads/water_config.hpp"
 #include "server/yaml/yaml_section.hpp"
 
 namespace sonard::server {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/config/head_section.hpp"
+#include "server/heads/head_section.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,8 @@
 
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/config/head_type.hpp"
+#include "server/diagnosis/sight.hpp"
+#include "server/heads/head_type.hpp"
 #include "server/yaml/pose_section.hpp"
 
 namespace sonard::server {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "server/config/config.hpp"
-#include "server/config/head_section.hpp"
+#include "server/heads/head_config.hpp"
+#include "server/heads/head_section.hpp"
 #include "server/net/planned_socket.hpp"
 #include "server/net/serial_port.hpp"
 #include "server/yaml/yaml_section.hpp"

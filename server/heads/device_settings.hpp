@@ -8,7 +8,7 @@
 
 #include <boost/core/demangle.hpp>
 
-#include "server/config/config.hpp"
+#include "server/heads/head_config.hpp"
 
 namespace sonard::server {
 
