@@ -17,6 +17,7 @@
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/device.hpp"
 #include "protocol/gemini/messages.hpp"
+#include "tests/support/device_bench.hpp"
 
 namespace sonard::gemini {
 
@@ -87,29 +88,11 @@ inline RetryRequest retry_of(RetryKind kind, int first = 0, int count = 1) {
   return request;
 }
 
-/// Arbitrary values that differ between pings, lines and beams.
-inline std::uint8_t test_sample(std::uint64_t ping, int line, int beam) {
-  return static_cast<std::uint8_t>(ping * 31 + static_cast<std::uint64_t>(line) * 7 +
-                                   static_cast<std::uint64_t>(beam));
-}
-
 inline PingImage test_image(const PingJob& job) {
-  PingImage image;
-  image.number = job.number;
-  for (int line = 0; line < job.bins(); ++line) {
-    for (int beam = 0; beam < beam_count; ++beam) {
-      const std::uint8_t sample = test_sample(job.number, line, beam);
-      if (job.sixteen_bit) {
-        image.u16.push_back(static_cast<std::uint16_t>(sample << 8 | (255 - sample)));
-      } else {
-        image.u8.push_back(sample);
-      }
-    }
-  }
-  return image;
+  return sonard::test_image(job, job.bins(), beam_count);
 }
 
-class Bench {
+class Bench : public DeviceBench {
  public:
   struct Sent {
     TimePoint at{};
@@ -121,52 +104,25 @@ class Bench {
     std::uint8_t type() const { return bytes[0]; }
   };
 
-  explicit Bench(const DeviceConfig& config = example_config()) : device(config, 0ns) { step(TimePassed{}); }
+  explicit Bench(const DeviceConfig& config = example_config())
+      : DeviceBench(device, test_image), device(config, 0ns) {
+    step(TimePassed{});
+  }
 
-  // Set by tests.
-  std::chrono::nanoseconds render_time{0};
-  std::function<PingImage(const PingJob&)> render = test_image;
-  bool renderer_answers = true;  ///< false: the test answers the jobs itself
-  bool renderer_fails = false;
-  /// Delay of each timer of the head after its due time.
-  std::function<std::chrono::nanoseconds()> lateness = [] { return 0ns; };
-  /// Called for each datagram as it is sent. It must not call the bench.
+  /// Set by tests. Called for each datagram as it is sent. It must not call the bench.
   std::function<void(const Sent&)> on_sent;
 
   // Read by tests.
   Device device;
-  TimePoint now{};
   std::vector<Sent> sent;
-  std::vector<PingJob> jobs;
-  std::vector<PingRecord> records;
-  std::vector<Notice> notices;
-  Actions last;  ///< of the last step
 
   void raw(std::span<const std::uint8_t> bytes, Ipv4 from = client_address, Ipv4 to = head_address) {
-    step(BytesReceived{{0, {from, client_port}, to}, SharedBytes(copy(bytes))});
+    receive({0, {from, client_port}, to}, copy(bytes));
   }
   void command(const Command& command, Ipv4 from = client_address) { raw(encode(command), from); }
-  void image(const PingImage& image) { step(PingRendered{image}); }
   void trigger() { step(TriggerEdge{}); }
   void set_out_of_water(bool out) { step(WaterChanged{out}); }
 
-  /// Time of the next event without input from the test.
-  TimePoint next_event() const {
-    TimePoint next = timer_;
-    return image_ ? std::min(next, image_->first) : next;
-  }
-  void run_until(TimePoint end) {
-    while (next_event() <= end) {
-      now = std::max(now, next_event());
-      if (image_ && image_->first <= now) {
-        answer();
-      } else {
-        step(TimePassed{});
-      }
-    }
-    now = end;
-  }
-  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
   /// Like run_for, with a stay-alive every second.
   void run_connected(std::chrono::nanoseconds span) {
     for (const TimePoint end = now + span; now < end;) {
@@ -209,45 +165,13 @@ class Bench {
     return n;
   }
 
-  void step(const Event& event) {
-    last = device.step(now, event);
-    if (last.record) {
-      records.push_back(*last.record);
-    }
-    notices.insert(notices.end(), last.notices.begin(), last.notices.end());
-    timer_ = TimePoint::max();
-    if (last.wake_at) {
-      EXPECT_GT(*last.wake_at, now) << "the head would keep its caller spinning";
-      timer_ = *last.wake_at + lateness();
-    }
-    for (const Outgoing& outgoing : last.send) {
-      sent.push_back({now, outgoing.to, outgoing.peer.remote.address, outgoing.peer.local, outgoing.bytes});
-      if (on_sent) {
-        on_sent(sent.back());
-      }
-    }
-    if (last.render) {
-      jobs.push_back(*last.render);
-      if (renderer_answers) {
-        EXPECT_FALSE(image_) << "a second job while one is unanswered";
-        image_.emplace(now + render_time, *last.render);
-      }
+ protected:
+  void hear(const Outgoing& outgoing) override {
+    sent.push_back({now, outgoing.to, outgoing.peer.remote.address, outgoing.peer.local, outgoing.bytes});
+    if (on_sent) {
+      on_sent(sent.back());
     }
   }
-
- private:
-  void answer() {
-    const PingJob job = image_->second;
-    image_.reset();
-    if (renderer_fails) {
-      step(PingNotRendered{job.number});
-    } else {
-      step(PingRendered{render(job)});
-    }
-  }
-
-  TimePoint timer_ = TimePoint::max();
-  std::optional<std::pair<TimePoint, PingJob>> image_;
 };
 
 }  // namespace sonard::gemini

@@ -233,7 +233,7 @@ TEST(PingContent, TooFewOrTooManyLinesAreReportedAsSent) {
     bench.command(config);
     ASSERT_EQ(bench.jobs.size(), 1U);
     EXPECT_EQ(bench.jobs[0].native_bins, c.sent);
-    bench.image(test_image(bench.jobs[0]));
+    bench.answer(test_image(bench.jobs[0]));
     bench.run_for(2s);
     EXPECT_EQ(bench.all<PingHead>()[0].second.end_range, c.sent);
     EXPECT_EQ(bench.count(MessageType::ping_line), static_cast<std::size_t>(c.sent / 16));

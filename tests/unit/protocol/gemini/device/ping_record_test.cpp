@@ -121,7 +121,7 @@ TEST(PingRecord, ComesWithTheHeadOfThePing) {
   bench.command(ping_of(100));
   bench.run_for(20ms);
   EXPECT_TRUE(bench.records.empty()) << "nothing has been sent";
-  bench.image(test_image(bench.jobs.at(0)));
+  bench.answer(test_image(bench.jobs.at(0)));
   ASSERT_TRUE(bench.last.record);
   EXPECT_EQ(bench.last.record->transmit_time, 0ns) << "not when the head left";
   EXPECT_EQ(bench.last.send.at(0).bytes[0], 0x41);

@@ -166,13 +166,13 @@ TEST(Pinging, RenderLeadIsKept) {
   bench.renderer_answers = false;
   bench.command(ping_of(100, RunMode::continuous, 100ms));
   ASSERT_EQ(bench.jobs.size(), 1U);  // the first ping has no lead
-  bench.image(test_image(bench.jobs[0]));
+  bench.answer(test_image(bench.jobs[0]));
   bench.run_until(79ms);
   EXPECT_EQ(bench.jobs.size(), 1U);
   bench.run_until(81ms);
   ASSERT_EQ(bench.jobs.size(), 2U);
   EXPECT_EQ(bench.jobs[1].transmit_time, 100ms);
-  bench.image(test_image(bench.jobs[1]));
+  bench.answer(test_image(bench.jobs[1]));
   bench.run_until(99'999us);
   EXPECT_EQ(bench.count(MessageType::ping_head), 1U) << "its head waits for the transmit time";
   bench.run_until(100ms);
@@ -185,18 +185,18 @@ TEST(Pinging, NewConfigurationReplacesAPingRenderedAhead) {
   Bench bench(device);
   bench.renderer_answers = false;
   bench.command(ping_of(100, RunMode::continuous, 200ms));
-  bench.image(test_image(bench.jobs[0]));
+  bench.answer(test_image(bench.jobs[0]));
   bench.run_until(160ms);
   ASSERT_EQ(bench.jobs.size(), 2U);
   bench.command(ping_of(300));
   bench.run_for(10ms);
   EXPECT_EQ(bench.jobs.size(), 2U) << "one job at a time: the old one is unanswered";
-  bench.image(test_image(bench.jobs[1]));
+  bench.answer(test_image(bench.jobs[1]));
   bench.run_for(1ms);
   EXPECT_EQ(bench.device.counters().stale_images, 1U);
   ASSERT_EQ(bench.jobs.size(), 3U);
   EXPECT_EQ(bench.jobs[2].native_bins, 300);
-  bench.image(test_image(bench.jobs[2]));
+  bench.answer(test_image(bench.jobs[2]));
   bench.run_for(200ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 2U);
   EXPECT_EQ(bench.all<PingHead>().back().second.end_range, 300);
@@ -423,14 +423,14 @@ TEST(Pinging, ImageOfTheWrongSizeIsAFailedPing) {
 TEST(Pinging, ImagesNobodyAskedForAreDropped) {
   Bench bench;
   bench.renderer_answers = false;
-  bench.image(PingImage{});
+  bench.answer(PingImage{});
   bench.command(ping_of(100));
   PingImage other = test_image(bench.jobs[0]);
   other.number = 17;
-  bench.image(other);
+  bench.answer(other);
   bench.step(PingNotRendered{17});
   EXPECT_EQ(bench.device.counters().stale_images, 3U);
-  bench.image(test_image(bench.jobs[0]));
+  bench.answer(test_image(bench.jobs[0]));
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
 }

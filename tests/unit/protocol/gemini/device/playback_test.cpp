@@ -44,15 +44,6 @@ struct Playback : testing::Test {
   Playback() { bench.render = recorded_image; }
 };
 
-TEST_F(Playback, NothingIsSentThatIsNotFed) {
-  bench.command(ping_of(64));
-  bench.run_connected(2s);
-  EXPECT_TRUE(bench.ping_datagrams().empty());
-  bench.step(PingFed{recorded(7)});
-  bench.run_for(100ms);
-  EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
-}
-
 TEST_F(Playback, ThePingIsTheRecordedOneWhateverIsAskedFor) {
   bench.step(PingFed{recorded(7)});
   PingConfig asked = ping_of(500);
@@ -101,27 +92,6 @@ TEST_F(Playback, TheJobSaysWhatWasAskedForAndWhichRecordAnswers) {
   EXPECT_EQ(bench.records[0].settings, recorded(7).settings) << "what is recorded again is what was sent";
 }
 
-TEST_F(Playback, APingLeavesWhenItIsDue) {
-  bench.step(PingFed{recorded(0, 700ms)});
-  bench.command(ping_of(64));
-  bench.run_for(699ms);
-  EXPECT_EQ(bench.count(MessageType::ping_head), 0U);
-  bench.run_for(1ms);
-  const auto heads = bench.all<PingHead>();
-  ASSERT_EQ(heads.size(), 1U);
-  EXPECT_EQ(heads[0].second.transmit_time_us, 700'000U);
-}
-
-TEST_F(Playback, OneThatIsLateLeavesAtOnce) {
-  bench.run_until(900ms);
-  bench.step(PingFed{recorded(0, 700ms)});
-  bench.command(ping_of(64));
-  bench.run_for(50ms);
-  const auto heads = bench.all<PingHead>();
-  ASSERT_EQ(heads.size(), 1U);
-  EXPECT_EQ(heads[0].second.transmit_time_us, 900'000U);
-}
-
 TEST_F(Playback, TimesOfTheRecordingCountNotTheIntervalAskedFor) {
   bench.command(ping_of(64, RunMode::continuous, 500ms));
   for (std::uint64_t k = 0; k < 4; ++k) {
@@ -143,20 +113,6 @@ TEST_F(Playback, WithoutTimesTheIntervalCounts) {
   EXPECT_EQ(bench.count(MessageType::ping_head), 1U);
   bench.run_for(1ms);
   EXPECT_EQ(bench.count(MessageType::ping_head), 2U);
-}
-
-TEST_F(Playback, APingIsFedInPlaceOfTheOneBefore) {
-  bench.step(PingFed{recorded(5)});
-  bench.step(PingFed{recorded(6)});
-  bench.step(PingFed{std::nullopt});
-  bench.command(ping_of(64));
-  EXPECT_TRUE(bench.jobs.empty());
-  bench.step(PingFed{recorded(7)});
-  ASSERT_EQ(bench.jobs.size(), 1U);
-  EXPECT_EQ(bench.jobs[0].record, 7U);
-  bench.command(ping_of(64));
-  bench.run_for(1s);
-  EXPECT_EQ(bench.jobs.size(), 1U) << "gone with its job";
 }
 
 TEST_F(Playback, OutOfTheWaterAPingIsKept) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // No datagrams from a peer make the head grow, stall or send without end.
 #include <algorithm>
-#include <memory>
 #include <random>
 
 #include "bench.hpp"
@@ -94,14 +93,6 @@ TEST(Robustness, RandomDatagramsAtRandomTimes) {
     EXPECT_GE(counters.pings_sent + counters.pings_failed + counters.pings_cancelled + 2,
               counters.pings_started);
   }
-}
-
-TEST(Robustness, HeadIsUsedThroughTheInterfaceOfAllHeads) {
-  const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(example_config(), 0ns);
-  EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U);
-  const Peer from{0, {client_address, client_port}, head_address};
-  const SharedBytes request(encode(Command{to_head<StatusRequest>()}));
-  EXPECT_EQ(head->step(1ms, BytesReceived{from, request}).send.size(), 1U);
 }
 
 }  // namespace

@@ -18,21 +18,7 @@ std::chrono::nanoseconds listening_of(int lines) {
 
 struct SimulatedTime : testing::Test {
   Bench bench{waiting()};
-
-  /// Begins the ping that is due by now, as a server does. Returns false if there is none.
-  bool begin_next() {
-    const auto next = bench.last.next_ping;
-    if (!next || next->from > bench.now) {
-      return false;
-    }
-    bench.step(NextPingDue{});
-    return true;
-  }
 };
-
-TEST_F(SimulatedTime, NoPingIsNextAtFirst) {
-  EXPECT_FALSE(bench.last.next_ping);
-}
 
 TEST_F(SimulatedTime, NothingIsSentWithoutIt) {
   bench.command(ping_of(64, RunMode::continuous));
@@ -54,40 +40,19 @@ TEST_F(SimulatedTime, TheNextPingSaysHowPingsFollow) {
   EXPECT_EQ(bench.last.next_ping->period, waiting().min_ping_period);
 }
 
-TEST_F(SimulatedTime, APingForEach) {
-  bench.command(ping_of(64, RunMode::continuous));
-  for (std::size_t pings = 1; pings <= 20; ++pings) {
-    ASSERT_TRUE(begin_next());
-    EXPECT_EQ(bench.jobs.size(), pings);
-    bench.run_for(6ms);  // simulated time runs faster, so the head's own rate limits do not apply
-  }
-  EXPECT_EQ(bench.count(MessageType::ping_tail), 20U);
-}
-
 TEST_F(SimulatedTime, ASinglePingIsNextOnce) {
   bench.command(ping_of(64));
-  ASSERT_TRUE(begin_next());
+  ASSERT_TRUE(bench.begin_next());
   bench.run_for(100ms);
   EXPECT_EQ(bench.count(MessageType::ping_tail), 1U);
   EXPECT_FALSE(bench.last.next_ping);
-}
-
-TEST_F(SimulatedTime, NoneIsNextWhileOneIsOnItsWay) {
-  bench.render_time = 40ms;
-  bench.command(ping_of(64, RunMode::continuous));
-  ASSERT_TRUE(begin_next());
-  EXPECT_FALSE(bench.last.next_ping);
-  bench.run_for(39ms);
-  EXPECT_FALSE(bench.last.next_ping);
-  bench.run_for(100ms);
-  EXPECT_TRUE(bench.last.next_ping);
 }
 
 TEST_F(SimulatedTime, AnEdgeOfTheTriggerMakesAPingNext) {
   bench.command(ping_of(64, RunMode::external_trigger));
   EXPECT_FALSE(bench.last.next_ping);
   bench.trigger();
-  ASSERT_TRUE(begin_next());
+  ASSERT_TRUE(bench.begin_next());
   EXPECT_EQ(bench.jobs.size(), 1U);
 }
 

@@ -188,16 +188,6 @@ TEST(Warnings, AreNotForAHeadThatPlaysBack) {
   EXPECT_EQ(warnings(bench), Texts{}) << "it does not heed them";
 }
 
-TEST(NobodyThere, IsWhatTheEndOfTheLineSays) {
-  Bench bench;
-  bench.make_ready(all_round());
-  EXPECT_FALSE(bench.last.nobody_there);
-  bench.step(ClientGone{});
-  EXPECT_TRUE(bench.last.nobody_there);
-  bench.command(SendData{});
-  EXPECT_FALSE(bench.last.nobody_there);
-}
-
 TEST(Cancelled, NamesTheJobThatNobodyWantsUntilItIsAnswered) {
   Bench bench;
   bench.make_ready(all_round());
@@ -331,21 +321,6 @@ TEST(Counts, AreThoseOfTheHead) {
   EXPECT_EQ(counter(bench.device, "dropped_bytes").value().value, 3U);
   EXPECT_EQ(counter(bench.device, "dropped_bytes").value().shown, Counter::Shown::warns);
   EXPECT_EQ(counter(bench.device, "boots").value().shown, Counter::Shown::at_end);
-}
-
-TEST(Counts, ComeInOneOrderWithOneWarningForEachThatWarns) {
-  Bench bench;
-  const std::vector<Counter> before = bench.device.counts();
-  bench.make_ready(all_round());
-  bench.scan(10);
-  const std::vector<Counter> after = bench.device.counts();
-  ASSERT_EQ(before.size(), after.size());
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    EXPECT_EQ(before[i].name, after[i].name);
-    EXPECT_GE(after[i].value, before[i].value);
-    EXPECT_EQ(after[i].warning.starts_with("{} "), after[i].shown == Counter::Shown::warns) << after[i].name;
-    EXPECT_EQ(std::ranges::count(after, after[i].name, &Counter::name), 1) << after[i].name;
-  }
 }
 
 TEST(Progress, GrowsWithLinesAndWithPingsThatComeToNothing) {

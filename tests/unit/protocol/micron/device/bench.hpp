@@ -19,6 +19,7 @@
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
 #include "protocol/micron/units.hpp"
+#include "tests/support/device_bench.hpp"
 #include "tests/support/hex_fixture.hpp"
 
 namespace sonard::micron {
@@ -31,17 +32,8 @@ inline Bytes fixture(const std::string& name) {
   return sonard::testing::load_hex_fixture("micron", name);
 }
 
-/// Arbitrary values that differ between pings and bins.
-inline std::uint8_t test_sample(std::uint64_t ping, std::size_t bin) {
-  return static_cast<std::uint8_t>(ping * 31 + bin * 7);
-}
-
 inline PingImage test_line(const PingJob& job) {
-  PingImage image{job.number, Bytes(static_cast<std::size_t>(job.bins())), {}};
-  for (std::size_t bin = 0; bin < image.u8.size(); ++bin) {
-    image.u8[bin] = test_sample(job.number, bin);
-  }
-  return image;
+  return test_image(job, job.bins());
 }
 
 /// A sector from `left` to `right`, clockwise first, with 20 bins for quick lines.
@@ -62,40 +54,27 @@ inline HeadCommand all_round(std::uint8_t step = 32, bool right = true) {
   return command;
 }
 
-class Bench {
+class Bench : public DeviceBench {
  public:
   struct Sent {
     TimePoint at{};
     Bytes bytes;
   };
 
-  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns), node_(config.node) {
+  explicit Bench(const DeviceConfig& config = {})
+      : DeviceBench(device, test_line), device(config, 0ns), node_(config.node) {
     step(TimePassed{});
   }
 
-  // Set by tests.
-  std::chrono::nanoseconds render_time{0};
-  std::function<PingImage(const PingJob&)> render = test_line;
-  bool renderer_answers = true;  ///< false: the test answers the jobs itself
-  bool renderer_fails = false;
-  /// Called for each frame as it is sent. It must not call the bench.
+  /// Set by tests. Called for each frame as it is sent. It must not call the bench.
   std::function<void(const Sent&)> on_sent;
 
   // Read by tests.
   Device device;
-  TimePoint now{};
   std::vector<Sent> sent;
-  std::vector<PingJob> jobs;
-  std::vector<PingRecord> records;
-  std::vector<Notice> notices;
-  Actions last;  ///< of the last step
 
-  void raw(std::span<const std::uint8_t> bytes) {
-    step(BytesReceived{{}, SharedBytes(Bytes(bytes.begin(), bytes.end()))});
-  }
+  void raw(std::span<const std::uint8_t> bytes) { receive({}, Bytes(bytes.begin(), bytes.end())); }
   void command(const Command& command) { raw(encode(command, node_)); }
-  void answer(const PingImage& line) { step(PingRendered{line}); }
-  void fail(std::uint64_t number) { step(PingNotRendered{number}); }
   /// Turns the head to a bearing, reboots it and clears `sent`. Returns the time of the reboot.
   TimePoint reboot_at(std::uint16_t bearing) {
     command(sector(bearing, bearing));
@@ -109,29 +88,6 @@ class Bench {
     step(TimePassed{});
   }
 
-  /// Time of the next event without input from the test.
-  TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
-  /// Runs until after the next event.
-  void run_once() {
-    now = std::max(now, next_event());
-    if (job_ && job_->first <= now) {
-      const PingJob job = std::exchange(job_, std::nullopt)->second;
-      if (renderer_fails) {
-        fail(job.number);
-      } else {
-        answer(render(job));
-      }
-    } else {
-      step(TimePassed{});
-    }
-  }
-  void run_until(TimePoint end) {
-    while (next_event() <= end) {
-      run_once();
-    }
-    now = std::max(now, end);
-  }
-  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
   /// Centres the head, sends these parameters and clears `sent`. The head can then ping.
   void make_ready(const HeadCommand& parameters) {
     run_until(10s);
@@ -184,36 +140,19 @@ class Bench {
     return infos;
   }
 
-  void step(const Event& event) {
-    last = device.step(now, event);
-    timer_ = last.wake_at.value_or(TimePoint::max());
-    EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
-    if (last.record) {
-      records.push_back(*last.record);
-    }
-    notices.insert(notices.end(), last.notices.begin(), last.notices.end());
-    for (const Outgoing& frame : last.send) {
-      sent.push_back({now, Bytes(frame.bytes.begin(), frame.bytes.end())});
-      EXPECT_EQ(next_frame(sent.back().bytes, max_report_frame_size),
-                static_cast<std::ptrdiff_t>(sent.back().bytes.size()))
-          << "one whole frame at a time";
-      if (on_sent) {
-        on_sent(sent.back());
-      }
-    }
-    if (last.render) {
-      jobs.push_back(*last.render);
-      if (renderer_answers) {
-        EXPECT_FALSE(job_) << "a second job while one is unanswered";
-        job_.emplace(now + render_time, *last.render);
-      }
+ protected:
+  void hear(const Outgoing& frame) override {
+    sent.push_back({now, Bytes(frame.bytes.begin(), frame.bytes.end())});
+    EXPECT_EQ(next_frame(sent.back().bytes, max_report_frame_size),
+              static_cast<std::ptrdiff_t>(sent.back().bytes.size()))
+        << "one whole frame at a time";
+    if (on_sent) {
+      on_sent(sent.back());
     }
   }
 
  private:
   std::uint8_t node_;
-  TimePoint timer_ = TimePoint::max();
-  std::optional<std::pair<TimePoint, PingJob>> job_;
 };
 
 /// The value of a job's setting as a log shows it; empty if the job lacks it.

@@ -45,17 +45,11 @@ struct MicronPlayback : ::testing::Test {
   MicronPlayback() { bench.make_ready(all_round()); }
 };
 
-TEST_F(MicronPlayback, NothingIsSentThatIsNotFedOrNotAskedFor) {
+TEST_F(MicronPlayback, AHeadThatIsFedNothingLivesAllTheSame) {
   bench.command(SendData{});
   bench.run_for(3s);
   EXPECT_TRUE(bench.all<HeadData>().empty());
-  EXPECT_FALSE(bench.all<Alive>().empty()) << "it lives all the same";
-
-  Bench unasked{player()};
-  unasked.make_ready(all_round());
-  unasked.step(PingFed{recorded(0)});
-  unasked.run_for(3s);
-  EXPECT_TRUE(unasked.all<HeadData>().empty());
+  EXPECT_FALSE(bench.all<Alive>().empty());
 }
 
 TEST_F(MicronPlayback, TheLineIsTheRecordedOneWhateverIsAskedFor) {
@@ -104,27 +98,6 @@ TEST_F(MicronPlayback, TheJobSaysHowItDiffersFromWhatIsAskedFor) {
   }
   EXPECT_EQ(kinds, (std::vector<std::string>{"range", "bins", "gain", "sector", "step"}));
   EXPECT_EQ(bench.jobs[0].differences.at(1).text, "20 bins requested, 30 sent");
-}
-
-TEST_F(MicronPlayback, APingThatDoesNotSayHowItTravelledIsNone) {
-  ReplayedPing ping = recorded(5);
-  ping.wire.clear();
-  bench.step(PingFed{ping});
-  bench.command(SendData{});
-  bench.run_for(3s);
-  EXPECT_TRUE(bench.jobs.empty());
-  EXPECT_TRUE(bench.all<HeadData>().empty());
-}
-
-TEST_F(MicronPlayback, APingIsFedInPlaceOfTheOneBefore) {
-  bench.step(PingFed{recorded(5)});
-  bench.step(PingFed{recorded(6)});
-  bench.step(PingFed{std::nullopt});
-  bench.command(SendData{});
-  EXPECT_TRUE(bench.jobs.empty());
-  bench.step(PingFed{recorded(7)});
-  ASSERT_EQ(bench.jobs.size(), 1U);
-  EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
 TEST_F(MicronPlayback, BinsOf4BitsTravelAsTheyDid) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // No bytes from a peer make the head grow, stall or send without end. No missing peer stops it.
-#include <memory>
 #include <random>
 
 #include "bench.hpp"
@@ -67,31 +66,6 @@ TEST(Robustness, PingThatCannotBeRenderedIsALineThatDoesNotCome) {
   EXPECT_EQ(bearings_of(bench.scan(2)), (std::vector<int>{3264, 3296})) << "the head has turned on";
 }
 
-TEST(Robustness, LineOfTheWrongSizeCountsAsFailed) {
-  Bench bench;
-  bench.make_ready(all_round());
-  bench.render = [](const PingJob& job) { return PingImage{job.number, Bytes(19), {}}; };
-  bench.command(SendData{});
-  bench.run_for(1s);
-  EXPECT_TRUE(bench.all<HeadData>().empty());
-  EXPECT_EQ(bench.device.counters().pings_failed, 2U);
-}
-
-TEST(Robustness, AnswersToNoJobAreDropped) {
-  Bench bench;
-  bench.make_ready(all_round());
-  bench.answer(PingImage{0, Bytes(20), {}});
-  bench.fail(5);
-  bench.renderer_answers = false;
-  bench.command(SendData{});
-  bench.answer(PingImage{77, Bytes(20), {}});
-  bench.answer(test_line(bench.jobs.at(0)));
-  bench.answer(test_line(bench.jobs.at(0)));
-  bench.run_for(1s);
-  EXPECT_EQ(bench.device.counters().stale_images, 4U);
-  EXPECT_EQ(bench.all<HeadData>().size(), 1U);
-}
-
 TEST(Robustness, FloodOfCommandsIsBoundedInOutput) {
   Bench bench;
   bench.make_ready(all_round());
@@ -153,13 +127,6 @@ TEST(Robustness, RandomBytesAtRandomTimes) {
     EXPECT_GE(ended + 1, counters.pings_started);
     EXPECT_EQ(bench.all<HeadData>().size(), counters.pings_sent) << "all of it can be decoded";
   }
-}
-
-TEST(Robustness, HeadIsUsedThroughTheInterfaceOfAllHeads) {
-  const std::unique_ptr<sonard::Device> head = std::make_unique<Device>(DeviceConfig{}, 0ns);
-  EXPECT_EQ(head->step(0ns, TimePassed{}).send.size(), 1U) << "an alive";
-  const BytesReceived request{{}, SharedBytes(fixture("send_version"))};
-  EXPECT_EQ(head->step(5s, request).send.size(), 2U) << "the version, an alive";
 }
 
 }  // namespace

@@ -14,25 +14,7 @@ DeviceConfig waiting() {
 
 struct SimulatedTime : ::testing::Test {
   Bench bench{waiting()};
-
-  /// Begins the ping that is due by now, as a server does. Returns false if there is none.
-  bool begin_next() {
-    const auto next = bench.last.next_ping;
-    if (!next || next->from > bench.now) {
-      return false;
-    }
-    bench.step(NextPingDue{});
-    return true;
-  }
 };
-
-TEST_F(SimulatedTime, NoLineIsNextUntilLinesAreOwed) {
-  EXPECT_FALSE(bench.last.next_ping);
-  bench.make_ready(all_round());
-  EXPECT_FALSE(bench.last.next_ping);
-  bench.command(SendData{});
-  EXPECT_TRUE(bench.last.next_ping);
-}
 
 TEST_F(SimulatedTime, NothingIsSentWithoutIt) {
   bench.make_ready(all_round());
@@ -59,7 +41,7 @@ TEST_F(SimulatedTime, LinesAreTheSameAndInOrderHoweverFast) {
     if (line % 2 == 0) {
       bench.command(SendData{});  // requests two lines
     }
-    ASSERT_TRUE(begin_next());
+    ASSERT_TRUE(bench.begin_next());
     bench.run_for(1ms);  // a head that uses its own clock cannot turn as fast
   }
   ASSERT_EQ(bench.all<HeadData>().size(), 20U);

@@ -17,6 +17,7 @@
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
 #include "protocol/oculus/recorded_form.hpp"
+#include "tests/support/device_bench.hpp"
 #include "tests/support/hex_fixture.hpp"
 
 namespace sonard::oculus {
@@ -29,60 +30,40 @@ using std::chrono::seconds;
 const Peer vehicle{Device::stream_channel, {0xC0A80205, 40000}, 0};
 
 /// A head with one client that reads with a client's code. Images are ready at once.
-class Line {
+class Line : public DeviceBench {
  public:
-  explicit Line(const DeviceConfig& config = {}) : device_(config, TimePoint{}) {
+  explicit Line(const DeviceConfig& config = {})
+      : DeviceBench(device_, [this](const PingJob& job) { return image_of(job); }),
+        device_(config, TimePoint{}) {
     step(TimePassed{});
     step(ClientCame{vehicle});
   }
 
-  void step(const Event& event) {
-    Actions actions = device_.step(now_, event);
-    wake_ = actions.wake_at.value();
-    ASSERT_GT(wake_, now_);
-    next_ping = actions.next_ping;
-    for (const Outgoing& message : actions.send) {
-      if (message.to == Outgoing::To::everybody) {
-        statuses.emplace_back(message.bytes.begin(), message.bytes.end());
-      } else {
-        client.receive(now_, message.bytes);
-        sent.emplace_back(message.bytes.begin(), message.bytes.end());
-      }
-    }
-    for (ReceivedPing& ping : client.take_pings()) {
-      pings.push_back(std::move(ping));
-    }
-    if (actions.record) {
-      records.push_back(std::move(*actions.record));
-    }
-    if (actions.render) {
-      jobs.push_back(*actions.render);
-      render(jobs.back());
-    }
-  }
-  void receive(const Bytes& bytes) { step(BytesReceived{vehicle, SharedBytes(bytes)}); }
-  void run_for(TimePoint duration) {
-    const TimePoint end = now_ + duration;
-    while (wake_ <= end) {
-      now_ = wake_;
-      step(TimePassed{});
-    }
-    now_ = end;
-  }
+  void receive(const Bytes& bytes) { DeviceBench::receive(vehicle, bytes); }
 
   Client client;
   std::vector<ReceivedPing> pings;
   std::vector<Bytes> sent;
   std::vector<Bytes> statuses;
-  std::vector<PingRecord> records;
-  std::vector<PingJob> jobs;
-  std::optional<NextPing> next_ping;
   bool plays_eight_bits = false;
   std::optional<SensorReadings> readings;  ///< at the transmit time of each ping
 
+ protected:
+  void hear(const Outgoing& message) override {
+    if (message.to == Outgoing::To::everybody) {
+      statuses.emplace_back(message.bytes.begin(), message.bytes.end());
+      return;
+    }
+    client.receive(now, message.bytes);
+    sent.emplace_back(message.bytes.begin(), message.bytes.end());
+    for (ReceivedPing& ping : client.take_pings()) {
+      pings.push_back(std::move(ping));
+    }
+  }
+
  private:
   /// Samples that count up, so that a misplaced sample is detected.
-  void render(const PingJob& job) {
+  PingImage image_of(const PingJob& job) const {
     const auto count = static_cast<std::size_t>(job.bins()) * static_cast<std::size_t>(job.beams);
     PingImage image;
     image.number = job.number;
@@ -98,11 +79,9 @@ class Line {
         image.u8[i] = static_cast<std::uint8_t>(i * 31);
       }
     }
-    step(PingRendered{image});
+    return image;
   }
 
-  TimePoint now_{};
-  TimePoint wake_{};
   Device device_;
 };
 
@@ -360,13 +339,13 @@ TEST(OculusAcceptance, InSimulatedTimeItWaitsForNextPingDue) {
   DeviceConfig config;
   config.simulated_time = true;
   Line line(config);
-  EXPECT_FALSE(line.next_ping);
+  EXPECT_FALSE(line.last.next_ping);
   line.receive(encode(fire_with(false, 8, false, 256, 2)));
   line.run_for(seconds{1});
   EXPECT_TRUE(line.jobs.empty());
-  ASSERT_TRUE(line.next_ping);
-  EXPECT_EQ(line.next_ping->period, milliseconds{100});
-  EXPECT_NEAR(static_cast<double>(line.next_ping->listening.count()), 2 * 4.321 / 1522 * 1e9, 1e5);
+  ASSERT_TRUE(line.last.next_ping);
+  EXPECT_EQ(line.last.next_ping->period, milliseconds{100});
+  EXPECT_NEAR(static_cast<double>(line.last.next_ping->listening.count()), 2 * 4.321 / 1522 * 1e9, 1e5);
   line.step(NextPingDue{});
   EXPECT_EQ(line.jobs.size(), 1U);
   line.run_for(seconds{1});
@@ -441,24 +420,6 @@ TEST(OculusPlayback, SendsThePingThatItIsFedWhateverIsAskedFor) {
   EXPECT_EQ(held.data_size, DataSize::bits_16);
   EXPECT_EQ(eight_bit_samples(held), record.samples);
   EXPECT_NEAR(player.records.at(1).settings.amplitude_exponent, 200.0 / 255, 1e-12) << "of what was recorded";
-}
-
-TEST(OculusPlayback, APingWithATimeOfItsOwnKeepsIt) {
-  Line live;
-  live.receive(encode(fire_with(false, 8, false, 256, 1)));
-  live.run_for(milliseconds{100});
-  DeviceConfig config;
-  config.plays_back = true;
-  Line player(config);
-  player.receive(encode(fire_with(false, 8, false, 256, 1)));
-  ReplayedPing ping = fed(live.records.at(0), 1);
-  ping.due = milliseconds{730};
-  player.step(PingFed{ping});
-  player.run_for(milliseconds{729});
-  EXPECT_TRUE(player.jobs.empty());
-  player.run_for(milliseconds{1});
-  ASSERT_EQ(player.jobs.size(), 1U);
-  EXPECT_EQ(player.jobs[0].transmit_time, milliseconds{730});
 }
 
 TEST(OculusPlayback, WhatNoHeadCouldSendHasNoRecordedForm) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "protocol/oculus/codec.hpp"
+#include "tests/support/device_bench.hpp"
 #include "tests/support/hex_fixture.hpp"
 
 namespace sonard::oculus {
@@ -21,58 +22,30 @@ using std::chrono::seconds;
 const Peer client{Device::stream_channel, {0xC0A80205, 40000}, 0};
 const Peer second_client{Device::stream_channel, {0xC0A80206, 40001}, 0};
 
-/// A head whose pings are rendered at once, with a record of everything that it sent.
-class Bench {
+/// A head with a record of everything that it sent.
+class Bench : public DeviceBench {
  public:
-  explicit Bench(bool renders = true) : renders_(renders) { step(TimePassed{}); }
+  Bench() : DeviceBench(device, [](const PingJob& job) { return test_image(job, job.bins(), 256); }) {
+    step(TimePassed{});
+  }
 
-  void step(const Event& event) { keep(device_.step(now_, event)); }
   void connect(const Peer& who = client) { step(ClientCame{who}); }
-  void receive(const Bytes& bytes, const Peer& from = client) {
-    step(BytesReceived{from, SharedBytes(bytes)});
-  }
-  void run_for(TimePoint duration) {
-    const TimePoint end = now_ + duration;
-    while (wake_ <= end) {
-      now_ = wake_;
-      step(TimePassed{});
-    }
-    now_ = end;
-  }
-
+  void receive(const Bytes& bytes, const Peer& from = client) { DeviceBench::receive(from, bytes); }
   std::size_t count(MessageId id) const {
     return static_cast<std::size_t>(std::ranges::count_if(stream, [&](const Bytes& bytes) {
       return bytes.size() >= 16 && (bytes[6] | bytes[7] << 8) == static_cast<int>(id);
     }));
   }
 
-  Device& device() { return device_; }
-
+  Device device{{}, TimePoint{}};
   std::vector<Bytes> stream;
   std::vector<Bytes> statuses;
-  std::vector<Peer> closed;
-  std::optional<std::uint64_t> cancelled;
 
- private:
-  void keep(const Actions& actions) {
-    for (const Outgoing& message : actions.send) {
-      const Bytes bytes(message.bytes.begin(), message.bytes.end());
-      (message.to == Outgoing::To::everybody ? statuses : stream).push_back(bytes);
-    }
-    closed.insert(closed.end(), actions.disconnect.begin(), actions.disconnect.end());
-    cancelled = actions.cancelled;
-    wake_ = actions.wake_at.value();
-    ASSERT_GT(wake_, now_);
-    if (actions.render && renders_) {
-      const auto beams = static_cast<std::size_t>(actions.render->native_bins) * 256;
-      step(PingRendered{{actions.render->number, Bytes(beams, 7), {}}});
-    }
+ protected:
+  void hear(const Outgoing& message) override {
+    (message.to == Outgoing::To::everybody ? statuses : stream)
+        .emplace_back(message.bytes.begin(), message.bytes.end());
   }
-
-  const bool renders_;
-  TimePoint now_{};
-  TimePoint wake_{};
-  Device device_{{}, TimePoint{}};
 };
 
 SimpleFire fire_at(std::uint8_t rate) {
@@ -95,7 +68,7 @@ TEST(OculusDevice, SendsAStatusOf142BytesEachSecond) {
 
 TEST(OculusDevice, AMoveOfTheServerIsInTheNextStatus) {
   Bench bench;
-  bench.device().move_to(0x0A3D13C9, 0xFFFFFF00);
+  bench.device.move_to(0x0A3D13C9, 0xFFFFFF00);
   bench.run_for(seconds{1});
   const Status status = decode_status(bench.statuses.back()).value();
   EXPECT_EQ(status.address, (std::array<std::uint8_t, 4>{10, 61, 19, 201}));
@@ -176,8 +149,8 @@ TEST(OculusDevice, ASecondClientIsClosed) {
   Bench bench;
   bench.connect();
   bench.connect(second_client);
+  EXPECT_EQ(bench.last.disconnect, std::vector<Peer>{second_client});
   bench.receive(encode(fire_at(5)), second_client);
-  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
   bench.step(ClientGone{second_client});
   bench.receive(encode(fire_at(0)));
   bench.run_for(seconds{1});
@@ -189,12 +162,11 @@ TEST(OculusDevice, ASilentClientWithoutPingsGivesItsPlaceToTheNext) {
   bench.connect();
   bench.run_for(Device::most_silence - milliseconds{1});
   bench.connect(second_client);
-  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client}) << "it is not silent for long";
+  EXPECT_EQ(bench.last.disconnect, std::vector<Peer>{second_client}) << "it is not silent for long";
   bench.receive(Bytes(15, 0x4F));  // shorter than a message
   bench.run_for(milliseconds{1});
-  bench.closed.clear();
   bench.connect(second_client);
-  EXPECT_EQ(bench.closed, std::vector<Peer>{client});
+  EXPECT_EQ(bench.last.disconnect, std::vector<Peer>{client});
   bench.step(ClientGone{client});
   bench.receive(encode(fire_at(0)), second_client);
   bench.run_for(seconds{1});
@@ -208,7 +180,7 @@ TEST(OculusDevice, AClientThatPingsKeepsItsPlaceHoweverLongItOnlyListens) {
   bench.receive(encode(fire_at(4)));
   bench.run_for(std::chrono::minutes{10});
   bench.connect(second_client);
-  EXPECT_EQ(bench.closed, std::vector<Peer>{second_client});
+  EXPECT_EQ(bench.last.disconnect, std::vector<Peer>{second_client});
 }
 
 TEST(OculusDevice, ACommandOf5000BytesClosesTheConnection) {
@@ -217,7 +189,7 @@ TEST(OculusDevice, ACommandOf5000BytesClosesTheConnection) {
   Bytes bytes = encode(fire_at(0));
   bytes[11] = 0x20;
   bench.receive(bytes);
-  EXPECT_EQ(bench.closed, std::vector<Peer>{client});
+  EXPECT_EQ(bench.last.disconnect, std::vector<Peer>{client});
 }
 
 TEST(OculusDevice, UserConfigIsAnsweredAndRemembered) {
@@ -229,16 +201,6 @@ TEST(OculusDevice, UserConfigIsAnsweredAndRemembered) {
   bench.receive(encode(other));
   bench.receive(encode(UserConfig{}));
   EXPECT_TRUE(*decode_command(bench.stream.back()) == Command{other});
-}
-
-TEST(OculusDevice, APingThatNobodyWantsAnyMoreIsCancelled) {
-  Bench bench(false);
-  bench.connect();
-  bench.receive(encode(fire_at(0)));
-  bench.receive(encode(fire_at(5)));
-  EXPECT_EQ(bench.cancelled, std::optional<std::uint64_t>{0});
-  bench.step(PingNotRendered{0});
-  EXPECT_FALSE(bench.cancelled);
 }
 
 TEST(OculusDevice, RefusesAnIdOfZero) {

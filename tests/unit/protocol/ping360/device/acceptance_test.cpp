@@ -177,8 +177,8 @@ TEST(Ping360Checklist2, Mode0AndAngle400AreTaken) {
   command.mode = 255;
   bench.command(command);
   EXPECT_EQ(bench.wait_for<DeviceData>(1).at(0).mode, 255);
-  EXPECT_EQ(std::ranges::count(bench.notices, "the client's angle 400 is taken as 0"), 1);
-  EXPECT_EQ(std::ranges::count_if(bench.notices, [](const auto& it) { return it.find("mode") != it.npos; }),
+  EXPECT_EQ(std::ranges::count(bench.told(), "the client's angle 400 is taken as 0"), 1);
+  EXPECT_EQ(std::ranges::count_if(bench.told(), [](const auto& it) { return it.find("mode") != it.npos; }),
             0);
 }
 
@@ -262,7 +262,7 @@ TEST(Ping360Checklist3, AScanOutOfRangeIsRefused) {
   bench.run_for(1s);
   EXPECT_TRUE(bench.jobs.empty());
   EXPECT_EQ(
-      std::ranges::count(bench.notices, "the client's number_of_samples 1250 is refused: expected 1 to 1200"),
+      std::ranges::count(bench.told(), "the client's number_of_samples 1250 is refused: expected 1 to 1200"),
       1);
 }
 
@@ -438,7 +438,7 @@ struct Ping360Checklist5 : ::testing::Test {
   void expect_stopped(const char* why) {
     bench.run_for(3s);
     EXPECT_TRUE(bench.all<AutoDeviceData>(before).empty());
-    EXPECT_EQ(std::ranges::count(bench.notices, std::string("auto scan ended: ") + why), 1);
+    EXPECT_EQ(std::ranges::count(bench.told(), std::string("auto scan ended: ") + why), 1);
   }
 };
 

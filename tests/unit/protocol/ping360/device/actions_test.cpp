@@ -212,7 +212,7 @@ TEST(Ping360Actions, WhatHappensIsToldInWords) {
   bench.step(ClientGone{client_b});
   bench.step(ClientGone{client_a});
   bench.command(scan_of(5, 6), serial_client);
-  EXPECT_EQ(bench.notices,
+  EXPECT_EQ(bench.told(),
             (std::vector<std::string>{
                 "client 127.0.0.1:4000 connected", "client 127.0.0.1:4001 connected",
                 "auto scan by client 127.0.0.1:4001: 0 to 399 gradians, step 1",

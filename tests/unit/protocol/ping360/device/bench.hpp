@@ -19,6 +19,7 @@
 #include "protocol/ping360/codec.hpp"
 #include "protocol/ping360/device.hpp"
 #include "protocol/ping360/units.hpp"
+#include "tests/support/device_bench.hpp"
 #include "tests/support/hex_fixture.hpp"
 
 namespace sonard::ping360 {
@@ -42,17 +43,13 @@ inline DeviceConfig with_serial_line() {
   return config;
 }
 
-/// Arbitrary values that differ between pings and samples.
-inline Bytes test_samples(std::uint64_t ping, int count) {
-  Bytes samples(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i] = static_cast<std::uint8_t>(ping * 31 + i * 7);
-  }
-  return samples;
-}
-
 inline PingImage test_image(const PingJob& job) {
-  return {job.number, test_samples(job.number, job.bins()), {}};
+  return sonard::test_image(job, job.bins());
+}
+inline Bytes test_samples(std::uint64_t ping, int count) {
+  PingJob job;
+  job.number = ping;
+  return sonard::test_image(job, count).u8;
 }
 
 /// A frame from the head with its report. It owns its data, because reports are views of `frame`.
@@ -68,31 +65,20 @@ struct Heard {
   }
 };
 
-class Bench {
+class Bench : public DeviceBench {
  public:
-  explicit Bench(const DeviceConfig& config = {}) : device(config, 0ns), max_datagram_(config.max_datagram) {
+  explicit Bench(const DeviceConfig& config = {})
+      : DeviceBench(device, test_image), device(config, 0ns), max_datagram_(config.max_datagram) {
     step(TimePassed{});
   }
 
-  // Set by tests.
-  std::chrono::nanoseconds render_time{0};
-  std::function<PingImage(const PingJob&)> render = test_image;
-  bool renderer_answers = true;  ///< false: the test answers the jobs itself
-  bool renderer_fails = false;
-
   // Read by tests.
   Device device;
-  TimePoint now{};
   std::vector<Heard> heard;
   std::vector<Outgoing> datagrams;
-  std::vector<PingJob> jobs;
-  std::vector<PingRecord> records;
-  std::vector<std::string> notices;
-  Actions last;  ///< of the last step
 
-  void raw(const Bytes& bytes, const Peer& from = client_a) { step(BytesReceived{from, SharedBytes(bytes)}); }
+  void raw(const Bytes& bytes, const Peer& from = client_a) { receive(from, bytes); }
   void command(const Command& command, const Peer& from = client_a) { raw(encode(command), from); }
-  void answer(const PingImage& image) { step(PingRendered{image}); }
 
   /// The reports of one type among those sent from index `from` on.
   template <class Message>
@@ -116,24 +102,6 @@ class Bench {
     return answers;
   }
 
-  TimePoint next_event() const { return job_ ? std::min(timer_, job_->first) : timer_; }
-  /// Runs until after the next event.
-  void run_once() {
-    now = std::max(now, next_event());
-    if (job_ && job_->first <= now) {
-      const PingJob job = std::exchange(job_, std::nullopt)->second;
-      renderer_fails ? step(PingNotRendered{job.number}) : step(PingRendered{render(job)});
-    } else {
-      step(TimePassed{});
-    }
-  }
-  void run_until(TimePoint end) {
-    while (next_event() <= end) {
-      run_once();
-    }
-    now = std::max(now, end);
-  }
-  void run_for(std::chrono::nanoseconds span) { run_until(now + span); }
   /// Runs until `count` more messages of this type were sent, for at most `limit`.
   template <class Message>
   std::vector<Message> wait_for(std::size_t count, std::chrono::nanoseconds limit = 100s) {
@@ -146,34 +114,18 @@ class Bench {
     return found;
   }
 
-  void step(const Event& event) {
-    last = device.step(now, event);
-    timer_ = last.wake_at.value_or(TimePoint::max());
-    EXPECT_GT(timer_, now) << "the head would keep its caller spinning";
-    if (last.record) {
-      records.push_back(*last.record);
-    }
-    for (const Notice& notice : last.notices) {
-      notices.push_back(notice.text);
-    }
-    for (const Outgoing& message : last.send) {
-      EXPECT_EQ(message.to, Outgoing::To::peer);
-      datagrams.push_back(message);
-      hear(message);
-    }
-    if (last.render) {
-      jobs.push_back(*last.render);
-      if (renderer_answers) {
-        EXPECT_FALSE(job_) << "a second job while one is unanswered";
-        job_.emplace(now + render_time, *last.render);
-      }
-    }
-    EXPECT_TRUE(!last.cancelled || !last.render);
+  /// The texts of all notices.
+  std::vector<std::string> told() const {
+    std::vector<std::string> texts;
+    std::ranges::transform(notices, std::back_inserter(texts), &Notice::text);
+    return texts;
   }
 
- private:
+ protected:
   /// Each message must be one frame, unless the head is configured to split frames.
-  void hear(const Outgoing& message) {
+  void hear(const Outgoing& message) override {
+    EXPECT_EQ(message.to, Outgoing::To::peer);
+    datagrams.push_back(message);
     partial_.insert(partial_.end(), message.bytes.begin(), message.bytes.end());
     const auto found = next_frame(partial_);
     if (max_datagram_ > 0 && found == 0) {
@@ -187,9 +139,8 @@ class Bench {
     it.report = *report;
   }
 
+ private:
   std::size_t max_datagram_;
-  TimePoint timer_ = TimePoint::max();
-  std::optional<std::pair<TimePoint, PingJob>> job_;
   Bytes partial_;
 };
 

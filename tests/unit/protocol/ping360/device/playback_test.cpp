@@ -35,18 +35,6 @@ struct Ping360Playback : ::testing::Test {
   Bench bench{player()};
 };
 
-TEST_F(Ping360Playback, NothingIsSentThatIsNotFedOrNotAskedFor) {
-  bench.command(ping_at(5));
-  bench.run_for(3s);
-  EXPECT_TRUE(bench.heard.empty());
-  bench.step(PingFed{recorded(5)});
-  bench.run_for(3s);
-  EXPECT_EQ(bench.all<DeviceData>().size(), 1U);
-  bench.step(PingFed{recorded(6)});
-  bench.run_for(3s);
-  EXPECT_EQ(bench.jobs.size(), 1U);
-}
-
 // The answer has the recorded settings, but commands are compared by the settings that the client requested.
 TEST_F(Ping360Playback, ARepeatedCommandSharesTheRecordedAnswer) {
   bench.render_time = 500ms;
@@ -116,26 +104,6 @@ TEST_F(Ping360Playback, WhatIsRecordedAgainIsWhatWasSent) {
   EXPECT_EQ(bench.records[0].samples, test_samples(0, 30));
   EXPECT_EQ(bench.records[0].bearings_rad, std::vector<double>{1.25});
   EXPECT_EQ(bench.records[0].settings.frequency_hz, 690e3);
-}
-
-TEST_F(Ping360Playback, APingThatDoesNotSayHowItTravelledIsNone) {
-  ReplayedPing ping = recorded(5);
-  ping.wire.clear();
-  bench.step(PingFed{ping});
-  bench.command(ping_at(7));
-  bench.run_for(3s);
-  EXPECT_TRUE(bench.jobs.empty());
-}
-
-TEST_F(Ping360Playback, APingIsFedInPlaceOfTheOneBefore) {
-  bench.step(PingFed{recorded(5)});
-  bench.step(PingFed{recorded(6)});
-  bench.step(PingFed{std::nullopt});
-  bench.command(ping_at(7));
-  EXPECT_TRUE(bench.jobs.empty());
-  bench.step(PingFed{recorded(7)});
-  ASSERT_EQ(bench.jobs.size(), 1U);
-  EXPECT_EQ(bench.jobs[0].record, 7U);
 }
 
 TEST_F(Ping360Playback, APingIsMadeWhenItIsDueAndLeavesWhenItsEchoesAreIn) {

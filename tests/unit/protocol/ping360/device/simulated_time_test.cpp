@@ -13,16 +13,6 @@ DeviceConfig waiting() {
 
 struct Ping360SimulatedTime : ::testing::Test {
   Bench bench{waiting()};
-
-  /// Begins the ping that is due by now, as a server does. Returns false if there is none.
-  bool begin_next() {
-    const auto next = bench.last.next_ping;
-    if (!next || next->from > bench.now) {
-      return false;
-    }
-    bench.step(NextPingDue{});
-    return true;
-  }
 };
 
 TEST_F(Ping360SimulatedTime, ThereIsNoNextPingUntilOneIsWanted) {
@@ -48,7 +38,7 @@ TEST_F(Ping360SimulatedTime, TheNextPingSaysHowPingsFollow) {
   AutoTransmit command = scan_of(0, 399, 10);
   command.delay_ms = 5;
   bench.command(command);
-  ASSERT_TRUE(begin_next());
+  ASSERT_TRUE(bench.begin_next());
   bench.run_for(1ms);
   ASSERT_TRUE(bench.last.next_ping);
   const auto listening = 200 * 80 * 25ns;
@@ -59,7 +49,7 @@ TEST_F(Ping360SimulatedTime, TheNextPingSaysHowPingsFollow) {
 TEST_F(Ping360SimulatedTime, PingsAreTheSameAndInOrderHoweverFast) {
   bench.command(scan_of(0, 399, 3));
   for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(begin_next());
+    ASSERT_TRUE(bench.begin_next());
     bench.run_for(1ms);  // a head that uses its own clock cannot turn as fast
   }
   Bench own;
