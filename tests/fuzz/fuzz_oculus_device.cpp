@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes of two clients, images, faults and pauses against an Oculus, and its messages against
-// the code of a client. Promises: every message sent is whole and of the head's own protocol; of two clients
-// one is disconnected, the first only after a silence; the next deadline lies in the future; every job can be
-// rendered, and every record played; time goes on with any input.
+// the code of a client. Promises, beside those of all heads: every message sent is whole and of the head's
+// own protocol; of two clients one is disconnected, the first only after a silence; every record can be
+// played.
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -13,22 +14,18 @@
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
 #include "protocol/oculus/recorded_form.hpp"
-#include "tests/fuzz/require.hpp"
-#include "tests/fuzz/script.hpp"
+#include "tests/fuzz/device_fuzzer.hpp"
 
 namespace {
 
 using namespace sonard::oculus;
-using sonard::Actions;
 using sonard::Outgoing;
 using sonard::Peer;
-using sonard::PingImage;
 using sonard::PingJob;
 using sonard::SharedBytes;
 using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
-using sonard::fuzz::Script;
 
 /// Kinds of events. The first two carry bytes, each from its own client: the body of a fire, or a raw piece
 /// of stream.
@@ -74,12 +71,19 @@ sonard::ReplayedPing recorded() {
   return played;
 }
 
-class Bench {
+class OculusFuzzer final : public sonard::fuzz::DeviceFuzzer {
  public:
-  explicit Bench(unsigned flags) : config_(config_of(flags)) { step(sonard::TimePassed{}); }
+  explicit OculusFuzzer(unsigned flags) : config_(config_of(flags)) {}
 
-  void play(const Event& event) {
-    run_until(now_ + event.delay);
+  int byte_kinds() const override { return Kind::byte_kinds; }
+
+ private:
+  sonard::Device& device() override { return device_; }
+  const sonard::PingCounters& counters() const override { return device_.counters(); }
+  bool plays_back() const override { return config_.plays_back; }
+  int most_bins() const override { return 3; }
+
+  void happen(const Event& event) override {
     switch (event.kind) {
       case come_or_go:
         if (client_peer_) {
@@ -94,8 +98,8 @@ class Bench {
         if (client_peer_) {
           const Peer other = *client_peer_ == peer_of(0) ? peer_of(1) : peer_of(0);
           step(sonard::ClientCame{other});
-          require(last_.disconnect.size() == 1, "of two clients one is sent away");
-          step(sonard::ClientGone{last_.disconnect.front()});
+          require(last().disconnect.size() == 1, "of two clients one is sent away");
+          step(sonard::ClientGone{last().disconnect.front()});
         }
         break;
       case image:
@@ -108,19 +112,16 @@ class Bench {
         step(sonard::PingFed{recorded()});
         break;
       case next_due:
-        if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::NextPingDue{});
-        }
+        begin_next();
         break;
       default:
         receive(event);
     }
   }
 
- private:
   void takes_place(const Peer& client) {
     client_peer_ = client;
-    came_ = now_;
+    came_ = now();
     client_.connected();
   }
 
@@ -134,105 +135,51 @@ class Bench {
     step(sonard::BytesReceived{peer_of(event.kind), SharedBytes(bytes)});
   }
 
-  void run_until(TimePoint target) {
-    constexpr int most_wake_ups = 1000;
-    for (int i = 0; i < most_wake_ups && last_.wake_at && *last_.wake_at <= target; ++i) {
-      now_ = std::max(now_, *last_.wake_at);
-      step(sonard::TimePassed{});
-    }
-    now_ = target;
-    step(sonard::TimePassed{});
-  }
-
-  void check_message(const Outgoing& outgoing) {
+  void check_message(const Outgoing& outgoing) override {
     if (outgoing.to == Outgoing::To::everybody) {
       require(decode_status(outgoing.bytes).has_value(), "a status is whole");
       return;
     }
     require(client_peer_ == outgoing.peer, "messages are for the client");
     const ClientStatistics before = client_.statistics();
-    client_.receive(now_, outgoing.bytes);
+    client_.receive(now(), outgoing.bytes);
     const ClientStatistics& after = client_.statistics();
     require(after.messages == before.messages + 1, "one whole message at a time");
     require(after.bad_messages == 0 && after.dropped_bytes == 0, "a head speaks its own protocol");
     require(after.pings_missed == 0, "numbers of pings count up");
   }
 
-  void check_job(const PingJob& job) const {
-    require(!job_.has_value(), "one job at a time");
+  void check_job(const PingJob& job) const override {
     require(client_peer_.has_value(), "nobody wants it");
-    require(job.bins() >= 1 && job.bins() <= 3, "a job can be rendered");
+    require(job.bins() <= 3, "a job can be rendered");
     require(job.native_bin_m > 0.0 && job.native_bin_m < 1000.0, "its rows have a length");
     require(job.beams == 256 || job.beams == 512, "it has beams");
     require(job.amplitude_exponent > 0.0 && job.amplitude_exponent <= 1.0, "it has a gamma");
     require(job.gain_percent >= 0.0 && job.gain_percent <= 100.0, "it has a gain");
-    require(job.transmit_time <= now_, "a job is not ahead of its time");
-    require(!config_.plays_back || job.record.has_value(), "a player renders nothing");
+    require(job.transmit_time <= now(), "a job is not ahead of its time");
   }
 
-  void step(const sonard::Event& event) {
-    last_ = device_.step(now_, event);
+  void check_record(const sonard::PingRecord& record) const override {
+    require(recorded_form(record.wire).has_value(), "a record can be played");
+  }
+
+  void stepped(const sonard::Event& event) override {
     const auto* other = std::get_if<sonard::ClientCame>(&event);
-    if (other != nullptr && client_peer_ && std::ranges::count(last_.disconnect, *client_peer_) > 0) {
-      require(now_ - came_ >= Device::most_silence, "a client that has just come stays");
+    if (other != nullptr && client_peer_ && std::ranges::count(last().disconnect, *client_peer_) > 0) {
+      require(now() - came_ >= Device::most_silence, "a client that has just come stays");
       takes_place(other->who);
     }
-    for (const Outgoing& outgoing : last_.send) {
-      check_message(outgoing);
-    }
-    if (last_.render) {
-      check_job(*last_.render);
-      job_ = last_.render;
-    }
-    if (last_.record) {
-      const sonard::RecordedSettings& settings = last_.record->settings;
-      require(last_.record->samples.size() == static_cast<std::size_t>(settings.bins * settings.beams),
-              "a record holds a whole ping");
-      require(recorded_form(last_.record->wire).has_value(), "a record can be played");
-    }
-    require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "what is cancelled is out");
-    require(!last_.wake_at || *last_.wake_at > now_, "the next deadline is later than now");
   }
 
-  void answer_job(bool rendered) {
-    const auto job = std::exchange(job_, std::nullopt);
-    if (!job) {
-      return;
-    }
-    if (!rendered) {
-      step(sonard::PingNotRendered{job->number});
-      return;
-    }
-    PingImage samples;
-    samples.number = job->number;
-    const auto count = static_cast<std::size_t>(job->bins()) * static_cast<std::size_t>(job->beams);
-    if (job->sixteen_bit && !job->record) {
-      samples.u16.assign(count, 7777);
-    } else {
-      samples.u8.assign(count, 77);
-    }
-    step(sonard::PingRendered{samples});
-  }
-
-  TimePoint now_{};
   DeviceConfig config_;
-  Device device_{config_, now_};
+  Device device_{config_, {}};
   Client client_;
   std::optional<Peer> client_peer_;
   TimePoint came_{};  ///< time at which the client came
-  Actions last_;
-  std::optional<PingJob> job_;
 };
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) {
-    return 0;
-  }
-  Bench bench(data[0]);
-  for (Script script{{data + 1, size - 1}, byte_kinds}; !script.done();) {
-    bench.play(script.next());
-  }
-  return 0;
+std::unique_ptr<sonard::fuzz::DeviceFuzzer> sonard::fuzz::make_device_fuzzer(unsigned flags) {
+  return std::make_unique<OculusFuzzer>(flags);
 }

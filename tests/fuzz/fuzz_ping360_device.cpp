@@ -1,34 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes of three clients, images, faults and pauses against a Ping360.
-// Promises: every frame sent is a whole message of a head, for one peer; the next deadline lies in the
-// future; every job can be rendered; time goes on with any input.
-#include <algorithm>
+// Promises, beside those of all heads: every frame sent is a whole message of a head, for one peer.
 #include <cmath>
+#include <memory>
 #include <numbers>
-#include <optional>
 #include <span>
-#include <utility>
 #include <variant>
 
 #include "protocol/ping360/codec.hpp"
 #include "protocol/ping360/device.hpp"
 #include "protocol/ping360/recorded_form.hpp"
-#include "tests/fuzz/require.hpp"
-#include "tests/fuzz/script.hpp"
+#include "tests/fuzz/device_fuzzer.hpp"
 
 namespace {
 
 using namespace sonard::ping360;
-using sonard::Actions;
 using sonard::Outgoing;
 using sonard::Peer;
-using sonard::PingImage;
 using sonard::PingJob;
 using sonard::SharedBytes;
-using sonard::TimePoint;
 using sonard::fuzz::Event;
 using sonard::fuzz::require;
-using sonard::fuzz::Script;
 
 /// Kinds of events. The first three carry bytes, each from its own client: number and payload of a message,
 /// or a raw piece of stream.
@@ -56,12 +48,19 @@ DeviceConfig config_of(unsigned flags) {
   return config;
 }
 
-class Bench {
+class Ping360Fuzzer final : public sonard::fuzz::DeviceFuzzer {
  public:
-  explicit Bench(unsigned flags) : config_(config_of(flags)) { step(sonard::TimePassed{}); }
+  explicit Ping360Fuzzer(unsigned flags) : config_(config_of(flags)) {}
 
-  void play(const Event& event) {
-    run_until(now_ + event.delay);
+  int byte_kinds() const override { return Kind::byte_kinds; }
+
+ private:
+  sonard::Device& device() override { return device_; }
+  const sonard::PingCounters& counters() const override { return device_.counters(); }
+  bool plays_back() const override { return config_.plays_back; }
+  int most_bins() const override { return 1200; }
+
+  void happen(const Event& event) override {
     switch (event.kind) {
       case client_gone:
         step(sonard::ClientGone{peer_of(0)});
@@ -76,16 +75,13 @@ class Bench {
         step(sonard::PingFed{recorded()});
         break;
       case next_due:
-        if (last_.next_ping && last_.next_ping->from <= now_) {
-          step(sonard::NextPingDue{});
-        }
+        begin_next();
         break;
       default:
         hear(event);
     }
   }
 
- private:
   static sonard::ReplayedPing recorded() {
     sonard::ReplayedPing ping;
     ping.settings = {.bins = 20, .beams = 1, .bin_m = 0.01, .sound_speed_mps = 1500.0};
@@ -103,17 +99,7 @@ class Bench {
                                        bytes.subspan(2)))});
   }
 
-  void run_until(TimePoint target) {
-    constexpr int most_wake_ups = 1000;
-    for (int i = 0; i < most_wake_ups && last_.wake_at && *last_.wake_at <= target; ++i) {
-      now_ = std::max(now_, *last_.wake_at);
-      step(sonard::TimePassed{});
-    }
-    now_ = target;
-    step(sonard::TimePassed{});
-  }
-
-  void check_message(const Outgoing& outgoing) const {
+  void check_message(const Outgoing& outgoing) override {
     require(outgoing.to == Outgoing::To::peer, "messages are for one peer each");
     if (config_.max_datagram > 0) {
       require(outgoing.bytes.size() <= config_.max_datagram, "datagrams are as short as they are to be");
@@ -126,65 +112,23 @@ class Bench {
             "a head speaks its own protocol");
   }
 
-  void check_job(const PingJob& job) const {
-    require(!job_.has_value(), "one job at a time");
-    require(job.bins() >= 1 && job.bins() <= 1200, "a job can be rendered");
+  void check_job(const PingJob& job) const override {
+    require(job.bins() <= 1200, "a job can be rendered");
     constexpr double half_a_turn = std::numbers::pi + 1e-9;  // with rounding
     require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
-    require(job.transmit_time <= now_, "a job is not ahead of its time");
-    require(!config_.plays_back || job.record.has_value(), "a player renders nothing");
+    require(job.transmit_time <= now(), "a job is not ahead of its time");
   }
 
-  void step(const sonard::Event& event) {
-    last_ = device_.step(now_, event);
-    for (const Outgoing& outgoing : last_.send) {
-      check_message(outgoing);
-    }
-    if (last_.render) {
-      check_job(*last_.render);
-      job_ = last_.render;
-    }
-    if (last_.record) {
-      require(last_.record->samples.size() == static_cast<std::size_t>(last_.record->settings.bins),
-              "a record holds a whole ping");
-      require(recorded_form(last_.record->wire).has_value(), "a record can be played");
-    }
-    require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "what is cancelled is out");
-    const auto& counters = device_.counters();
-    require(counters.pings_sent + counters.pings_failed + counters.pings_cancelled <= counters.pings_started,
-            "every answer has its ping");
-    require(!last_.wake_at || *last_.wake_at > now_, "the next deadline is later than now");
+  void check_record(const sonard::PingRecord& record) const override {
+    require(recorded_form(record.wire).has_value(), "a record can be played");
   }
 
-  void answer_job(bool rendered) {
-    const auto job = std::exchange(job_, std::nullopt);
-    if (!job) {
-      return;
-    }
-    if (rendered) {
-      step(sonard::PingRendered{
-          PingImage{job->number, std::vector<std::uint8_t>(static_cast<std::size_t>(job->bins()), 77), {}}});
-    } else {
-      step(sonard::PingNotRendered{job->number});
-    }
-  }
-
-  TimePoint now_{};
   DeviceConfig config_;
-  Device device_{config_, now_};
-  Actions last_;
-  std::optional<PingJob> job_;
+  Device device_{config_, {}};
 };
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  if (size == 0) {
-    return 0;
-  }
-  Bench bench(data[0]);
-  for (Script script{{data + 1, size - 1}, byte_kinds}; !script.done();) {
-    bench.play(script.next());
-  }
-  return 0;
+std::unique_ptr<sonard::fuzz::DeviceFuzzer> sonard::fuzz::make_device_fuzzer(unsigned flags) {
+  return std::make_unique<Ping360Fuzzer>(flags);
 }
