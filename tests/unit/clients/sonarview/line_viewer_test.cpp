@@ -79,6 +79,7 @@ class Bytes final : public LineViewer {
   void refresh_pictures(ImageWriter&) override {}
   void finish_pictures(ImageWriter&) override {}
   std::string progress_text(std::uint64_t) const override { return "going on"; }
+  std::string awaited_text() const override { return "bytes of port " + std::to_string(port_); }
   std::string no_head_text(double) const override { return "open, and silent"; }
   std::string no_ping_text(double) const override { return "no more pings"; }
   bool sum_up(const RunCounters& all) override {
