@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // sonard_soak HEAD PINGS: runs pings of a head in virtual time, with a new client every 300 pings. Prints the
 // process's resources at each tenth. The exit code is 1 if they grow or anything else is wrong.
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
-#include <functional>
-#include <map>
-#include <memory>
-#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -19,13 +17,6 @@
 namespace {
 
 using namespace sonard::soak;
-
-const std::map<std::string, std::function<std::unique_ptr<HeadUnderSoak>()>> types{
-    {"gemini", gemini_under_soak},
-    {"micron", micron_under_soak},
-    {"oculus", oculus_under_soak},
-    {"ping360", ping360_under_soak},
-};
 
 double growth_percent(std::size_t before, std::size_t after) {
   return 100.0 * (static_cast<double>(after) / static_cast<double>(before) - 1.0);
@@ -67,16 +58,18 @@ bool run(HeadUnderSoak& head, std::uint64_t pings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto type = argc == 3 ? types.find(argv[1]) : types.end();
+  const auto types = types_under_soak();
+  const std::string_view name = argc == 3 ? argv[1] : "";
   const std::uint64_t pings = argc == 3 ? std::strtoull(argv[2], nullptr, 10) : 0;
+  const auto type = std::ranges::find(types, name, &TypeUnderSoak::name);
   if (type == types.end() || pings == 0) {
-    fmt::print(stderr, "Usage: sonard_soak gemini|micron|oculus|ping360 PINGS\n");
+    fmt::print(stderr, "Usage: sonard_soak HEAD PINGS; HEAD is an entry of cmake/devices.cmake\n");
     return 64;
   }
   try {
-    return run(*type->second(), pings) ? 0 : 1;
+    return run(*type->make(), pings) ? 0 : 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}: {}\n", type->first, error.what());
+    fmt::print(stderr, "{}: {}\n", name, error.what());
     return 1;
   }
 }

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "protocol/common/device.hpp"
@@ -72,10 +74,12 @@ class HeadUnderSoak {
   virtual void check(TimePoint now, const Outgoing& message) = 0;
 };
 
-std::unique_ptr<HeadUnderSoak> gemini_under_soak();
-std::unique_ptr<HeadUnderSoak> micron_under_soak();
-std::unique_ptr<HeadUnderSoak> ping360_under_soak();
-std::unique_ptr<HeadUnderSoak> oculus_under_soak();
+struct TypeUnderSoak {
+  std::string_view name;
+  std::unique_ptr<HeadUnderSoak> (*make)();
+};
+/// In the order of cmake/devices.cmake; the build writes this function.
+std::span<const TypeUnderSoak> types_under_soak();
 
 /// @throws std::runtime_error{what} if `condition` is false
 void require(bool condition, const char* what);
