@@ -191,7 +191,7 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
                   {"default", Preset::normal},
                   {"reference", Preset::reference},
                   {"grid", Preset::grid}},
-                 "target error: `fast` 5 %, `default` 1 %, `reference` as small as possible (for offline "
+                 "target error: `fast` 5 %, `default` 1.25 %, `reference` as small as possible (for offline "
                  "use); `grid`: a fixed grid of samples");
   section.integer("views", sampling.views, 1, 32,
                   "only with `grid`: number of views across the fan; more if one would exceed 60 degrees");
