@@ -216,7 +216,7 @@ int render_offline(const OfflineArguments& arguments, Run& running) {
   return render_trajectory(loaded, arguments.options());
 }
 
-/// Any exception as an Error: those of libraries and of rooms below the server have no kind of their own.
+/// Converts any exception to an Error. Exceptions of libraries and of rooms below the server have no kind.
 Error as_error(const std::exception& error) {
   if (const auto* known = dynamic_cast<const Error*>(&error)) {
     return *known;

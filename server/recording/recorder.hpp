@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "server/clock/clock.hpp"

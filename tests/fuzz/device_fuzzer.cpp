@@ -33,7 +33,7 @@ void DeviceFuzzer::step(const sonard::Event& event) {
             "a record holds a whole ping");
     check_record(*last_.record);
   }
-  require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "what is cancelled is out");
+  require(!last_.cancelled || (job_ && job_->number == *last_.cancelled), "a cancelled job is unanswered");
   require(counters().pings_ended() <= counters().pings_started, "each ping has one end");
   require(!last_.wake_at || *last_.wake_at > now_, "the next deadline is later than now");
 }

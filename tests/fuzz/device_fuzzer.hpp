@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any sequence of bytes, images, faults, recorded pings and pauses against a head of any type.
-// Promises: at most one job is out, and it can be rendered; what is cancelled is out; each record holds a
-// whole ping; each ping has one end; the next deadline lies in the future; time goes on with any input.
+// Promises: at most one job is unanswered, and it can be rendered; a cancelled job is unanswered; each record
+// holds a whole ping; each ping ends once; the next deadline lies in the future; time goes on with any input.
 #pragma once
 
 #include <algorithm>

@@ -121,7 +121,7 @@ class DeviceBench {
         job_.emplace(now + render_time, *last.render);
       }
     }
-    EXPECT_TRUE(!last.cancelled || last.cancelled == unanswered_) << "what is cancelled is outstanding";
+    EXPECT_TRUE(!last.cancelled || last.cancelled == unanswered_) << "a cancelled job is unanswered";
     EXPECT_TRUE(!last.cancelled || !last.render);
   }
 
