@@ -36,8 +36,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "data"
 CORPUS = HERE / "corpus"
 CONFIGURATIONS = HERE.parent.parent / "configs"
-sys.path.append(str(HERE.parent / "system" / "gemini"))
+sys.path += [str(HERE.parent / "system" / "gemini"), str(HERE.parent / "support")]
 import wire
+from example_messages import example, messages
 
 # Kinds of events, as in the programs for the Gemini.
 FROM_A, FROM_B, FEED, TRIGGER, WATER, IMAGE, IMAGE_FAILED, NEXT_DUE = range(8)
@@ -54,8 +55,8 @@ OCULUS, OCULUS_OTHER, OCULUS_CLIENT, OCULUS_SECOND, OCULUS_IMAGE, OCULUS_FAILED,
 AS_IS = 0x80
 
 
-def example(name, device="gemini"):
-    return bytes.fromhex((EXAMPLES / device / f"{name}.hex").read_text())
+def gemini(name):
+    return example("gemini", name)
 
 
 def event(kind, datagram=None, delay=2):
@@ -65,7 +66,7 @@ def event(kind, datagram=None, delay=2):
 
 
 def patched(name, offset, form, value):
-    data = bytearray(example(name))
+    data = bytearray(gemini(name))
     struct.pack_into(form, data, offset, value)
     return bytes(data)
 
@@ -96,35 +97,35 @@ def device_scripts():
 def rendering_device_scripts():
     single, continuous = pings_of_40_lines(continuous=False), pings_of_40_lines(continuous=True)
     ping = event(FROM_A, single) + event(IMAGE) + event(PAUSE, delay=20)
-    yield "single_ping", event(FROM_A, example("status_request")) + ping
+    yield "single_ping", event(FROM_A, gemini("status_request")) + ping
     yield "retries", ping + b"".join(
         event(FROM_A, patched(name, 10, "<H", 5)) for name in ("retry_line", "retry_tail", "observed_retry_lines"))
     yield "continuous", event(FROM_A, continuous) + 4 * (event(IMAGE) + event(PAUSE, delay=40))
     yield "silence_and_resume", event(FROM_A, continuous) + event(IMAGE) + event(PAUSE, delay=200) + event(
-        FROM_A, example("status_request")) + event(IMAGE)
+        FROM_A, gemini("status_request")) + event(IMAGE)
     yield "run_length", event(FROM_A, single[:54] + b"\x32\x00" + single[56:]) + event(IMAGE) + event(PAUSE)
     yield "sixteen_bit", event(FROM_A, single[:18] + b"\x00\x02" + single[20:]) + event(IMAGE) + event(PAUSE)
     yield "compressed", event(FROM_A, single[:52] + b"\x02\x00" + single[54:]) + event(IMAGE) + event(PAUSE)
     yield "trigger", event(FROM_A, single[:16] + b"\x02\x00" + single[18:]) + event(TRIGGER) + event(IMAGE)
     yield "out_of_water", event(WATER) + event(FROM_A, single[:18] + b"\x04\x00" + single[20:]) + event(WATER) + ping
     yield "failed_image", event(FROM_A, single) + event(IMAGE_FAILED) + ping
-    yield "two_clients", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, example("status_request"))
-    yield "reboot", event(FROM_A, example("observed_info_block_write")) + event(FROM_A, example("observed_reboot")) + event(
+    yield "two_clients", ping + event(FROM_B, single) + event(IMAGE) + event(FROM_A, gemini("status_request"))
+    yield "reboot", event(FROM_A, gemini("observed_info_block_write")) + event(FROM_A, gemini("observed_reboot")) + event(
         PAUSE, delay=250) + ping
     yield "session", b"".join(
-        event(FROM_A, example(name), delay=5)
+        event(FROM_A, gemini(name), delay=5)
         for name in ("mdio_commands", "status_request", "observed_diagnostic_request", "network_config")
-    ) + ping + event(FROM_A, example("observed_going_offline"))
+    ) + ping + event(FROM_A, gemini("observed_going_offline"))
     yield "production", b"".join(
-        event(FROM_A, example(name)) for name in (
+        event(FROM_A, gemini(name)) for name in (
             "flash_read", "info_block_read", "info_block_write_identity", "serial_transmit", "test_result_request",
             "production_test", "power_on_self_test", "abort_production_test", "tx_drive_test", "gpo_write", "gpio_read"))
-    yield "flash_write", event(FROM_A, example("flash_write")) + event(FROM_A, example("flash_read"))
+    yield "flash_write", event(FROM_A, gemini("flash_write")) + event(FROM_A, gemini("flash_read"))
 
 
 def ping_datagrams(lines, resent=()):
     """Head, lines and tail of a ping; the lines of `resent` come after the tail."""
-    line = example("ping_line")
+    line = gemini("ping_line")
 
     def numbered(number, flag=0):
         info = 0x2044 if number == lines - 1 else 0x2004
@@ -134,15 +135,15 @@ def ping_datagrams(lines, resent=()):
     for number in range(lines):
         if number not in resent:
             yield numbered(number)
-    yield example("ping_tail")
+    yield gemini("ping_tail")
     for number in resent:
         yield numbered(number, 0x8000)
     if resent:
-        yield example("ping_tail_resent")
+        yield gemini("ping_tail_resent")
 
 
 def client_scripts():
-    meet = event(FROM_HEAD, example("status")) + event(FROM_HEAD, example("status"))
+    meet = event(FROM_HEAD, gemini("status")) + event(FROM_HEAD, gemini("status"))
 
     def ping(*args, **kwargs):
         return b"".join(event(FROM_HEAD, d, delay=1) for d in ping_datagrams(*args, **kwargs))
@@ -155,13 +156,13 @@ def client_scripts():
     yield "lost_head", meet + event(START_SINGLE) + b"".join(
         event(FROM_HEAD, d, delay=1) for d in list(ping_datagrams(3))[1:]) + event(PAUSE, delay=150)
     yield "no_answer", meet + event(START_SINGLE) + event(PAUSE, delay=200) + event(STOP)
-    yield "small_talk", meet + event(FROM_HEAD, example("acknowledge")) + event(
-        FROM_HEAD, example("diagnostic")) + event(FROM_HEAD, example("gpi_data"))
+    yield "small_talk", meet + event(FROM_HEAD, gemini("acknowledge")) + event(
+        FROM_HEAD, gemini("diagnostic")) + event(FROM_HEAD, gemini("gpi_data"))
 
 
 def micron_frame(name, as_is=False, delay=2):
     """A frame as it is, or its type and data, of which the program makes a frame again."""
-    frame = example(name, "micron")
+    frame = example("micron", name)
     return event(AS_IS | BYTES, frame, delay) if as_is else event(BYTES, frame[10:11] + frame[13:-1], delay)
 
 
@@ -171,7 +172,7 @@ def micron_device_scripts():
         yield name, b"\0" + script
     scan = event(PAUSE, delay=220) + micron_frame("head_command_ros", as_is=True) + micron_frame("send_data") + event(
         PAUSE, delay=100)
-    whole = example("head_data", "micron")
+    whole = example("micron", "head_data")
     outline = whole[13:42] + struct.pack("<H", 0)
     line = event(LINE) + event(PAUSE, delay=30)
     yield "played", bytes([PLAYS_BACK]) + scan + 3 * (event(LINE_FED, outline) + line + micron_frame("send_data"))
@@ -195,7 +196,7 @@ def rendering_micron_device_scripts():
     yield "no_alives", micron_frame("stop_alives", delay=110) + up
     cut = bytes.fromhex("40 30 30 30 43 0c 00 ff 02 07 10 80 02 0a")
     yield "cut_reboot", up + event(AS_IS | BYTES, cut) + event(PAUSE, delay=35) + up
-    whole = example("head_command_uxv", "micron")
+    whole = example("micron", "head_command_uxv")
     yield "split", up + event(AS_IS | BYTES, whole[:20]) + event(AS_IS | BYTES, whole[20:]) + micron_frame("send_data")
 
 
@@ -218,7 +219,7 @@ def oculus_device_scripts():
         return bytes([flags]) + event(OCULUS_CLIENT) + b"".join(events)
 
     def fire(name, delay=2):
-        return event(AS_IS | OCULUS, example(name, "oculus"), delay)
+        return event(AS_IS | OCULUS, example("oculus", name), delay)
 
     image = event(OCULUS_IMAGE, delay=32)
     for name in ("vendor", "ensta", "ensta_resume_v2", "liboculus_8_bit", "liboculus_32_bit"):
@@ -228,26 +229,26 @@ def oculus_device_scripts():
     yield "user_config", script(0, fire("user_config_request"), fire("user_config"), fire("fire_vendor"), image)
     yield "second_client", script(8, fire("fire_ensta"), event(OCULUS_SECOND), event(OCULUS_OTHER, b"", 10), image,
                                   event(OCULUS_CLIENT), event(OCULUS_CLIENT), fire("fire_vendor"), image)
-    whole = example("fire_liboculus_8_bit", "oculus")
+    whole = example("oculus", "fire_liboculus_8_bit")
     yield "split", script(0, event(AS_IS | OCULUS, b"SxS" + whole[:30]), event(AS_IS | OCULUS, whole[30:]), image)
     yield "too_long", script(0, event(AS_IS | OCULUS, whole[:10] + b"\0\0\1\0" + whole[14:]), fire("fire_vendor"))
     yield "next_ping_due", script(PLAYS_BACK << 1, fire("fire_ensta"), 3 * (event(OCULUS_NEXT_DUE) + image))
     yield "played", script(PLAYS_BACK, fire("fire_liboculus_32_bit"), 3 * (event(OCULUS_FEED) + image))
-    body = example("fire_ensta", "oculus")[16:]
+    body = example("oculus", "fire_ensta")[16:]
     yield "bodies", script(0x10, event(OCULUS, body), image, event(OCULUS, b"\1\2\1\0\xff" + body[5:]), image)
 
 
 def oculus_streams():
     names = ("ping_result_v1", "ping_result_v2", "dummy", "user_config")
     for name in names:
-        yield name, example(name, "oculus")
-    yield "stream", b"S\0SO".join(example(name, "oculus") for name in names)
-    yield "log", example("dummy", "oculus")[:6] + b"\x80\0\0\0\5\0\0\0\0\0ready"
+        yield name, example("oculus", name)
+    yield "stream", b"S\0SO".join(example("oculus", name) for name in names)
+    yield "log", example("oculus", "dummy")[:6] + b"\x80\0\0\0\5\0\0\0\0\0ready"
 
 
 def ping360_message(name, kind=P360_A, as_is=False, delay=2):
     """A frame as it is, or its number and payload, of which the program makes a frame again."""
-    frame = example(name, "ping360")
+    frame = example("ping360", name)
     return event(AS_IS | kind, frame, delay) if as_is else event(kind, frame[4:6] + frame[8:-2], delay)
 
 
@@ -276,7 +277,7 @@ def ping360_device_scripts():
                            event(P360_FEED), image)
     yield "ids", script(0, ping360_message("set_device_id"), ping360_message("set_common_device_id"),
                         ping360_message("nack_not_recognised"), event(P360_A, struct.pack("<HH", 6, 2000)))
-    whole = example("transducer", "ping360")
+    whole = example("ping360", "transducer")
     yield "split", script(0, event(AS_IS | P360_A, whole[:9]), event(AS_IS | P360_B, b"\0\xff"),
                           event(AS_IS | P360_A, whole[9:]), event(P360_IMAGE, delay=130))
     yield "idle", script(0, scan, image, event(P360_NEXT_DUE, delay=255), event(P360_NEXT_DUE, delay=255), event(P360_NEXT_DUE, delay=255),
@@ -298,10 +299,9 @@ def ping360_client_scripts():
 
 
 def ping360_frames():
-    names = sorted(path.stem for path in (EXAMPLES / "ping360").glob("*.hex"))
-    for name in names:
-        yield name, example(name, "ping360")
-    yield "stream", b"\0\xffUBR".join(example(name, "ping360") for name in names)
+    frames = {name: message["bytes"] for name, message in sorted(messages("ping360").items())}
+    yield from frames.items()
+    yield "stream", b"\0\xffUBR".join(frames.values())
     yield "discovery", b"Discovery"
     yield "set_ip", b"SetSS1IP 192.168.002.004"
 
@@ -550,11 +550,10 @@ def write(folder, name, data):
 
 def main():
     for device, folder in (("gemini", "gemini/datagrams"), ("micron", "micron/frames")):
-        for path in sorted((EXAMPLES / device).glob("*.hex")):
-            write(folder, path.stem, example(path.stem, device))
+        for name, message in messages(device).items():
+            write(folder, name, message["bytes"])
     write("micron/frames", "stream", b"@\n@0008".join(
-        example(path.stem, "micron") for path in sorted((EXAMPLES / "micron").glob("*.hex"))
-        if path.stat().st_size < 100))
+        frame for _, message in sorted(messages("micron").items()) if len(frame := message["bytes"]) < 34))
     for folder, scripts in (("gemini/device", device_scripts()), ("gemini/client", client_scripts()),
                             ("micron/device", micron_device_scripts()), ("micron/client", micron_client_scripts()),
                             ("oculus/device", oculus_device_scripts()), ("oculus/client", oculus_streams()),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the head of a Gemini's ping. Reads its bytes from standard input as hexadecimal numbers, as tcpdump
-// prints them or as in tests/data/gemini/ping_head.hex.
+// Prints the head of a Gemini's ping. Reads its bytes from standard input as hexadecimal numbers: "41 01 59
+// ...".
 #include <cstdint>
 #include <iostream>
 #include <string>

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "tests/logs/wireshark/captures.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::testing {
 namespace {
@@ -25,11 +25,11 @@ Bytes broken(Bytes bytes, std::mt19937& random) {
 }
 
 void expect_no_failure(const std::string& device, std::uint16_t port) {
-  const auto names = hex_fixture_names(device);
+  const auto names = message_names(device);
   std::mt19937 random{1};
   std::vector<pcapng::Bytes> packets;
   for (int i = 0; i < packet_count; ++i) {
-    const Bytes payload = broken(load_hex_fixture(device, names[random() % names.size()]), random);
+    const Bytes payload = broken(message_bytes(device, names[random() % names.size()]), random);
     packets.push_back(pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, port}, payload));
   }
   int dissected = 0;
@@ -64,13 +64,13 @@ void expect_no_failure(const std::vector<pcapng::Bytes>& packets) {
 
 // Consecutive broken frames in datagrams that cut them anywhere.
 TEST(HostileBytes, Ping360Stream) {
-  const auto names = hex_fixture_names("ping360");
+  const auto names = message_names("ping360");
   std::mt19937 random{2};
   std::vector<pcapng::Bytes> packets;
   for (int i = 0; i < packet_count; ++i) {
     Bytes payload;
     for (unsigned frames = 1 + random() % 4; frames > 0; --frames) {
-      const Bytes frame = broken(load_hex_fixture("ping360", names[random() % names.size()]), random);
+      const Bytes frame = broken(message_bytes("ping360", names[random() % names.size()]), random);
       payload.insert(payload.end(), frame.begin(), frame.end());
     }
     packets.push_back(pcapng::udp_packet({0x7F000001, 50'000}, {0x7F000001, 9092}, payload));
@@ -80,12 +80,12 @@ TEST(HostileBytes, Ping360Stream) {
 
 // The same kind of broken messages in one stream, which Wireshark reassembles.
 TEST(HostileBytes, OculusStream) {
-  const auto names = hex_fixture_names("oculus");
+  const auto names = message_names("oculus");
   std::mt19937 random{3};
   pcapng::TcpConversation line{{0x7F000001, 50'000}, {0x7F000001, 52'100}};
   std::vector<pcapng::Bytes> packets;
   for (int i = 0; i < packet_count; ++i) {
-    const Bytes message = broken(load_hex_fixture("oculus", names[random() % names.size()]), random);
+    const Bytes message = broken(message_bytes("oculus", names[random() % names.size()]), random);
     const auto sent = random() % 2 == 0 ? line.from_server(message) : line.from_client(message);
     packets.insert(packets.end(), sent.begin(), sent.end());
   }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Oculus through the dissector. Expected values are read off docs/protocols/oculus.md
-// (section 10) by hand.
+// The dissector of the Oculus with streams, bytes between messages, and sizes that do not fit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "tests/logs/wireshark/captures.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/message_fields.hpp"
 
 namespace sonard::testing {
 namespace {
@@ -18,127 +17,15 @@ const std::string prefix = "oculus_sonar.";
 constexpr pcapng::Endpoint head{0xC0A80204, 52'100};
 constexpr pcapng::Endpoint client{0xC0A80205, 40'000};
 
-struct Expectation {
-  std::string fixture;
-  std::string message;
-  Row fields;
-  std::string complaint = "";
-};
-
-const std::string unstated = "The size is not stated: it follows from the kind (3.1)";
-
-const std::vector<Expectation> commands{
-    {"fire_vendor",
-     "simple_fire",
-     {{"fire.masterMode", "1"},
-      {"fire.flags", "0x49"},
-      {"fire.range", "10"},
-      {"fire.gainPercent", "20"},
-      {"fire.salinity", "35"},
-      {"body_version", "1"},
-      {"from_head", "0"}},
-     unstated},
-    {"fire_ensta_standby", "simple_fire", {{"fire.pingRate", "5"}, {"fire.speedOfSound", "1500"}}},
-    {"fire_ensta_resume_v2", "simple_fire", {{"header.msgVersion", "2"}, {"body_version", "1"}}},
-    {"fire_liboculus_32_bit",
-     "simple_fire",
-     {{"fire_extension.extFlags", "0x00000200"}, {"body_version", "2"}}},
-    {"user_config_request", "user_config", {{"address", "0.0.0.0"}}, unstated},
-};
-
-const std::vector<Expectation> reports{
-    {"ping_result_v1",
-     "simple_ping_result",
-     {{"header.srcDeviceId", "7892"},
-      {"header.partNumber", "1042"},
-      {"result_v1.pingId", "42"},
-      {"result_v1.frequency", "750000"},
-      {"result_v1.temperature", "18.5"},
-      {"result_v1.nRanges", "3"},
-      {"result_v1.nBeams", "4"},
-      {"result_v1.imageOffset", "136"},
-      {"first_bearing_deg", "-65"},
-      {"last_bearing_deg", "65"},
-      {"bits", "8"},
-      {"image", "0100000000010203040000000a0b0c0d1000000014151617"},
-      {"from_head", "1"}}},
-    {"ping_result_v2",
-     "simple_ping_result",
-     {{"result_v2.pingId", "43"},
-      {"result_v2.frequency", "2100000"},
-      {"result_v2.heading", "90"},
-      {"result_v2.pitch", "-1.5"},
-      {"result_v2.pingStartTime", "12.345678"},
-      {"bits", "16"},
-      {"last_bearing_deg", "30"}}},
-    {"dummy", "dummy", {{"header.payloadSize", "0"}}},
-    {"user_config", "user_config", {{"address", "192.168.2.4"}}},
-};
-
-std::vector<std::string> fields_of(const std::vector<Expectation>& expectations) {
-  std::vector<std::string> fields{prefix + "message", expert_field};
-  for (const Expectation& expected : expectations) {
-    for (const auto& [field, value] : expected.fields) {
-      fields.push_back(prefix + field);
-    }
-  }
-  return fields;
-}
-
-void expect(const Row& row, const Expectation& expected) {
-  SCOPED_TRACE(expected.fixture);
-  EXPECT_EQ(row.at(prefix + "message"), expected.message);
-  EXPECT_EQ(row.at(expert_field), expected.complaint);
-  for (const auto& [field, value] : expected.fields) {
-    EXPECT_EQ(row.at(prefix + field), value) << field;
-  }
-}
-
-TEST(OculusDissector, FieldsOfCommands) {
-  pcapng::TcpConversation line{client, head};
-  std::vector<pcapng::Bytes> packets;
-  for (const Expectation& expected : commands) {
-    packets.push_back(line.from_client(load_hex_fixture("oculus", expected.fixture)).at(0));
-  }
-  const auto rows = dissect(packets, fields_of(commands));
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    expect(rows[i], commands[i]);
-  }
-}
-
-TEST(OculusDissector, FieldsOfReports) {
-  pcapng::TcpConversation line{client, head};
-  std::vector<pcapng::Bytes> packets;
-  for (const Expectation& expected : reports) {
-    packets.push_back(line.from_server(load_hex_fixture("oculus", expected.fixture)).at(0));
-  }
-  const auto rows = dissect(packets, fields_of(reports));
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    expect(rows[i], reports[i]);
-  }
-}
-
-TEST(OculusDissector, FieldsOfAStatus) {
-  const Expectation expected{"status",
-                             "status",
-                             {{"status.deviceId", "7892"},
-                              {"status.partNumber", "1042"},
-                              {"status.status", "0x00000003"},
-                              {"address", "192.168.2.4"},
-                              {"client", "0.0.0.0"},
-                              {"status.pressure", "1.25"}}};
-  const pcapng::Bytes packet = pcapng::udp_packet({head.address, 50'000}, {0xFFFFFFFF, 52'102},
-                                                  load_hex_fixture("oculus", expected.fixture));
-  expect(dissect({packet}, fields_of({expected}))[0], expected);
-}
+const std::vector<std::string> reports{"ping_result_v1", "ping_result_v2", "dummy", "user_config"};
 
 TEST(OculusDissector, AStreamIsPutTogetherFromAnyPieces) {
   Bytes stream;
   std::string names;
-  for (const Expectation& expected : reports) {
-    const Bytes message = load_hex_fixture("oculus", expected.fixture);
-    stream.insert(stream.end(), message.begin(), message.end());
-    names += expected.message + ",";
+  for (const std::string& name : reports) {
+    const Message& report = message_of("oculus", name);
+    stream.insert(stream.end(), report.bytes.begin(), report.bytes.end());
+    names += report.message + ",";
   }
   for (const std::size_t piece : {2000U, 50U, 3U}) {
     SCOPED_TRACE(piece);
@@ -163,7 +50,7 @@ TEST(OculusDissector, AStreamIsPutTogetherFromAnyPieces) {
 
 TEST(OculusDissector, GarbageAndSizesThatDoNotFitAreShown) {
   Bytes bytes{'S', 'x', 'O'};
-  Bytes ping = load_hex_fixture("oculus", "ping_result_v1");
+  Bytes ping = message_bytes("oculus", "ping_result_v1");
   ping.at(106) = 2;  // rows
   bytes.insert(bytes.end(), ping.begin(), ping.end());
   pcapng::TcpConversation line{client, head};

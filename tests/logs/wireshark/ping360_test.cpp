@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Byte examples of the Ping360 through the dissector, over UDP and TCP. Expected values are read off
-// docs/protocols/ping360.md (sections 1, 2, 5) by hand; bearings are 0.9 degrees for each gradian (2.2).
+// The dissector of the Ping360 with streams over UDP and TCP, damaged frames, other ports, and discovery.
+// Expected values are read off docs/protocols/ping360.md (sections 1, 2, 5) by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 #include <string_view>
 
 #include "tests/logs/wireshark/captures.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::testing {
 namespace {
@@ -54,155 +53,6 @@ Bytes frame(std::uint16_t id, std::uint8_t source, const Bytes& payload) {
   const unsigned sum = std::accumulate(bytes.begin(), bytes.end(), 0U);
   append(bytes, {low(sum), low(sum >> 8)});
   return bytes;
-}
-
-struct Expectation {
-  std::string fixture;
-  std::string message;
-  Row fields;
-};
-
-const std::vector<Expectation> expectations{
-    {"request_protocol_version",
-     "general_request",
-     {{"frame.source", "0"},
-      {"frame.destination", "0"},
-      {"frame.payload_length", "2"},
-      {"from_head", "0"},
-      {"general_request.requested_id", "5"},
-      {"about", "protocol_version"},
-      {"checksum", "0x00a1"}}},
-    {"protocol_version",
-     "protocol_version",
-     {{"frame.source", "2"},
-      {"from_head", "1"},
-      {"protocol_version.version_major", "1"},
-      {"protocol_version.version_minor", "0"},
-      {"protocol_version.version_patch", "0"}}},
-    {"request_device_information", "general_request", {{"about", "device_information"}}},
-    {"device_information",
-     "device_information",
-     {{"device_information.device_type", "2"},
-      {"device_information.device_revision", "1"},
-      {"device_information.firmware_version_major", "3"},
-      {"device_information.firmware_version_minor", "3"},
-      {"device_information.firmware_version_patch", "8"}}},
-    {"request_device_data",
-     "general_request",
-     {{"general_request.requested_id", "2300"}, {"about", "device_data"}}},
-    {"device_data_at_boot",
-     "device_data",
-     {{"device_data.mode", "1"},
-      {"device_data.gain_setting", "0"},
-      {"device_data.angle", "0"},
-      {"device_data.transmit_duration", "32"},
-      {"device_data.sample_period", "80"},
-      {"device_data.transmit_frequency", "740"},
-      {"device_data.number_of_samples", "1024"},
-      {"device_data.data_length", "0"},
-      {"bearing_deg", "0"},
-      {"data", ""}}},
-    {"transducer",
-     "transducer",
-     {{"transducer.mode", "1"},
-      {"transducer.gain_setting", "1"},
-      {"transducer.angle", "200"},
-      {"transducer.transmit_duration", "11"},
-      {"transducer.sample_period", "88"},
-      {"transducer.transmit_frequency", "750"},
-      {"transducer.number_of_samples", "1200"},
-      {"transducer.transmit", "1"},
-      {"bearing_deg", "180"}}},
-    {"device_data",
-     "device_data",
-     {{"device_data.gain_setting", "1"},
-      {"device_data.angle", "200"},
-      {"device_data.transmit_duration", "11"},
-      {"device_data.sample_period", "88"},
-      {"device_data.number_of_samples", "8"},
-      {"device_data.data_length", "8"},
-      {"bearing_deg", "180"},
-      {"data", "0010203040ff8001"}}},
-    {"nack_sample_period",
-     "nack",
-     {{"nack.nacked_id", "2601"}, {"about", "transducer"}, {"text", "sample_period out of range"}}},
-    {"nack_not_recognised",
-     "nack",
-     {{"nack.nacked_id", "100"}, {"about", "set_common_device_id"}, {"text", "command not recognised"}}},
-    {"auto_transmit",
-     "auto_transmit",
-     {{"auto_transmit.mode", "1"},
-      {"auto_transmit.gain_setting", "0"},
-      {"auto_transmit.transmit_duration", "80"},
-      {"auto_transmit.sample_period", "80"},
-      {"auto_transmit.transmit_frequency", "750"},
-      {"auto_transmit.number_of_samples", "1024"},
-      {"auto_transmit.start_angle", "0"},
-      {"auto_transmit.stop_angle", "399"},
-      {"auto_transmit.num_steps", "1"},
-      {"auto_transmit.delay", "0"}}},
-    {"auto_device_data",
-     "auto_device_data",
-     {{"auto_device_data.angle", "399"},
-      {"auto_device_data.transmit_duration", "80"},
-      {"auto_device_data.sample_period", "80"},
-      {"auto_device_data.transmit_frequency", "750"},
-      {"auto_device_data.start_angle", "0"},
-      {"auto_device_data.stop_angle", "399"},
-      {"auto_device_data.num_steps", "1"},
-      {"auto_device_data.delay", "0"},
-      {"auto_device_data.number_of_samples", "4"},
-      {"auto_device_data.data_length", "4"},
-      {"bearing_deg", "-0.9"},
-      {"data", "09080706"}}},
-    {"motor_off", "motor_off", {{"frame.message_id", "2903"}, {"frame.payload_length", "0"}}},
-    {"ack_motor_off", "ack", {{"ack.acked_id", "2903"}, {"about", "motor_off"}}},
-    {"reset", "reset", {{"reset.bootloader", "0"}}},
-    {"set_device_id", "set_device_id", {{"set_device_id.id", "7"}, {"from_head", "0"}}},
-    {"set_common_device_id",
-     "set_common_device_id",
-     {{"frame.destination", "2"}, {"set_common_device_id.device_id", "3"}}},
-    {"ascii_text", "ascii_text", {{"text", "hello"}}},
-    {"transducer_brping",
-     "transducer",
-     {{"transducer.mode", "0"},
-      {"transducer.angle", "100"},
-      {"transducer.number_of_samples", "400"},
-      {"bearing_deg", "90"}}},
-    {"transducer_ros_python",
-     "transducer",
-     {{"transducer.gain_setting", "1"}, {"transducer.angle", "10"}, {"bearing_deg", "9"}}},
-    {"transducer_pnarvor",
-     "transducer",
-     {{"transducer.transmit_duration", "100"},
-      {"transducer.sample_period", "4000"},
-      {"transducer.transmit_frequency", "800"},
-      {"transducer.number_of_samples", "512"}}},
-};
-
-TEST(Ping360Dissector, FieldsOfExamples) {
-  std::vector<pcapng::Bytes> packets;
-  std::vector<std::string> fields{prefix + "message", expert_field};
-  std::set<std::string> names;
-  for (const Expectation& expected : expectations) {
-    packets.push_back(datagram_of(load_hex_fixture("ping360", expected.fixture)));
-    names.insert(expected.fixture);
-    for (const auto& [field, value] : expected.fields) {
-      fields.push_back(prefix + field);
-    }
-  }
-  const auto all = hex_fixture_names("ping360");
-  EXPECT_EQ(names, std::set<std::string>(all.begin(), all.end()));
-
-  const auto rows = dissect(packets, fields);
-  for (std::size_t i = 0; i < expectations.size(); ++i) {
-    SCOPED_TRACE(expectations[i].fixture);
-    EXPECT_EQ(rows[i].at(prefix + "message"), expectations[i].message);
-    EXPECT_EQ(rows[i].at(expert_field), "");
-    for (const auto& [field, value] : expectations[i].fields) {
-      EXPECT_EQ(rows[i].at(prefix + field), value) << field;
-    }
-  }
 }
 
 // If only one side sends a message, its number gives the direction; otherwise the sender's number does (1,
@@ -252,8 +102,8 @@ const std::vector<std::string> complaints{
 /// All examples of one direction, one after another.
 Bytes stream(bool commands) {
   Bytes all;
-  for (const std::string& name : hex_fixture_names("ping360")) {
-    const Bytes bytes = load_hex_fixture("ping360", name);
+  for (const std::string& name : message_names("ping360")) {
+    const Bytes bytes = message_bytes("ping360", name);
     if (is_command(bytes) == commands) {
       append(all, bytes);
     }
@@ -264,8 +114,8 @@ Bytes stream(bool commands) {
 /// The numbers of these examples in the same order.
 std::string ids_of(bool commands) {
   std::string ids;
-  for (const std::string& name : hex_fixture_names("ping360")) {
-    const Bytes bytes = load_hex_fixture("ping360", name);
+  for (const std::string& name : message_names("ping360")) {
+    const Bytes bytes = message_bytes("ping360", name);
     ids += is_command(bytes) == commands ? std::to_string(bytes[4] | bytes[5] << 8) + "," : "";
   }
   return ids;
@@ -350,7 +200,7 @@ TEST(Ping360Dissector, DatagramsArePutTogetherFromAnyPieces) {
 }
 
 TEST(Ping360Dissector, AFrameInPiecesNamesThePacketWhereItBegan) {
-  const Bytes data = load_hex_fixture("ping360", "device_data");
+  const Bytes data = message_bytes("ping360", "device_data");
   std::vector<pcapng::Bytes> packets;
   for (const pcapng::ByteView bytes : pieces_of(data, 12)) {
     packets.push_back(pcapng::udp_packet(head, client, bytes));
@@ -369,7 +219,7 @@ TEST(Ping360Dissector, AFrameInPiecesNamesThePacketWhereItBegan) {
 
 // 1.1: after 100 ms, bytes no longer complete a frame. A whole frame never completes another.
 TEST(Ping360Dissector, FramesThatAreNeverFinished) {
-  const Bytes data = load_hex_fixture("ping360", "device_data");
+  const Bytes data = message_bytes("ping360", "device_data");
   const auto front = pcapng::ByteView{data}.first(12);
   const auto rest = pcapng::ByteView{data}.subspan(12);
   const std::vector<std::string> fields{prefix + "message", prefix + "piece", prefix + "no_frame",
@@ -394,9 +244,9 @@ TEST(Ping360Dissector, FramesThatAreNeverFinished) {
 // ---- Errors, and bytes between frames
 
 TEST(Ping360Dissector, AWrongChecksumIsSaid) {
-  Bytes wrong = load_hex_fixture("ping360", "transducer");
+  Bytes wrong = message_bytes("ping360", "transducer");
   wrong.at(10) = 0xC9;  // angle 201, so the sum is one more than the checksum 0x03a7
-  append(wrong, load_hex_fixture("ping360", "motor_off"));
+  append(wrong, message_bytes("ping360", "motor_off"));
   const auto row = dissect({datagram_of(wrong)}, {prefix + "message", prefix + "transducer.angle",
                                                   prefix + "bad_checksum", expert_field, "_ws.col.Info"})[0];
   EXPECT_EQ(row.at(prefix + "message"), "transducer,motor_off");
@@ -408,11 +258,11 @@ TEST(Ping360Dissector, AWrongChecksumIsSaid) {
 
 // A wrong length must not hide the frames after it (1.1).
 TEST(Ping360Dissector, FramesInsideOfABrokenOneAreFound) {
-  Bytes bytes = load_hex_fixture("ping360", "request_protocol_version");
+  Bytes bytes = message_bytes("ping360", "request_protocol_version");
   bytes.at(2) = 30;
-  append(bytes, load_hex_fixture("ping360", "motor_off"));
-  append(bytes, load_hex_fixture("ping360", "transducer"));
-  append(bytes, load_hex_fixture("ping360", "reset"));
+  append(bytes, message_bytes("ping360", "motor_off"));
+  append(bytes, message_bytes("ping360", "transducer"));
+  append(bytes, message_bytes("ping360", "reset"));
   pcapng::TcpConversation line{pcapng::serial_client, pcapng::serial_head};
   std::vector<pcapng::Bytes> packets = line.from_client(bytes);
   packets.push_back(datagram_of(bytes));
@@ -423,7 +273,7 @@ TEST(Ping360Dissector, FramesInsideOfABrokenOneAreFound) {
 }
 
 TEST(Ping360Dissector, JunkIsShownAndTheFrameBehindItFound) {
-  const Bytes motor_off = load_hex_fixture("ping360", "motor_off");
+  const Bytes motor_off = message_bytes("ping360", "motor_off");
   Bytes behind{0x00, 0xFF, 'U', 'U', 'U', 'B'};
   append(behind, motor_off);
   const auto rows = dissect(
@@ -462,7 +312,7 @@ TEST(Ping360Dissector, PayloadsThatDoNotFitTheirMessage) {
 // ---- Ports
 
 TEST(Ping360Dissector, FramesAreFoundOnAnyPort) {
-  const Bytes request = load_hex_fixture("ping360", "request_protocol_version");
+  const Bytes request = message_bytes("ping360", "request_protocol_version");
   const pcapng::Endpoint elsewhere{0x7F000002, 40'001};
   pcapng::TcpConversation line{client, elsewhere};
   std::vector<pcapng::Bytes> packets = line.from_client(request);

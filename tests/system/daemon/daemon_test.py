@@ -25,8 +25,10 @@ import time
 import unittest
 import unittest.mock
 
-sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "gemini"))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path += [os.path.join(HERE, "..", "gemini"), os.path.join(HERE, "..", "..", "support")]
 import wire
+from example_messages import example
 from lab import Deadline, Program
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
@@ -68,11 +70,6 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
-
-
-def example(device, name):
-    with open(os.path.join(SOURCE, "tests", "data", device, name + ".hex"), encoding="ascii") as file:
-        return bytes.fromhex("".join(line.split("#")[0] for line in file))
 
 
 def frame(name):

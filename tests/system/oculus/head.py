@@ -15,6 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
 sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests", "support")]
 import messages  # noqa: E402
+from example_messages import example  # noqa: E402
 from lab import Deadline, Namespace, Program, need  # noqa: E402
 
 DEMO = os.path.join(SOURCE, "configs", "demo-oculus.yaml")
@@ -33,12 +34,6 @@ poses: {{initial: {{position_m: [0, 0, 0]}}}}
 heads:
 {heads}
 """
-
-
-def example(name):
-    """A message of tests/data/oculus, whose notes name its source."""
-    with open(os.path.join(SOURCE, "tests", "data", "oculus", name + ".hex"), encoding="ascii") as file:
-        return bytes.fromhex("".join(line.split("#")[0] for line in file))
 
 
 def tcp_client(machine, address, port=52100, receive_buffer=None):

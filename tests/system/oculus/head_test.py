@@ -77,7 +77,7 @@ class Demo(HeadCase):
         """The client's request loop: it fires until a ping has its settings, at most a hundred times. Then it sends standby,
         which a Dummy confirms within five seconds, and the last settings again, copied from a ping."""
         client = self.client()
-        client.write(example("fire_ensta"))
+        client.write(example("oculus", "fire_ensta"))
         wanted = struct.unpack("<d", bytes.fromhex("52b81e85eb510440"))[0]
         for _ in range(100):
             ping = client.ping(5)
@@ -89,18 +89,18 @@ class Demo(HeadCase):
             self.fail("its settings never came")
         self.assertEqual(ping.version, 1)
         self.assertEqual(ping.gains, ping.ranges * [1])
-        client.write(example("fire_ensta_standby"))
+        client.write(example("oculus", "fire_ensta_standby"))
         self.assertIsNotNone(client.wait(DUMMY, 5))
         got = client.all_for(2.2)
         self.assertNotIn(PING, {message.id for message in got})
         self.assertEqual([message.id for message in got].count(DUMMY), 2)
-        client.write(example("fire_ensta_resume_v2"))
+        client.write(example("oculus", "fire_ensta_resume_v2"))
         self.assertEqual(client.ping(5).flags, 0x0D)
 
     def test_liboculus_fires_once_and_gets_its_width_of_samples(self):
         for name, width in (("fire_liboculus_8_bit", 1), ("fire_liboculus_32_bit", 4)):
             client = self.client()
-            client.write(example(name))
+            client.write(example("oculus", name))
             for _ in range(3):
                 ping = client.ping()
                 self.assertEqual((ping.version, ping.width, ping.beams), (2, width, 512))
@@ -110,11 +110,11 @@ class Demo(HeadCase):
     def test_the_makers_code_fires_without_a_length_after_each_ping(self):
         client = self.client()
         said = self.times_too_slow()
-        client.write(example("fire_vendor"))
+        client.write(example("oculus", "fire_vendor"))
         times, ids = [], []
         for _ in range(12):
             ping = client.ping()
-            client.write(example("fire_vendor"))
+            client.write(example("oculus", "fire_vendor"))
             times.append(round(ping.start_s * 1e9))  # modulo 2^32
             ids.append(ping.id)
         self.assertEqual(ids, sorted(set(ids)))
@@ -129,7 +129,7 @@ class Demo(HeadCase):
 
     def test_a_fire_may_come_in_any_pieces(self):
         client = self.client()
-        stream = example("fire_ensta") + messages.user_config() + example("fire_vendor")
+        stream = example("oculus", "fire_ensta") + messages.user_config() + example("oculus", "fire_vendor")
         for cut in range(1, len(stream)):
             client.write(stream[:cut])
             client.write(stream[cut:])

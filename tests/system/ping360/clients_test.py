@@ -63,9 +63,9 @@ class Clients(HeadCase):
         client.write(messages.reset())  # no answer, a second of silence: a head at boot
         time.sleep(1.2)
         got = self.brping_initialises(client)
-        self.assertEqual(got.bytes(), example("device_data_at_boot"))
+        self.assertEqual(got.bytes(), example("ping360", "device_data_at_boot"))
         command = Transducer(mode=0, angle=100, duration=32, period=80, frequency=740, samples=400)
-        self.assertEqual(command.bytes(), example("transducer_brping"))
+        self.assertEqual(command.bytes(), example("ping360", "transducer_brping"))
 
     def test_brping_scans_and_reads_the_state_meanwhile(self):
         client = self.client(PIECES)
@@ -126,7 +126,7 @@ class Clients(HeadCase):
         client = self.client(FAST)
         self.brping_initialises(client)
         command = Transducer(mode=0, gain=1, angle=10, duration=10, period=88, frequency=740)
-        self.assertEqual(command.bytes(), example("transducer_ros_python"))
+        self.assertEqual(command.bytes(), example("ping360", "transducer_ros_python"))
         for _ in range(10):
             client.write(command.bytes())
             self.assert_ping(client.wait(DEVICE_DATA, NACK, seconds=4), command)
@@ -142,7 +142,7 @@ class Clients(HeadCase):
 
     def test_pnarvor_reads_what_it_asks_for(self):
         client = self.pnarvor(FAST)
-        self.assert_ping(client.ask(example("transducer_pnarvor"), DEVICE_DATA),
+        self.assert_ping(client.ask(example("ping360", "transducer_pnarvor"), DEVICE_DATA),
                          Transducer(1, 0, 0, 100, 4000, 800, 512))
         most = Transducer(samples=1000)
         self.assert_ping(client.ask(most.bytes(), DEVICE_DATA), most)

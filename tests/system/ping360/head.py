@@ -14,6 +14,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
 sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests", "support")]
 import messages  # noqa: E402
+from example_messages import example  # noqa: E402
 from lab import Deadline, Namespace, Program, need  # noqa: E402
 
 DEMO = os.path.join(SOURCE, "configs", "demo-ping360.yaml")
@@ -30,12 +31,6 @@ poses: {{initial: {{position_m: [0, 0, 0]}}}}
 heads:
 {heads}
 """
-
-
-def example(name):
-    """A frame of tests/data/ping360, whose notes name its source."""
-    with open(os.path.join(SOURCE, "tests", "data", "ping360", name + ".hex"), encoding="ascii") as file:
-        return bytes.fromhex("".join(line.split("#")[0] for line in file))
 
 
 class Client:

@@ -85,8 +85,8 @@ class Demo(HeadCase):
                               ("request_device_information", "device_information"),
                               ("request_device_data", "device_data_at_boot"), ("motor_off", "ack_motor_off"),
                               ("set_common_device_id", "nack_not_recognised")):
-            client.write(example(asked))
-            self.assertEqual(client.next(0.5).bytes(), example(answer), asked)
+            client.write(example("ping360", asked))
+            self.assertEqual(client.next(0.5).bytes(), example("ping360", answer), asked)
         for wanted in (DEVICE_INFORMATION, PROTOCOL_VERSION, DEVICE_DATA):  # as older software asks
             self.assertEqual(client.ask(messages.frame(wanted), wanted, seconds=0.5).message, wanted)
 

@@ -13,8 +13,10 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[3]
+sys.path.append(str(SOURCE / "tests" / "support"))
+from example_messages import example
+
 EXAMPLE = SOURCE / "clients" / "examples" / "protocol"
-PING_HEAD = SOURCE / "tests" / "data" / "gemini" / "ping_head.hex"
 SAYS = "sonar 601 ping 5: 483 range lines of 256 beams, 1499.2 m/s\n"
 ROOMS = sorted(path.parent.name for path in (SOURCE / "protocol").glob("*/CMakeLists.txt"))
 CMAKE = COMPILER = BUILD = None
@@ -47,8 +49,7 @@ class Package(unittest.TestCase):
         return run("pkg-config", *arguments, env={**os.environ, "PKG_CONFIG_PATH": folders}).split()
 
     def says(self, program):
-        with PING_HEAD.open(encoding="ascii") as bytes_of_head:
-            return run(program, stdin=bytes_of_head)
+        return run(program, input=example("gemini", "ping_head").hex(" "))
 
     def test_the_example_builds_with_cmake_and_decodes_a_ping_head(self):
         self.configure(EXAMPLE)

@@ -24,7 +24,9 @@ import zlib
 import numpy
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", ".."))
-sys.path[:0] = [os.path.join(SOURCE, "tests", "system", "gemini"), os.path.join(SOURCE, "clients", "python")]
+sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system", "gemini"), ("tests", "support"),
+                                                             ("clients", "python"))]
+from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
 from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
 from sonard_client import micron  # noqa: E402
@@ -198,38 +200,35 @@ heads:
 
 
 class MicronBytes(unittest.TestCase):
-    """Uses frames that public drivers sent and read (tests/data/micron/notes.md)."""
-
-    def fixture(self, name):
-        with open(os.path.join(SOURCE, "tests", "data", "micron", name + ".hex"), encoding="utf-8") as file:
-            return bytes.fromhex(file.read())
+    """Uses frames that public drivers sent and read (tests/data/micron/messages.json)."""
 
     def test_commands_are_those_of_public_drivers(self):
-        self.assertEqual(micron._frame(micron._SEND_VERSION), self.fixture("send_version"))
-        self.assertEqual(micron._frame(micron._SEND_USER_BLOCKS), self.fixture("send_bb_user"))
-        self.assertEqual(micron._frame(micron._SEND_DATA, b"\0\0\0\0"), self.fixture("send_data"))
+        self.assertEqual(micron._frame(micron._SEND_VERSION), example("micron", "send_version"))
+        self.assertEqual(micron._frame(micron._SEND_USER_BLOCKS), example("micron", "send_bb_user"))
+        self.assertEqual(micron._frame(micron._SEND_DATA, b"\0\0\0\0"), example("micron", "send_data"))
 
     def test_parameters_lie_where_a_public_driver_has_them(self):
-        theirs = self.fixture("head_command_ros")
-        step, interval, bins = theirs[50], int.from_bytes(theirs[51:53], "little"), int.from_bytes(theirs[53:55], "little")
-
-
-        def bearing(at):
-            return math.tau * (3200 - int.from_bytes(theirs[at:at + 2], "little")) / 6400
-
-        ours = micron._frame(micron._HEAD_COMMAND, Micron._parameters(interval, bins, step * 360 / 6400, 50, 10,
-                                                                  (bearing(37), bearing(39))))
+        theirs = example("micron", "head_command_ros")
+        fields = messages("micron")["head_command_ros"]["fields"]["head_command"]
+        sector = [math.tau * (3200 - fields[limit]) / 6400 for limit in ("left_limit", "right_limit")]
+        ours = micron._frame(micron._HEAD_COMMAND, Micron._parameters(
+            fields["ad_interval"], fields["bins"], fields["step"] * 360 / 6400, 50, 10, sector))
         self.assertEqual(len(ours), len(theirs))
         self.assertEqual(ours[:14], theirs[:14])
         self.assertEqual(ours[37:41], theirs[37:41], "limits")
         self.assertEqual(ours[49:55], theirs[49:55], "motor time, step, interval, bins")
 
     def test_frames_are_found_in_a_noisy_stream(self):
-        frame = self.fixture("head_data")
+        frame = example("micron", "head_data")
         stream = bytearray(b"\x40\x40junk" + frame + b"\x0a@0008" + frame[:20])
         self.assertEqual(list(micron._frames(stream)), [frame])
         stream += frame[20:]
         self.assertEqual(list(micron._frames(stream)), [frame])
+
+    def test_lines_have_their_bins(self):
+        for line in [message for message in messages("micron").values() if message["message"] == "head_data"]:
+            data = "".join(line["fields"]["data"])
+            self.assertEqual(Micron._bins(line["bytes"]).tobytes().hex(), data, line["name"])
 
 
 class MicronClient(OwnMachine):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The expected values are the worked example of docs/protocols/gemini.md 10 and values seen from a later
-// library (tests/data/gemini/notes.md).
+// library (tests/data/gemini/messages.json).
 #include "protocol/gemini/ping_settings.hpp"
 
 #include <gtest/gtest.h>

@@ -2,18 +2,14 @@
 // Datagrams from tests/data/gemini.
 #pragma once
 
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::gemini::testing {
 
 using sonard::testing::Bytes;
 
 inline Bytes load_fixture(const std::string& name) {
-  return sonard::testing::load_hex_fixture("gemini", name);
-}
-
-inline std::vector<std::string> fixture_names() {
-  return sonard::testing::hex_fixture_names("gemini");
+  return sonard::testing::message_bytes("gemini", name);
 }
 
 }  // namespace sonard::gemini::testing

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "protocol/gemini/codec.hpp"
-#include "tests/unit/protocol/gemini/codec/examples.hpp"
+#include "tests/support/message_fields.hpp"
 #include "tests/unit/protocol/gemini/codec/fixture.hpp"
 
 namespace sonard::gemini::testing {
@@ -20,33 +20,38 @@ std::size_t shortest_form(const std::string& fixture, std::size_t size) {
   return found == shorter.end() ? size : found->second;
 }
 
+std::vector<sonard::testing::Message> examples(bool from_head) {
+  auto all = sonard::testing::complete_messages("gemini");
+  std::erase_if(all, [&](const auto& example) { return example.from_head != from_head; });
+  return all;
+}
+
 /// A copy on the heap with exactly this length, so that sanitizers detect a read beyond it.
 Bytes cut(const Bytes& bytes, std::size_t length) {
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(length)};
 }
 
 TEST(Malformed, CommandsCutAnywhereAreRefused) {
-  for (const auto& example : command_examples()) {
-    const Bytes bytes = load_fixture(example.fixture);
-    for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
+  for (const auto& example : examples(false)) {
+    const Bytes& bytes = example.bytes;
+    for (std::size_t length = 0; length < shortest_form(example.name, bytes.size()); ++length) {
       const auto decoded = decode_command(cut(bytes, length));
-      ASSERT_FALSE(decoded) << example.fixture << " cut to " << length;
-      EXPECT_EQ(decoded.error().reason, WireErrorReason::truncated)
-          << example.fixture << " cut to " << length;
-      EXPECT_LE(decoded.error().offset, length) << example.fixture;
-      EXPECT_FALSE(decoded.error().field.empty()) << example.fixture;
+      ASSERT_FALSE(decoded) << example.name << " cut to " << length;
+      EXPECT_EQ(decoded.error().reason, WireErrorReason::truncated) << example.name << " cut to " << length;
+      EXPECT_LE(decoded.error().offset, length) << example.name;
+      EXPECT_FALSE(decoded.error().field.empty()) << example.name;
     }
   }
 }
 
 TEST(Malformed, ReportsCutAnywhereAreRefused) {
-  for (const auto& example : report_examples()) {
-    const Bytes bytes = load_fixture(example.fixture);
-    for (std::size_t length = 0; length < shortest_form(example.fixture, bytes.size()); ++length) {
-      if (example.fixture == "serial_data" && length >= 8 && length % 8 == 0) {
+  for (const auto& example : examples(true)) {
+    const Bytes& bytes = example.bytes;
+    for (std::size_t length = 0; length < shortest_form(example.name, bytes.size()); ++length) {
+      if (example.name == "serial_data" && length >= 8 && length % 8 == 0) {
         continue;  // fewer blocks, but whole ones
       }
-      ASSERT_FALSE(decode_report(cut(bytes, length))) << example.fixture << " cut to " << length;
+      ASSERT_FALSE(decode_report(cut(bytes, length))) << example.name << " cut to " << length;
     }
   }
 }
@@ -76,26 +81,28 @@ TEST(Malformed, ShortFormsAreTakenAndWhatIsAbsentKeepsItsDefault) {
 }
 
 TEST(Malformed, TrailingBytesChangeNothing) {
-  for (const auto& example : command_examples()) {
-    if (example.fixture == "network_config_early") {
+  for (const auto& example : examples(false)) {
+    if (example.name == "network_config_early") {
       continue;  // two more bytes make it the long form
     }
-    Bytes bytes = load_fixture(example.fixture);
+    Bytes bytes = example.bytes;
     for (int extra = 1; extra <= 64; ++extra) {
       bytes.push_back(0xA5);
       const auto decoded = decode_command(bytes);
-      ASSERT_TRUE(decoded && *decoded == example.value) << example.fixture << " and " << extra << " bytes";
+      ASSERT_TRUE(decoded && *decoded == *decode_command(example.bytes))
+          << example.name << " and " << extra << " bytes";
     }
   }
-  for (const auto& example : report_examples()) {
-    if (example.fixture == "serial_data") {
+  for (const auto& example : examples(true)) {
+    if (example.name == "serial_data") {
       continue;  // its length gives its count
     }
-    Bytes bytes = load_fixture(example.fixture);
+    Bytes bytes = example.bytes;
     for (int extra = 1; extra <= 64; ++extra) {
       bytes.push_back(0xA5);
       const auto decoded = decode_report(bytes);
-      ASSERT_TRUE(decoded && *decoded == example.value) << example.fixture << " and " << extra << " bytes";
+      ASSERT_TRUE(decoded && *decoded == *decode_report(example.bytes))
+          << example.name << " and " << extra << " bytes";
     }
   }
 }
@@ -107,19 +114,19 @@ TEST(Malformed, ErrorNamesTheFirstFieldThatIsNotThere) {
 }
 
 TEST(Malformed, EachDirectionTakesTheOtherForUnknown) {
-  for (const auto& example : report_examples()) {
-    const Bytes bytes = load_fixture(example.fixture);
+  for (const auto& example : examples(true)) {
+    const Bytes& bytes = example.bytes;
     const auto decoded = decode_command(bytes);
-    ASSERT_TRUE(decoded) << example.fixture;
+    ASSERT_TRUE(decoded) << example.name;
     const auto* unknown = std::get_if<Unknown>(&*decoded);
-    ASSERT_NE(unknown, nullptr) << example.fixture;
+    ASSERT_NE(unknown, nullptr) << example.name;
     EXPECT_EQ(unknown->type, bytes[0]);
     EXPECT_EQ(unknown->header.sonar_id, 601);
   }
-  for (const auto& example : command_examples()) {
-    const Bytes bytes = load_fixture(example.fixture);
+  for (const auto& example : examples(false)) {
+    const Bytes& bytes = example.bytes;
     const auto decoded = decode_report(bytes);
-    ASSERT_TRUE(decoded && std::holds_alternative<Unknown>(*decoded)) << example.fixture;
+    ASSERT_TRUE(decoded && std::holds_alternative<Unknown>(*decoded)) << example.name;
   }
 }
 

@@ -120,7 +120,7 @@ TEST(Commands, InfoBlocksAreReadAtTheirAddresses) {
   EXPECT_TRUE(answers(bench, "25 01 59 02 00 00 00 00 03 00 00 00").empty());
 }
 
-/// The message 0x24 as a later client sends it, for 192.168.2.77/24 (tests/data/gemini/notes.md).
+/// The message 0x24 as a later client sends it, for 192.168.2.77/24 (tests/data/gemini/messages.json).
 std::vector<std::uint8_t> write_address_77() {
   auto command = from_hex("24 01 59 02 00 00 02 01 02 00 00 00 00 00 00 00 4d 02 a8 c0 00 ff ff ff");
   command.resize(152, 0);

@@ -20,7 +20,7 @@
 #include "protocol/micron/device.hpp"
 #include "protocol/micron/units.hpp"
 #include "tests/support/device_bench.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::micron {
 
@@ -29,7 +29,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// A frame as drivers send it or heads answer it (tests/data/micron).
 inline Bytes fixture(const std::string& name) {
-  return sonard::testing::load_hex_fixture("micron", name);
+  return sonard::testing::message_bytes("micron", name);
 }
 
 inline PingImage test_line(const PingJob& job) {

@@ -1,131 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
-// The byte examples in both directions (docs/protocols/oculus.md 10; tests/data/oculus/notes.md).
+// The messages of tests/data/oculus in both directions: bytes to values, and values to bytes.
 #include <gtest/gtest.h>
 
+#include "protocol/oculus/layout.hpp"
+#include "tests/support/message_fields.hpp"
 #include "tests/unit/protocol/oculus/codec/fixture.hpp"
 
 namespace sonard::oculus::testing {
 namespace {
 
-struct FireExample {
-  std::string fixture;
-  SimpleFire value;
-  bool states_its_size = true;
-};
+using sonard::testing::Json;
+using sonard::testing::Message;
+using sonard::testing::message_of;
+using sonard::testing::set;
+using sonard::testing::take;
+using sonard::testing::take_fields;
 
-void PrintTo(const FireExample& example, std::ostream* out) {
-  *out << example.fixture;
+/// The fire that the fields describe. Takes the header, too.
+SimpleFire fire_of(Json& fields) {
+  SimpleFire fire;
+  set(fire.version, take(fields, "header").at("msgVersion"));
+  take_fields<FireLayout>(fields, "fire", fire.fire);
+  if (fields.contains("fire_extension")) {
+    take_fields<FireExtensionLayout>(fields, "fire_extension", fire.extension.emplace());
+  }
+  return fire;
 }
 
-constexpr double ensta_range_m = 2.54;
-
-std::vector<FireExample> fire_examples() {
-  const Fire ensta{2, 0, 255, 127, 0x0D, ensta_range_m, 50.0, 0.0, 0.0};
-  return {
-      {"fire_vendor", {0, {1, 0, 255, 127, 0x49, 10.0, 20.0, 0.0, 35.0}, {}}, false},
-      {"fire_ensta", {0, ensta, {}}},
-      {"fire_ensta_standby", {0, {2, 5, 255, 127, 0x0D, 5.0, 80.0, 1500.0, 0.0}, {}}},
-      {"fire_ensta_resume_v2", {2, ensta, {}}},
-      {"fire_liboculus_8_bit", {2, {2, 0, 255, 127, 0x4D, 4.0, 50.0, 0.0, 0.0}, FireExtension{}}},
-      {"fire_liboculus_32_bit", {2, {2, 0, 255, 127, 0x4F, 4.0, 50.0, 0.0, 0.0}, FireExtension{0x200, {}}}},
-  };
+std::vector<Message> fires() {
+  auto all = sonard::testing::messages_of("oculus");
+  std::erase_if(all, [](const Message& example) { return example.message != "simple_fire"; });
+  return all;
 }
 
-class OculusFireExample : public ::testing::TestWithParam<FireExample> {};
+class OculusFire : public ::testing::TestWithParam<Message> {};
 
-TEST_P(OculusFireExample, BytesMeanTheValue) {
-  const auto command = decode_command(load_fixture(GetParam().fixture));
+TEST_P(OculusFire, BytesAndFieldsMeanTheSame) {
+  const Message& example = GetParam();
+  Json fields = example.fields;
+  const SimpleFire fire = fire_of(fields);
+  EXPECT_TRUE(fields.empty()) << fields;
+  const auto command = decode_command(example.bytes);
   ASSERT_TRUE(command) << to_string(command.error());
-  EXPECT_TRUE(*command == Command{GetParam().value});
-}
-
-TEST_P(OculusFireExample, ValueBecomesTheBytes) {
-  if (GetParam().states_its_size) {
-    EXPECT_EQ(encode(GetParam().value), load_fixture(GetParam().fixture));
+  EXPECT_TRUE(*command == Command{fire});
+  if (example.is_written) {
+    EXPECT_EQ(encode(fire), example.bytes);
   }
 }
+INSTANTIATE_TEST_SUITE_P(all, OculusFire, ::testing::ValuesIn(fires()), sonard::testing::message_name);
 
-std::string example_name(const ::testing::TestParamInfo<FireExample>& example) {
-  return example.param.fixture;
+template <class Member>
+void expect_same(const PingResult& found, const PingResult& wanted, const Field<PingResult, Member>& field) {
+  EXPECT_EQ(found.*field.member, wanted.*field.member) << field.name;
 }
-INSTANTIATE_TEST_SUITE_P(all, OculusFireExample, ::testing::ValuesIn(fire_examples()), example_name);
+template <std::size_t Size>
+void expect_same(const PingResult&, const PingResult&, const Spare<Size>&) {}
 
-PingResult first_ping() {
-  PingResult ping;
-  ping.fire = {1, {1, 0, 255, 127, 0x0D, 10.0, 50.0, 0.0, 35.0}, {}};
-  ping.ping_id = 42;
-  ping.frequency_hz = 750e3;
-  ping.temperature_c = 18.5;
-  ping.pressure_bar = 1.25;
-  ping.sound_speed_mps = 1500.0;
-  ping.start_time_ns = 123'456'789;
-  ping.range_resolution_m = 1500.0 / (2.0 * 37.5e6 / 143.0);
-  ping.ranges = 3;
-  ping.image_offset = 136;
-  ping.bearings_cdeg = {-6500, -1757, 1757, 6500};
-  return ping;
-}
-
-const Bytes first_image{1, 0, 0, 0, 0, 1, 2, 3, 4, 0, 0, 0, 10, 11, 12, 13, 16, 0, 0, 0, 20, 21, 22, 23};
-
-PingResult second_ping() {
-  PingResult ping = first_ping();
-  ping.fire = {2, {2, 0, 255, 127, 0x0B, 5.0, 70.0, 1500.0, 0.0}, FireExtension{}};
-  ping.ping_id = 43;
-  ping.frequency_hz = 2.1e6;
-  ping.heading_deg = 90.0;
-  ping.pitch_deg = -1.5;
-  ping.roll_deg = 2.5;
-  ping.start_time_s = 12.345678;
-  ping.data_size = DataSize::bits_16;
-  ping.image_offset = 216;
-  ping.bearings_cdeg = {-3000, -959, 959, 3000};
-  return ping;
-}
-
-const Bytes second_image{0,    0, 1,    0, 2,    0, 3,    0, 0xE8, 3, 0xE9, 3,
-                         0xEA, 3, 0xEB, 3, 0xD0, 7, 0xD1, 7, 0xD2, 7, 0xD3, 7};
-
-TEST(OculusExamples, PingOfVersion1BecomesTheBytes) {
-  PingResult ping = first_ping();
-  ping.image = first_image;
-  EXPECT_EQ(encode(ping, m1200d), load_fixture("ping_result_v1"));
-}
-
-TEST(OculusExamples, PingOfVersion2BecomesTheBytes) {
-  PingResult ping = second_ping();
-  ping.image = second_image;
-  EXPECT_EQ(encode(ping, m1200d), load_fixture("ping_result_v2"));
-}
-
-TEST(OculusExamples, BytesAreThePings) {
-  for (const auto& [fixture, wanted, image] : {std::tuple{"ping_result_v1", first_ping(), first_image},
-                                               std::tuple{"ping_result_v2", second_ping(), second_image}}) {
-    const Bytes bytes = load_fixture(fixture);
-    const auto ping = decode_ping_result(bytes);
-    ASSERT_TRUE(ping) << to_string(ping.error());
-    EXPECT_TRUE(ping->fire == wanted.fire) << fixture;
-    EXPECT_EQ(ping->ping_id, wanted.ping_id);
-    EXPECT_EQ(ping->heading_deg, wanted.fire.extension ? 90.0 : 0.0);
-    EXPECT_EQ(ping->data_size, wanted.data_size);
-    EXPECT_EQ(ping->bearings_cdeg, wanted.bearings_cdeg);
-    EXPECT_EQ(Bytes(ping->image.begin(), ping->image.end()), image);
-    EXPECT_EQ(encode(*ping, m1200d), bytes);
+template <class Table>
+void expect_result(const std::string& name, const std::string& group) {
+  SCOPED_TRACE(name);
+  const Message& example = message_of("oculus", name);
+  Json fields = example.fields;
+  PingResult wanted;
+  wanted.fire = fire_of(fields);
+  take_fields<Table>(fields, group, wanted);
+  set(wanted.image, take(fields, "image"));
+  const Bytes bearings = sonard::testing::bytes_of(take(fields, "bearings"));
+  for (std::size_t i = 0; i < bearings.size(); i += 2) {
+    wanted.bearings_cdeg.push_back(static_cast<std::int16_t>(bearings[i] | bearings[i + 1] << 8));
   }
+  EXPECT_TRUE(fields.empty()) << fields;
+  EXPECT_EQ(encode(wanted, m1200d), example.bytes);
+
+  const auto ping = decode_ping_result(example.bytes);
+  ASSERT_TRUE(ping) << to_string(ping.error());
+  EXPECT_TRUE(ping->fire == wanted.fire);
+  std::apply([&](const auto&... field) { (expect_same(*ping, wanted, field), ...); }, Table::fields);
+  EXPECT_EQ(ping->bearings_cdeg, wanted.bearings_cdeg);
+  EXPECT_TRUE(std::ranges::equal(ping->image, wanted.image));
+  EXPECT_EQ(encode(*ping, m1200d), example.bytes);
+}
+
+TEST(OculusExamples, ResultsOfBothVersions) {
+  expect_result<ResultV1Layout>("ping_result_v1", "result_v1");
+  expect_result<ResultV2Layout>("ping_result_v2", "result_v2");
 }
 
 TEST(OculusExamples, StatusBothWays) {
+  Json fields = message_of("oculus", "status").fields;
   Status status;
-  status.device_id = 7892;
-  status.part_number = 1042;
-  status.firmware = {0x01030007, 0x0134B35D, 0x01030007, 0x0134B35D, 0x00020001, 0x0134B35D};
-  status.address = {192, 168, 2, 4};
-  status.netmask = {255, 255, 255, 0};
-  status.mac = {0x00, 0x1E, 0x63, 1, 2, 3};
-  status.temperatures_c = {30.0, 30.5, 31.0, 31.5, 32.0, 32.5, 18.5, 33.0};
-  status.pressure_bar = 1.25;
+  take_fields<StatusLayout>(fields, "status", status);
   EXPECT_EQ(encode(status, m1200d), load_fixture("status"));
   EXPECT_TRUE(decode_status(load_fixture("status")).value() == status);
+}
+
+TEST(OculusExamples, HeadersOfAllMessages) {
+  for (const Message& example : sonard::testing::messages_of("oculus")) {
+    Json fields = example.fields;
+    Header described;
+    take_fields<HeaderLayout>(fields, "header", described);
+    Header found;
+    ByteReader reader{example.bytes};
+    read_fields<HeaderLayout>(reader, found);
+    EXPECT_TRUE(found == described) << example.name;
+  }
+}
+
+// The fields above reach their members by the codec's tables. These values are read off the document.
+TEST(OculusExamples, MembersHoldTheFieldsOfTheirNames) {
+  const Fire fire = std::get<SimpleFire>(*decode_command(load_fixture("fire_vendor"))).fire;
+  EXPECT_TRUE(fire == (Fire{1, 0, 255, 127, 0x49, 10.0, 20.0, 0.0, 35.0}));
+  const Fire standby = std::get<SimpleFire>(*decode_command(load_fixture("fire_ensta_standby"))).fire;
+  EXPECT_TRUE(standby == (Fire{2, 5, 255, 127, 0x0D, 5.0, 80.0, 1500.0, 0.0}));
+
+  const auto common = [](const PingResult& ping) {
+    return std::tuple(ping.ping_id, ping.frequency_hz, ping.temperature_c, ping.pressure_bar,
+                      ping.sound_speed_mps, ping.range_resolution_m, ping.ranges, ping.image_offset);
+  };
+  constexpr double step_m = 1500.0 / (2.0 * 37.5e6 / 143.0);
+  const Bytes bytes_v1 = load_fixture("ping_result_v1");
+  const PingResult v1 = decode_ping_result(bytes_v1).value();
+  EXPECT_EQ(common(v1), std::tuple(42U, 750e3, 18.5, 1.25, 1500.0, step_m, 3, 136U));
+  EXPECT_EQ(v1.start_time_ns, 123'456'789U);
+  EXPECT_EQ(v1.bearings_cdeg, (std::vector<std::int16_t>{-6500, -1757, 1757, 6500}));
+  const Bytes bytes_v2 = load_fixture("ping_result_v2");
+  const PingResult v2 = decode_ping_result(bytes_v2).value();
+  EXPECT_EQ(common(v2), std::tuple(43U, 2.1e6, 18.5, 1.25, 1500.0, step_m, 3, 216U));
+  EXPECT_EQ(std::tuple(v2.heading_deg, v2.pitch_deg, v2.roll_deg, v2.start_time_s, v2.data_size),
+            std::tuple(90.0, -1.5, 2.5, 12.345678, DataSize::bits_16));
+  EXPECT_EQ(v2.bearings_cdeg, (std::vector<std::int16_t>{-3000, -959, 959, 3000}));
+
+  const Status status = decode_status(load_fixture("status")).value();
+  EXPECT_EQ(std::tuple(status.device_id, status.part_number, status.pressure_bar),
+            std::tuple(7892U, 1042, 1.25));
+  EXPECT_EQ(status.address, (std::array<std::uint8_t, 4>{192, 168, 2, 4}));
+  EXPECT_EQ(status.netmask, (std::array<std::uint8_t, 4>{255, 255, 255, 0}));
 }
 
 /// A ping with this value in every floating-point field.
@@ -164,9 +173,17 @@ TEST(OculusExamples, AStatusOfAnotherSizeIsNone) {
 
 TEST(OculusExamples, DummyLogAndUserConfig) {
   EXPECT_EQ(encode_dummy(m1200d), load_fixture("dummy"));
-  const UserConfig config{{192, 168, 2, 4}, {255, 255, 255, 0}, 0};
+  const auto config_of = [](const char* name) {
+    Json fields = message_of("oculus", name).fields;
+    UserConfig config;
+    take_fields<UserConfigLayout>(fields, "user_config", config);
+    return config;
+  };
+  const UserConfig config = config_of("user_config");
+  EXPECT_EQ(config.address, (std::array<std::uint8_t, 4>{192, 168, 2, 4}));
   EXPECT_EQ(encode(config, m1200d), load_fixture("user_config"));
-  EXPECT_TRUE(*decode_command(load_fixture("user_config_request")) == Command{UserConfig{}});
+  EXPECT_TRUE(*decode_command(load_fixture("user_config_request")) ==
+              Command{config_of("user_config_request")});
   const Bytes log = encode_log("ready\n", m1200d);
   EXPECT_EQ(Bytes(log.begin() + 16, log.end()), (Bytes{'r', 'e', 'a', 'd', 'y', '\n'}));
   EXPECT_EQ(log[6], 0x80);

@@ -18,7 +18,7 @@
 #include "protocol/oculus/device.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 #include "tests/support/device_bench.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::oculus {
 namespace {
@@ -108,7 +108,7 @@ SimpleFire fire_with(bool second, int bits, bool gains, int beams, int mode) {
 TEST(OculusAcceptance, FiresOfAllClientsSplitAtEveryByteMakeItPing) {
   for (const char* name : {"fire_vendor", "fire_ensta", "fire_ensta_resume_v2", "fire_liboculus_8_bit",
                            "fire_liboculus_32_bit"}) {
-    const Bytes bytes = sonard::testing::load_hex_fixture("oculus", name);
+    const Bytes bytes = sonard::testing::message_bytes("oculus", name);
     for (std::size_t cut = 1; cut < bytes.size(); ++cut) {
       Line line;
       const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(cut);
@@ -246,16 +246,16 @@ TEST(OculusAcceptance, IdleAndStandbyAreToldEachSecondAndStandbyEndsWithinAPerio
   EXPECT_EQ(line.client.take_logs().size(), 1U);
   line.run_for(milliseconds{3'100});
   EXPECT_EQ(line.client.statistics().dummies, 3U);
-  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
+  line.receive(sonard::testing::message_bytes("oculus", "fire_ensta"));
   line.run_for(milliseconds{950});
   EXPECT_EQ(line.pings.size(), 10U);
-  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta_standby"));
+  line.receive(sonard::testing::message_bytes("oculus", "fire_ensta_standby"));
   EXPECT_EQ(line.client.statistics().dummies, 4U) << "at once: a client waits for it";
   line.run_for(seconds{4});
   EXPECT_LE(line.pings.size(), 11U);
   EXPECT_EQ(line.client.statistics().dummies, 8U);
   const std::size_t in_standby = line.pings.size();
-  line.receive(sonard::testing::load_hex_fixture("oculus", "fire_ensta"));
+  line.receive(sonard::testing::message_bytes("oculus", "fire_ensta"));
   line.run_for(milliseconds{950});
   EXPECT_GE(line.pings.size(), in_standby + 9);
   EXPECT_EQ(line.client.statistics().pings_missed, 0U) << "numbers count on";
@@ -435,7 +435,7 @@ TEST(OculusPlayback, WhatNoHeadCouldSendHasNoRecordedForm) {
   Bytes other = wire;
   other[6] = 0x55;
   EXPECT_FALSE(recorded_form(other));
-  EXPECT_FALSE(recorded_form(sonard::testing::load_hex_fixture("oculus", "ping_result_v1"))) << "four beams";
+  EXPECT_FALSE(recorded_form(sonard::testing::message_bytes("oculus", "ping_result_v1"))) << "four beams";
 }
 
 // ---- The client's side
@@ -477,7 +477,7 @@ TEST(OculusClient, ALengthThatNoMessageHasIsSkipped) {
   client.receive({}, bytes);
   EXPECT_EQ(client.statistics().dummies, 1U);
   EXPECT_EQ(client.statistics().dropped_bytes, 16U);
-  Bytes bad = sonard::testing::load_hex_fixture("oculus", "ping_result_v1");
+  Bytes bad = sonard::testing::message_bytes("oculus", "ping_result_v1");
   bad[106] = 9;
   client.receive({}, bad);
   EXPECT_EQ(client.statistics().bad_messages, 1U);

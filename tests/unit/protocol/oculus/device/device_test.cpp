@@ -10,7 +10,7 @@
 
 #include "protocol/oculus/codec.hpp"
 #include "tests/support/device_bench.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::oculus {
 namespace {
@@ -195,7 +195,7 @@ TEST(OculusDevice, ACommandOf5000BytesClosesTheConnection) {
 TEST(OculusDevice, UserConfigIsAnsweredAndRemembered) {
   Bench bench;
   bench.connect();
-  bench.receive(sonard::testing::load_hex_fixture("oculus", "user_config_request"));
+  bench.receive(sonard::testing::message_bytes("oculus", "user_config_request"));
   EXPECT_EQ(bench.count(MessageId::user_config), 1U);
   const UserConfig other{{10, 0, 0, 9}, {255, 0, 0, 0}, 0};
   bench.receive(encode(other));

@@ -20,7 +20,7 @@
 #include "protocol/ping360/device.hpp"
 #include "protocol/ping360/units.hpp"
 #include "tests/support/device_bench.hpp"
-#include "tests/support/hex_fixture.hpp"
+#include "tests/support/messages.hpp"
 
 namespace sonard::ping360 {
 
@@ -29,7 +29,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 /// A frame as the document prints it or clients send it (tests/data/ping360).
 inline Bytes fixture(const std::string& name) {
-  return sonard::testing::load_hex_fixture("ping360", name);
+  return sonard::testing::message_bytes("ping360", name);
 }
 
 // Clients. In tests with a serial line, it is channel 1.
