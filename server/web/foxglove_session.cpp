@@ -84,8 +84,7 @@ std::uint32_t id_of(const json& value) {
 }  // namespace
 
 FoxgloveSession::FoxgloveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer)
-    : WebSocket(site, std::move(stream), peer, std::string(protocol), most_request_bytes),
-      timer_(executor()) {}
+    : WebSocket(site, std::move(stream), peer, most_request_bytes), timer_(executor()) {}
 
 void FoxgloveSession::close() {
   timer_.cancel();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends pings, poses and the status to Foxglove and compatible viewers, by the protocol
-// "foxglove.websocket.v1" (github.com/foxglove/ws-protocol, docs/spec.md), with messages in JSON.
+// Sends pings, poses and the status to Foxglove and compatible viewers, by the protocol of
+// github.com/foxglove/ws-protocol, docs/spec.md, with messages in JSON.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -22,7 +23,9 @@ namespace sonard::server {
 /// costs nothing. A subscriber that reads too slowly misses messages.
 class FoxgloveSession final : public WebSocket {
  public:
-  static constexpr std::string_view protocol = "foxglove.websocket.v1";
+  /// Names of the protocol: those of ws-protocol and of its successor, Foxglove's SDK. The messages are the
+  /// same (github.com/orgs/foxglove/discussions/1131).
+  static constexpr std::array<std::string_view, 2> protocols{"foxglove.websocket.v1", "foxglove.sdk.v1"};
 
   FoxgloveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer);
 

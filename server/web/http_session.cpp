@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/rfc7230.hpp>
 #include <boost/beast/http/write.hpp>
@@ -27,10 +28,16 @@ constexpr std::size_t most_drained_bytes = 256 << 10;
 constexpr std::chrono::seconds drain_patience{2};
 constexpr std::chrono::seconds patience{30};  // to receive a request, and to send an answer
 
-/// True if a client that requests a WebSocket offers this protocol.
-bool offers(const HttpRequest& request, std::string_view protocol) {
-  http::token_list offered{request[http::field::sec_websocket_protocol]};
-  return offered.exists(beast::string_view(protocol.data(), protocol.size()));
+/// The first protocol that a client offers for a WebSocket and that a FoxgloveSession speaks; empty: none.
+std::string_view foxglove_protocol(const HttpRequest& request) {
+  for (const beast::string_view offered : http::token_list{request[http::field::sec_websocket_protocol]}) {
+    for (const std::string_view known : FoxgloveSession::protocols) {
+      if (offered == beast::string_view(known.data(), known.size())) {
+        return known;
+      }
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -85,14 +92,20 @@ void HttpSession::on_read(beast::error_code error) {
   site_.connections().used(*place_);
   HttpRequest request = parser_->release();
   if (beast::websocket::is_upgrade(request) && !site_.refusal(request)) {
-    if (offers(request, FoxgloveSession::protocol)) {
-      upgrade<FoxgloveSession>(std::move(request));
+    if (const std::string_view protocol = foxglove_protocol(request); !protocol.empty()) {
+      upgrade<FoxgloveSession>(std::move(request), protocol);
       return;
     }
     if (request.target() == "/api/live") {
-      upgrade<LiveSession>(std::move(request));
+      upgrade<LiveSession>(std::move(request), {});
       return;
     }
+    send(error_response(
+        request, http::status::bad_request,
+        fmt::format("This is no WebSocket of sonard. Offer one of the protocols {}, or use the "
+                    "path /api/live.",
+                    fmt::join(FoxgloveSession::protocols, ", "))));
+    return;
   }
   stream_.expires_never();  // the server, not the client, takes the time for the answer
   site_.answer(request, peer_,
@@ -137,7 +150,7 @@ void HttpSession::drain() {
 }
 
 template <class Session>
-void HttpSession::upgrade(HttpRequest request) {
+void HttpSession::upgrade(HttpRequest request, std::string_view protocol) {
   if (const std::string why = site_.connections().add_viewer(peer_.address); !why.empty()) {
     site_.log_refusal(peer_, why);
     send(error_response(request, http::status::service_unavailable, why));
@@ -147,7 +160,7 @@ void HttpSession::upgrade(HttpRequest request) {
   stream_.expires_never();
   const auto session = std::make_shared<Session>(site_, std::move(stream_), peer_);
   site_.add(session);
-  session->start(std::move(request));
+  session->start(std::move(request), protocol);
 }
 
 void HttpSession::send(HttpResponse response) {

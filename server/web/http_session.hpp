@@ -30,7 +30,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void read();
   void on_read(boost::beast::error_code error);
   template <class Session>
-  void upgrade(HttpRequest request);
+  void upgrade(HttpRequest request, std::string_view protocol);
   void send(HttpResponse response);
   void refuse(boost::beast::error_code why);
   void drain();

@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds status_interval{500};
 }  // namespace
 
 LiveSession::LiveSession(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer)
-    : WebSocket(site, std::move(stream), peer, "", most_message_bytes), status_timer_(executor()) {}
+    : WebSocket(site, std::move(stream), peer, most_message_bytes), status_timer_(executor()) {}
 
 void LiveSession::close() {
   status_timer_.cancel();

@@ -18,18 +18,12 @@ constexpr std::chrono::seconds write_patience{30};  // for one message
 
 }  // namespace
 
-WebSocket::WebSocket(Site& site, beast::tcp_stream stream, const Endpoint& peer, std::string protocol,
-                     std::size_t most_bytes)
+WebSocket::WebSocket(Site& site, beast::tcp_stream stream, const Endpoint& peer, std::size_t most_bytes)
     : site_(site), peer_(peer), socket_(std::move(stream)), patience_(socket_.get_executor()) {
   socket_.auto_fragment(false);  // fewer system calls than one for each 4 KiB
   // Detects a vanished peer: it does not answer WebSocket pings.
   socket_.set_option(
       websocket::stream_base::timeout{std::chrono::seconds{10}, std::chrono::seconds{20}, true});
-  if (!protocol.empty()) {
-    socket_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
-      response.set(beast::http::field::sec_websocket_protocol, protocol);
-    }));
-  }
   socket_.read_message_max(most_bytes);
 }
 
@@ -40,7 +34,13 @@ WebSocket::~WebSocket() {
   site_.connections().remove_viewer(peer_.address);
 }
 
-void WebSocket::start(HttpRequest request) {
+void WebSocket::start(HttpRequest request, std::string_view protocol) {
+  if (!protocol.empty()) {
+    socket_.set_option(websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+      response.set(beast::http::field::sec_websocket_protocol,
+                   beast::string_view(protocol.data(), protocol.size()));
+    }));
+  }
   const auto kept = std::make_shared<HttpRequest>(std::move(request));
   socket_.async_accept(*kept, [self = shared_from_this(), kept](beast::error_code error) {
     if (!error) {

@@ -24,7 +24,8 @@ class WebSocket : public Viewer, public std::enable_shared_from_this<WebSocket> 
   ~WebSocket() override;
 
   /// Accepts the request for a WebSocket.
-  void start(HttpRequest request);
+  /// @param protocol Sec-WebSocket-Protocol of the answer, a literal; empty: none
+  void start(HttpRequest request, std::string_view protocol);
   std::optional<TimePoint> waits_since() const override { return waits_since_; }
   void close() override;
 
@@ -36,10 +37,8 @@ class WebSocket : public Viewer, public std::enable_shared_from_this<WebSocket> 
   };
 
   /// The site's Connections must have a place for it.
-  /// @param protocol Sec-WebSocket-Protocol of the answer; empty: none
   /// @param most_bytes limit of a message from the other side; a longer one ends the connection
-  WebSocket(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer, std::string protocol,
-            std::size_t most_bytes);
+  WebSocket(Site& site, boost::beast::tcp_stream stream, const Endpoint& peer, std::size_t most_bytes);
 
   /// Called when the connection is established.
   virtual void opened() {}

@@ -59,8 +59,8 @@ async function until(what, take) {
 }
 
 /** A client with all channels that the daemon offers. */
-async function connect() {
-  const socket = new WebSocket(`ws://${ADDRESS}`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
+async function connect(protocols = [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) {
+  const socket = new WebSocket(`ws://${ADDRESS}`, protocols);
   const client = new FoxgloveClient({ ws: socket });
   const seen = { channels: new Map(), messages: new Map(), problems: [], info: null };
   client.on("serverInfo", (info) => (seen.info = info));
@@ -109,6 +109,25 @@ test("every channel is made known with its schema", async () => {
     ajv.compile(JSON.parse(schema));
   }
   client.close();
+});
+
+// Clients before and after the protocol's new name, and those that speak to servers of both.
+for (const protocols of [["foxglove.websocket.v1"], ["foxglove.sdk.v1"], ["foxglove.sdk.v1", "foxglove.websocket.v1"], ["other", "foxglove.websocket.v1"]]) {
+  test(`a client that offers ${protocols.join(" and ")} gets messages`, async () => {
+    const { client, socket, subscribe, first } = await connect(protocols);
+    assert.equal(socket.protocol, protocols.find((name) => name.startsWith("foxglove.")));
+    await first(subscribe("/bow/transform"));
+    client.close();
+  });
+}
+
+test("a client that offers no known protocol is told which there are", async () => {
+  const socket = new WebSocket(`ws://${ADDRESS}`, ["foxglove.sdk.v9"]);
+  const response = await new Promise((resolve) => socket.on("unexpected-response", (_, answer) => resolve(answer)));
+  assert.equal(response.statusCode, 400);
+  let body = "";
+  for await (const chunk of response) body += chunk;
+  assert.match(body, /Offer one of the protocols foxglove\.websocket\.v1, foxglove\.sdk\.v1/);
 });
 
 for (const head of ["bow", "stern"]) {
