@@ -53,23 +53,7 @@ if(NOT GEOGRAPHICLIB_FOUND)
                  "GLOBAL_POSITION_INT are refused")
 endif()
 
-# Gazebo's transport, newest first: version numbers of transport and messages of one release. Until Fortress, its
-# headers and namespaces were called ignition.
-foreach(release "gz;15;12" "gz;14;11" "gz;13;10" "gz;12;9" "ignition;11;8")
-  list(GET release 0 name)
-  list(GET release 1 transport)
-  list(GET release 2 messages)
-  find_package(${name}-transport${transport} QUIET)
-  find_package(${name}-msgs${messages} QUIET)
-  if(${name}-transport${transport}_FOUND AND ${name}-msgs${messages}_FOUND)
-    add_library(sonard_gazebo INTERFACE)
-    string(TOUPPER SONARD_GAZEBO_${name} definition)
-    target_compile_definitions(sonard_gazebo INTERFACE ${definition})
-    target_link_libraries(sonard_gazebo INTERFACE
-      ${name}-transport${transport}::${name}-transport${transport} ${name}-msgs${messages}::${name}-msgs${messages})
-    break()
-  endif()
-endforeach()
+include(cmake/gazebo.cmake)
 if(NOT TARGET sonard_gazebo)
   message(STATUS "Without Gazebo Transport (libignition-transport-dev and libignition-msgs-dev, or libgz-): "
                  "poses.gazebo is refused; sonard takes poses in every other way")
