@@ -33,9 +33,9 @@ namespace {
 /// file that a mesh names.
 class WorldFiles : public Assimp::DefaultIOSystem {
  public:
-  /// @param obj the text of an OBJ in place of its file; null for other formats
-  WorldFiles(const MeshSource& source, const std::string* obj, std::string& refusal)
-      : folder_(source.file.parent_path() / ""), folders_(source.folders), obj_(obj), refusal_(refusal) {
+  /// @param text in place of the file, if it names no others
+  WorldFiles(const MeshSource& source, const std::optional<std::string>& text, std::string& refusal)
+      : folder_(source.file.parent_path() / ""), folders_(source.folders), text_(text), refusal_(refusal) {
     folders_.push_back(std::filesystem::weakly_canonical(folder_));
   }
 
@@ -45,8 +45,8 @@ class WorldFiles : public Assimp::DefaultIOSystem {
     if (path.empty()) {
       return nullptr;
     }
-    if (obj_ != nullptr) {  // it names no other files
-      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(obj_->data()), obj_->size());
+    if (text_) {
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_->data()), text_->size());
     }
     return DefaultIOSystem::Open(path.c_str(), mode);
   }
@@ -101,7 +101,7 @@ class WorldFiles : public Assimp::DefaultIOSystem {
 
   const std::string folder_;  ///< of the mesh, with a slash at its end
   std::vector<std::filesystem::path> folders_;
-  const std::string* const obj_;
+  const std::optional<std::string>& text_;
   std::string& refusal_;
 };
 
@@ -230,28 +230,25 @@ class Collector {
   RawMesh mesh_;
 };
 
-const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
-  constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType;
-  if (lower_extension(file) != "dae") {
-    return importer.ReadFile(file.string(), steps);
-  }
-  // A COLLADA document names no file that its triangles need.
-  const std::string document = collada_for_assimp(content_of(file));
-  return importer.ReadFileFromMemory(document.data(), document.size(), steps, "dae");
-}
-
 }  // namespace
 
 RawMesh read_with_assimp(const MeshSource& source) {
-  const bool is_obj = lower_extension(source.file) == "obj";
-  const ObjForAssimp obj = is_obj ? obj_for_assimp(content_of(source.file)) : ObjForAssimp();
-  if (is_obj && !obj.has_faces) {
-    return {};
+  const std::string extension = lower_extension(source.file);
+  std::optional<std::string> text;
+  std::vector<std::string> warnings;
+  if (extension == "obj") {
+    ObjForAssimp obj = obj_for_assimp(content_of(source.file));
+    if (!obj.has_faces) {
+      return {};
+    }
+    text = std::move(obj.text);
+    warnings = std::move(obj.warnings);
+  } else if (extension == "dae") {
+    text = collada_for_assimp(content_of(source.file), warnings);
   }
   std::string refusal;
   Assimp::Importer importer;
-  importer.SetIOHandler(
-      new WorldFiles(source, is_obj ? &obj.text : nullptr, refusal));  // the importer owns it
+  importer.SetIOHandler(new WorldFiles(source, text, refusal));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // no stand-ins for a scene without meshes
@@ -259,7 +256,8 @@ RawMesh read_with_assimp(const MeshSource& source) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-  const aiScene* scene = read_scene(importer, source.file);
+  const aiScene* scene =
+      importer.ReadFile(source.file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
   if (!refusal.empty()) {
     throw std::runtime_error(refusal);
   }
@@ -269,9 +267,9 @@ RawMesh read_with_assimp(const MeshSource& source) {
   const aiNode& root = *scene->mRootNode;
   for (const SubmeshRule rule : {SubmeshRule::node_name, SubmeshRule::own_names, SubmeshRule::names_above}) {
     Collector collector(*scene, source.submesh, rule);
-    collector.add(root, root_transform(*scene, lower_extension(source.file)), "", false);
+    collector.add(root, root_transform(*scene, extension), "", false);
     RawMesh mesh = collector.take();
-    mesh.warnings = obj.warnings;
+    mesh.warnings = warnings;
     if (!mesh.parts.empty() || rule == SubmeshRule::names_above) {
       return mesh;
     }

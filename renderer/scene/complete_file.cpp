@@ -13,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include "renderer/scene/collada_counts.hpp"
 #include "renderer/scene/local_file.hpp"
 
 namespace sonard::render {
@@ -177,7 +176,6 @@ void check_collada(std::string_view bytes) {
   if (tail.find("COLLADA>", std::min(tail.rfind("</"), tail.size())) == std::string::npos) {
     throw_without_end("</COLLADA>");
   }
-  require_collada_counts(bytes);
 }
 
 /// OpenSceneGraph's text format: braces around each object, names in quotes.

@@ -98,8 +98,10 @@ MeshFile load_checked(const MeshFileRequest& request) {
   // As in Gazebo, the unit is applied, but not the axes.
   const ColladaAsset asset = extension == "dae" ? read_collada_asset(request.file) : ColladaAsset();
   loaded.up_axis = asset.up_axis == "Z_UP" ? "" : asset.up_axis;
-  RawMesh raw = read_mesh(mesh_readers(request.file), {request.file, request.submesh, request.folders},
-                          loaded.warnings);
+  RawMesh raw = read_mesh({request.file, request.submesh, request.folders});
+  for (const std::string& warning : raw.warnings) {
+    loaded.warnings.push_back(fmt::format("{}: {}", request.file.string(), warning));
+  }
   require_parts(raw, request);
 
   const glm::dvec3 origin = request.center_submesh ? box_centre(raw) : glm::dvec3(0.0);

@@ -14,13 +14,10 @@
 #include <osgDB/Callbacks>
 #include <osgDB/Registry>
 
-#include "renderer/scene/local_file.hpp"
-
 namespace sonard::render {
 namespace {
 
-/// Lets osgDB read only the requested file. Its plugins follow references by themselves: an OBJ material with
-/// an http texture makes osgDB download it.
+/// Lets osgDB read only the requested file. By itself it follows references, and downloads http textures.
 class OneFileOnly : public osgDB::ReadFileCallback {
   using Result = osgDB::ReaderWriter::ReadResult;
 
@@ -138,7 +135,7 @@ class TriangleCollector : public osg::NodeVisitor {
 
   bool is_submesh(const osg::Node& node) const { return !submesh_.empty() && node.getName() == submesh_; }
 
-  /// OBJ stores the name in the material attribute, DAE in the state set.
+  /// The name of the material attribute, or else of the state set.
   static std::string material_of(const osg::StateSet* state, const std::string& inherited) {
     if (state == nullptr) {
       return inherited;
@@ -180,16 +177,14 @@ class TriangleCollector : public osg::NodeVisitor {
 
 }  // namespace
 
-RawMesh read_with_osg(const std::filesystem::path& file, const std::string& submesh) {
+RawMesh read_with_osg(const MeshSource& source) {
   osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
-  // Without these, the OBJ plugin turns the model to its own "up" axis and smooths edges without normals.
-  options->setOptionString("noRotation generateFacetNormals");
-  options->setPrecisionHint(osgDB::Options::DOUBLE_PRECISION_VERTEX);
-  osg::ref_ptr<OneFileOnly> guard = new OneFileOnly(file.string());
+  osg::ref_ptr<OneFileOnly> guard = new OneFileOnly(source.file.string());
   osgDB::Registry::instance()->setReadFileCallback(guard);
   options->setReadFileCallback(guard);
 
-  osgDB::ReaderWriter::ReadResult result = osgDB::Registry::instance()->readNode(file.string(), options);
+  osgDB::ReaderWriter::ReadResult result =
+      osgDB::Registry::instance()->readNode(source.file.string(), options);
   osg::ref_ptr<osg::Node> node = result.getNode();
   if (!node) {
     throw std::runtime_error(result.message().empty() ? "the file is damaged or of another format"
@@ -197,12 +192,8 @@ RawMesh read_with_osg(const std::filesystem::path& file, const std::string& subm
   }
   RawMesh mesh;
   for (const Below below : {Below::own, Below::subtree}) {
-    TriangleCollector collector(mesh, submesh, below);
-    if (lower_extension(file) == "dae" && node->asGroup() != nullptr) {
-      node->asGroup()->traverse(collector);  // the plugin adds the root, which turns <up_axis> to z
-    } else {
-      node->accept(collector);
-    }
+    TriangleCollector collector(mesh, source.submesh, below);
+    node->accept(collector);
     if (!mesh.parts.empty()) {
       break;
     }

@@ -327,8 +327,8 @@ class PlyBody {
 
 }  // namespace
 
-RawMesh read_ply(const std::filesystem::path& file, const std::string& submesh) {
-  const std::string bytes = content_of(file);
+RawMesh read_ply(const MeshSource& source) {
+  const std::string bytes = content_of(source.file);
   const PlyHeader header = header_of(bytes);
   const std::string_view body = std::string_view(bytes).substr(header.bytes);
   const RawPart part =
@@ -336,7 +336,7 @@ RawMesh read_ply(const std::filesystem::path& file, const std::string& submesh) 
           ? PlyBody(header, TextValues(body, header.lines)).read()
           : PlyBody(header, BinaryValues(body, header.encoding == Encoding::big_endian)).read();
   RawMesh mesh;
-  if (submesh.empty()) {
+  if (source.submesh.empty()) {
     mesh.add(part, glm::dmat4(1.0));
   }
   return mesh;

@@ -186,13 +186,14 @@ bool is_text(std::string_view bytes) {
 
 }  // namespace
 
-RawMesh read_stl(const std::filesystem::path& file, const std::string& submesh) {
-  const std::string bytes = content_of(file);
+RawMesh read_stl(const MeshSource& source) {
+  const std::string bytes = content_of(source.file);
   const std::uint32_t count = bytes.size() < header_bytes ? 0 : number_at(bytes, header_bytes - 4);
   const std::uint64_t whole = header_bytes + std::uint64_t{triangle_bytes} * count;
   const bool has_size_of_binary = bytes.size() >= header_bytes && bytes.size() == whole;
   if (!has_size_of_binary && is_text(bytes)) {
-    return read_text(bytes.starts_with("\xEF\xBB\xBF") ? std::string_view(bytes).substr(3) : bytes, submesh);
+    return read_text(bytes.starts_with("\xEF\xBB\xBF") ? std::string_view(bytes).substr(3) : bytes,
+                     source.submesh);
   }
   if (!has_size_of_binary && (count == 0 || count > plausible_triangles)) {
     throw std::runtime_error(
@@ -205,7 +206,7 @@ RawMesh read_stl(const std::filesystem::path& file, const std::string& submesh) 
     throw std::runtime_error(fmt::format("the file is cut short: {} triangles need {} bytes, there are {}",
                                          count, whole, bytes.size()));
   }
-  return read_binary(bytes, count, submesh);
+  return read_binary(bytes, count, source.submesh);
 }
 
 }  // namespace sonard::render

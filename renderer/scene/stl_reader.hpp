@@ -3,18 +3,15 @@
 // and read truncated files without an error.
 #pragma once
 
-#include <filesystem>
-#include <string>
-
 #include "renderer/scene/raw_mesh.hpp"
 
 namespace sonard::render {
 
 /// Reads a file of 84 + 50 n bytes as binary, where n is the triangle count of its header. A file that begins
 /// with "solid" (ignoring letter case and leading blanks) is text. A text file may hold several solids; with
-/// a `submesh` only the solids of that name are read. Normals are skipped, because they follow from the
+/// a submesh only the solids of that name are read. Normals are skipped, because they follow from the
 /// triangles.
 /// @throws std::runtime_error with the line of a text, or the sizes of a truncated binary file.
-RawMesh read_stl(const std::filesystem::path& file, const std::string& submesh);
+RawMesh read_stl(const MeshSource& source);
 
 }  // namespace sonard::render

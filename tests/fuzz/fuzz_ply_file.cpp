@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const sonard::fuzz::FileInMemory file(".ply");
   file.hold(data, size);
   try {
-    const RawMesh mesh = read_ply(file.path(), "");
+    const RawMesh mesh = read_ply({file.path()});
     require(mesh.parts.size() <= 1, "a PLY has no materials");
     for (const RawPart& part : mesh.parts) {
       require(part.indices.size() % 3 == 0, "there are whole triangles");

@@ -179,7 +179,6 @@ TEST(CutObj, IsRefusedIfAFaceNamesAVertexThatIsNotThere) {
   EXPECT_THROW(load_mesh_file(request), WorldError);
 }
 
-// OpenSceneGraph reads the remaining part of such files.
 TEST(CutCollada, IsRefusedIfNumbersAreMissing) {
   const test::TempFolder folder;
   const std::string whole =

@@ -47,7 +47,7 @@ void expect_the_triangle(const RawMesh& mesh) {
 
 class Ply : public testing::Test {
  protected:
-  RawMesh read(const std::string& bytes) { return read_ply(folder_.write("hull.ply", bytes), ""); }
+  RawMesh read(const std::string& bytes) { return read_ply({folder_.write("hull.ply", bytes)}); }
   std::string error_of(const std::string& bytes) {
     try {
       read(bytes);
