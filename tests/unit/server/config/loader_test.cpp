@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values that the loader reads from good configurations, and its messages for bad ones.
+// Values that the loader reads from good configurations, and messages that complaints.txt cannot hold.
 #include "server/config/loader.hpp"
 
 #include <algorithm>
@@ -203,127 +203,12 @@ TEST_F(Loader, KeepsThePlacesOfKeysForLaterProblems) {
 
 // ---- Errors
 
-TEST_F(Loader, NamesUnknownKeysAndGuessesWhatWasMeant) {
-  EXPECT_THAT(
-      complaints(minimal_config + "    moutn: {}\n"),
-      ElementsAre(AllOf(StartsWith("config.yaml:11:5: heads[0].moutn: unknown key, did you mean 'mount'?"),
-                        HasSubstr("expected one of type, name,"))));
-  EXPECT_THAT(complaints(minimal_config + "wibble: 1\n"),
-              ElementsAre(StartsWith("config.yaml:11:1: wibble: unknown key (expected one of log, world")));
-}
-
-TEST_F(Loader, NamesTheSectionOfAKeyThatIsInAnother) {
-  EXPECT_THAT(
-      complaints(minimal_config + "    acoustics: {multipath: off}\n"),
-      ElementsAre(StartsWith("config.yaml:11:17: heads[0].acoustics.multipath: unknown key here, did you "
-                             "mean 'acoustics.physical.multipath.level'? (expected one of mode,")));
-  EXPECT_THAT(complaints(minimal_config + "    multipath: {level: off}\n"),
-              ElementsAre(StartsWith("config.yaml:11:5: heads[0].multipath: unknown key here, did you mean "
-                                     "'acoustics.physical.multipath'? (expected one of type,")));
-  EXPECT_THAT(complaints(minimal_config + "temperature_c: 10\n"),
-              ElementsAre(StartsWith("config.yaml:11:1: temperature_c: unknown key here, did you mean "
-                                     "'water.temperature_c'? (expected one of log,")));
-  EXPECT_THAT(
-      complaints(minimal_config + "    acoustics: {speckle: off}\n"),
-      ElementsAre(StartsWith("config.yaml:11:17: heads[0].acoustics.speckle: unknown key here, did you "
-                             "mean 'acoustics.paper.speckle' or 'acoustics.physical.speckle'? (")));
-  // A key that several sections have is named without a section.
-  EXPECT_THAT(complaints(minimal_config + "bind: 127.0.0.1\n"),
-              ElementsAre(StartsWith("config.yaml:11:1: bind: unknown key (expected")));
-}
-
-TEST_F(Loader, NamesTheKeyOfAWordInThePlaceOfAMapping) {
-  EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {multipath: off}}\n"),
-              ElementsAre("config.yaml:11:39: heads[0].acoustics.physical.multipath: is 'off' (expected a "
-                          "mapping such as {level: off})"));
-  EXPECT_THAT(complaints(minimal_config + "skip: 7\n"),
-              ElementsAre("config.yaml:11:7: skip: is '7' (expected a mapping, key: value)"));
-}
-
-TEST_F(Loader, ShowsTheMappingsOfAKeyWithDots) {
-  EXPECT_THAT(
-      complaints(minimal_config + "    acoustics.physical.multipath.level: off\n"),
-      ElementsAre(StartsWith("config.yaml:11:5: heads[0].acoustics.physical.multipath.level: unknown key: a "
-                             "name with dots stands for nested mappings, acoustics: {physical: {multipath: "
-                             "{level: off}}} (expected one of type, ")));
-  EXPECT_THAT(complaints(minimal_config + "water.currents: {x: 1}\n"),
-              ElementsAre(HasSubstr("nested mappings, water: {currents: ...} (")));
-  for (const char* const no_path : {".a", "a.", "a..b", "\"a. b\""}) {
-    EXPECT_THAT(complaints(minimal_config + no_path + ": 1\n"),
-                ElementsAre(testing::Not(HasSubstr("nested"))))
-        << no_path;
-  }
-}
-
-TEST_F(Loader, NamesAKeyWithoutAColonOnItsLine) {
-  const auto at = [](const char* place, const char* key, const char* value) {
-    return ElementsAre(StartsWith(fmt::format(
-        "config.yaml:{0}: a colon is missing after '{1}' (expected {1}: {2})", place, key, value)));
-  };
-  for (const char* const line :
-       {"salinity_ppt 35", "salinity_ppt = 35", "salinity_ppt=35", "salinity_ppt  35  # s"}) {
-    EXPECT_THAT(complaints(std::string("water:\n  ") + line + "\n  depth_m: 28\n" + minimal_config),
-                at("2:3", "salinity_ppt", "35"))
-        << line;
-    EXPECT_THAT(complaints(std::string("water:\n  depth_m: 28\n  ") + line + "\n" + minimal_config),
-                at("3:3", "salinity_ppt", "35"))
-        << line;
-    EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m: 28\n  " + line + "\n"),
-                ElementsAre(AllOf(StartsWith("config.yaml:13:3: "),
-                                  HasSubstr("a colon is missing after 'salinity_ppt' (expected "
-                                            "salinity_ppt: 35)"))))
-        << line;
-  }
-  EXPECT_THAT(
-      complaints(minimal_config + "    mount:\n      rpy_deg [0, 0, 3]\n      position_m: [0, 0, 0]\n"),
-      at("12:7", "rpy_deg", "[0, 0, 3]"));
-  EXPECT_THAT(complaints(minimal_config + "  - name side\n    type: micron\n"), at("11:5", "name", "side"));
-  EXPECT_THAT(complaints(minimal_config + "water:\n  salinity_ppt 35\n"),
-              ElementsAre("config.yaml:12:3: water: a colon is missing after 'salinity_ppt' (expected "
-                          "salinity_ppt: 35)"));
-  EXPECT_THAT(complaints(minimal_config + "water: {salinity_ppt 35, depth_m: 28}\n"),
-              ElementsAre("config.yaml:11:9: water: a colon is missing after 'salinity_ppt' (expected "
-                          "salinity_ppt: 35)"));
-}
-
-TEST_F(Loader, NamesAQuoteInTheMiddleOfAText) {
-  EXPECT_THAT(
-      complaints(minimal_config + "  - name: 'gemini's'\n    type: micron\n"),
-      ElementsAre("config.yaml:11:18: this quote ends the text that begins in column 11 (expected two "
-                  "single quotes, '', for a quote in the text)"));
-  EXPECT_THAT(
-      complaints(minimal_config + "recording: {directory: \"the \"logs\"\"}\n"),
-      ElementsAre("config.yaml:11:29: this quote ends the text that begins in column 24 (expected \\\" "
-                  "for a quote in the text)"));
-  EXPECT_THAT(complaints(minimal_config + "recording: {directory: 'the captain''s'}\n"), IsEmpty());
-}
-
 TEST_F(Loader, SaysThatNoTildeIsExpanded) {
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"),
               ElementsAre(StartsWith("config.yaml:11:24: recording.directory: '~/logs' begins with ~, which "
                                      "sonard does not expand (expected an absolute path")));
   std::filesystem::create_directory(folder_ / "~");
   EXPECT_THAT(complaints(minimal_config + "recording: {directory: ~/logs}\n"), IsEmpty());
-}
-
-TEST_F(Loader, NamesTheKindOfHeadThatHasAnUnknownKey) {
-  const std::string micron = "  - {type: micron, name: side, serial: {tcp: [{bind: '127.0.0.2:4001'}]}, ";
-  EXPECT_THAT(
-      complaints(minimal_config + micron + "sonar_id: 3}\n"),
-      ElementsAre(HasSubstr(
-          "heads[1].sonar_id: unknown key of a micron, it is a key of gemini_720i (expected one of ")));
-}
-
-TEST_F(Loader, LeadsFromSingleAnglesAndCoordinatesToTheKeysOfAPose) {
-  for (const char* const key : {"roll", "pitch", "yaw"}) {
-    EXPECT_THAT(
-        complaints(minimal_config + fmt::format("    mount: {{{}: 3}}\n", key)),
-        ElementsAre(HasSubstr(fmt::format("heads[0].mount.{}: unknown key (expected rpy_deg: [roll, pitch, "
-                                          "yaw], in degrees)",
-                                          key))));
-  }
-  EXPECT_THAT(complaints(minimal_config + "    mount: {x: 3}\n"),
-              ElementsAre(HasSubstr("unknown key (expected position_m: [x, y, z], in metres)")));
 }
 
 /// All names of keys, at any depth.
@@ -378,58 +263,6 @@ TEST_F(Loader, OffersOnlyKeysThatAHeadOfThisTypeMayHave) {
   EXPECT_GT(offers, 500U);
 }
 
-TEST_F(Loader, NamesAKeyWithoutABlankAfterItsColon) {
-  const std::string heads = "heads: [{type: gemini_720i, name: a}]\n";
-  const auto expected = [](const char* at, const char* word, const char* key) {
-    return Contains(
-        AllOf(StartsWith(fmt::format("config.yaml:{}: ", at)),
-              HasSubstr(fmt::format("{} is one word (expected '{}:' and a value; write a blank after "
-                                    "':')",
-                                    word, key))));
-  };
-  EXPECT_THAT(complaints("world:empty\nposes:\n  initial: {}\n" + heads),
-              expected("1:1", "'world:empty'", "world"));
-  EXPECT_THAT(complaints("world: empty\nposes:\n  initial:\n    position_m:[0,0,-5]\n" + heads),
-              expected("4:5", "'position_m:[0'", "position_m"));
-  EXPECT_THAT(complaints("world: empty\nposes:\n  initial:\n    position_m:[0,0,-5]\n    rpy_deg: [0,0,0]\n"),
-              expected("4:5", "'position_m:[0'", "position_m"));
-  EXPECT_THAT(complaints("world: empty\nposes:\n  initial: {position_m:[0,0,-5]}\n" + heads),
-              expected("3:13", "'position_m:[0'", "position_m"));
-  EXPECT_THAT(complaints("world: empty\nheads:\n  - type:gemini_720i\n    name: a\n"),
-              expected("3:5", "'type:gemini_720i'", "type"));
-  EXPECT_THAT(complaints("world: empty\nheads: [{type:gemini_720i, name: a}]\n"),
-              expected("2:10", "'type:gemini_720i'", "type"));
-  EXPECT_THAT(complaints("world: empty\nposes: {udp: {bind:127.0.0.1:14600}}\n"),
-              expected("2:15", "'bind:127.0.0.1:14600'", "bind"));
-}
-
-TEST_F(Loader, AnEmptyBindIsTheOnlyProblemOfItsSocket) {
-  for (const char* const value : {"", "[]", "{}"}) {
-    EXPECT_THAT(complaints("world: empty\nposes: {initial: {position_m: [0, 0, 0]}, udp: {bind: " +
-                           std::string(value) + "}}\n" + minimal_config.substr(minimal_config.find("heads"))),
-                ElementsAre(HasSubstr("poses.udp.bind: is ")))
-        << value;
-  }
-}
-
-TEST_F(Loader, NamesAQuoteThatNothingOpens) {
-  EXPECT_THAT(complaints(minimal_config + "engine: cpu\"\n"),
-              ElementsAre(StartsWith(
-                  "config.yaml:11:9: engine: 'cpu\"' ends with a quote but does not begin with one")));
-  EXPECT_THAT(complaints(minimal_config + "engine: cpu'\n"),
-              ElementsAre(StartsWith("config.yaml:11:9: engine: 'cpu'' ends with a quote")));
-  EXPECT_THAT(complaints(minimal_config + "recording: {directory: \"the captain's\"}\n"), testing::IsEmpty());
-}
-
-TEST_F(Loader, SaysWhatToDoAboutAKeyOfEarlierVersions) {
-  EXPECT_THAT(complaints(minimal_config + "gpu_binning: on\n"),
-              ElementsAre("config.yaml:11:1: gpu_binning: is no longer a key: remove it; engine `gpu` always "
-                          "bins on the GPU"));
-  EXPECT_THAT(complaints(minimal_config + "backend: ray\n"),
-              ElementsAre("config.yaml:11:1: backend: is no longer a key: write `engine: gpu` for raster, "
-                          "`engine: cpu` for ray, `engine: auto` for auto"));
-}
-
 TEST_F(Loader, ReadsAKeyByItsFormerNameAndWarns) {
   const std::string former =
       minimal_config + "    timing: {surface_timeout_ms: 500}\n    link: {to_surface: {loss: 0.5}}\n";
@@ -449,59 +282,6 @@ TEST_F(Loader, ReadsAKeyByItsFormerNameAndWarns) {
           "timing.surface_timeout_ms: is the former name of 'client_timeout_ms', which is given too")));
 }
 
-TEST_F(Loader, SuggestsTheKeyWithItsUnit) {
-  EXPECT_THAT(
-      complaints(minimal_config + "    link: {to_client: {delay: 5s}}\n"),
-      ElementsAre(StartsWith(
-          "config.yaml:11:24: heads[0].link.to_client.delay: unknown key, did you mean 'delay_ms'?")));
-}
-
-TEST_F(Loader, RefusesUnitsInValues) {
-  EXPECT_THAT(complaints(minimal_config + "water: {temperature_c: 10C, depth_m: 5 m}\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:11:24: water.temperature_c: '10C' contains a unit"),
-                                HasSubstr("expected a number from -4 to 45, in degrees Celsius")),
-                          AllOf(StartsWith("config.yaml:11:38: water.depth_m: '5 m' contains a unit"),
-                                HasSubstr("expected a number from 0 to 11000, in m)"))));
-}
-
-TEST_F(Loader, RefusesDuplicateKeysAtEveryDepth) {
-  EXPECT_THAT(
-      complaints(minimal_config + "      netmask: 255.0.0.0\n"),
-      ElementsAre("config.yaml:11:7: heads[0].network.netmask: duplicate key (expected once; first given on "
-                  "line 10)"));
-  EXPECT_THAT(complaints(minimal_config + "world: {file: b.sdf}\n"),
-              ElementsAre("config.yaml:11:1: world: duplicate key (expected once; first given on line 1)"));
-  // An unknown key has one problem, also when it is the last of the file and given twice.
-  EXPECT_THAT(complaints(minimal_config + "wibble: 1\nwibble: 2\n"),
-              ElementsAre("config.yaml:12:1: wibble: duplicate key (expected once; first given on line 11)"));
-}
-
-TEST_F(Loader, RefusesWrongTypes) {
-  EXPECT_THAT(complaints("world: [a, b]\n" + minimal_config.substr(minimal_config.find("poses:"))),
-              ElementsAre(StartsWith("config.yaml:1:8: world: is a list (expected a mapping")));
-  EXPECT_THAT(
-      complaints(minimal_config + "water: {depth_m: \"5\"}\n"),
-      ElementsAre(StartsWith("config.yaml:11:18: water.depth_m: is a quoted text, '5' (expected a number")));
-  EXPECT_THAT(complaints(minimal_config + "water: {depth_m: deep}\n"),
-              ElementsAre(StartsWith("config.yaml:11:18: water.depth_m: 'deep' is not a finite number")));
-  EXPECT_THAT(complaints(minimal_config + "water: {depth_m: }\n"),
-              ElementsAre(HasSubstr("water.depth_m: is empty (expected a number")));
-  EXPECT_THAT(
-      complaints(minimal_config + "      accept_id_zero: yes\n"),
-      ElementsAre("config.yaml:11:23: heads[0].network.accept_id_zero: is 'yes' (expected true or false)"));
-  EXPECT_THAT(
-      complaints(minimal_config + "    mount: {position_m: [1, 2]}\n"),
-      ElementsAre(HasSubstr("heads[0].mount.position_m: is a list of 2 (expected a list of three numbers)")));
-  EXPECT_THAT(
-      complaints(minimal_config + "    mount: {position_m: [1, 2, x]}\n"),
-      ElementsAre(StartsWith("config.yaml:11:32: heads[0].mount.position_m[2]: 'x' is not a finite number")));
-  EXPECT_THAT(complaints(minimal_config + "    timing: {burst_lines: 2.5}\n"),
-              ElementsAre(HasSubstr(
-                  "heads[0].timing.burst_lines: is '2.5' (expected a whole number from 1 to 1024)")));
-  EXPECT_THAT(complaints("heads: {}\n" + minimal_config.substr(0, minimal_config.find("heads:"))),
-              ElementsAre(HasSubstr("heads: is a mapping (expected a list, each item starting with '-')")));
-}
-
 TEST_F(Loader, NoiseFollowsFromABudget) {
   const auto physical = [&](const std::string& text) {
     return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
@@ -517,65 +297,6 @@ TEST_F(Loader, NoiseFollowsFromABudget) {
   EXPECT_THAT(
       complaints(minimal_config + "    acoustics: {physical: {noise_level_db: -140, noise_budget: {}}}\n"),
       ElementsAre(HasSubstr("physical.noise_budget: sets noise_level_db, which is given too")));
-}
-
-TEST_F(Loader, RefusesEndsBeforeBeginnings) {
-  const std::string begin = minimal_config + "    acoustics: {physical: ";
-  EXPECT_THAT(complaints(begin + "{ring_down: {on: true, peak_m: 0.5, end_m: 0.4}}}\n"),
-              ElementsAre(HasSubstr("ring_down.end_m: is not beyond peak_m")));
-  EXPECT_THAT(complaints(begin + "{interference: {least_db: 12}}}\n"),
-              ElementsAre(HasSubstr("interference.most_db: is less than least_db")));
-}
-
-TEST_F(Loader, RefusesNumbersOutOfRange) {
-  EXPECT_THAT(complaints(minimal_config + "    acoustics: {physical: {near_field_blank_m: -0.5}}\n"),
-              ElementsAre(HasSubstr(
-                  "near_field_blank_m: -0.5 is out of range (expected a number from 0 to 120, in m)")));
-  EXPECT_THAT(complaints(minimal_config + "    link: {to_client: {loss: 1.5}}\n"),
-              ElementsAre(HasSubstr("loss: 1.5 is out of range (expected a number from 0 to 1)")));
-  EXPECT_THAT(complaints(minimal_config + "    timing: {min_ping_period_ms: .nan}\n"),
-              ElementsAre(HasSubstr("min_ping_period_ms: '.nan' is not a finite number")));
-  EXPECT_THAT(complaints(minimal_config + "    timing: {min_ping_period_ms: nan}\n"),
-              ElementsAre(HasSubstr("min_ping_period_ms: 'nan' is not a finite number")));
-  EXPECT_THAT(complaints(minimal_config + "    timing: {retry_hold_ms: 20, retry_hold_max_ms: 10}\n"),
-              ElementsAre(HasSubstr("timing.retry_hold_max_ms: is shorter than retry_hold_ms")));
-  EXPECT_THAT(complaints(minimal_config + "    acoustics: {vertical_beamwidth_deg: 0}\n"),
-              ElementsAre(HasSubstr("0 is out of range (expected a number above 0 to 170, in degrees)")));
-}
-
-TEST_F(Loader, SaysWhichWordsStandBesideANumber) {
-  EXPECT_THAT(
-      complaints(minimal_config + "water: {sound_speed_mps: guessed}\n"),
-      ElementsAre(HasSubstr("(expected a number from 1000 to 2000, in m/s, or 'ping_configuration', or "
-                            "'computed')")));
-}
-
-TEST_F(Loader, RefusesIdsThatClientsNeverTalkTo) {
-  for (const char* id : {"0", "1", "65536", "-2"}) {
-    std::string text = minimal_config;
-    text.replace(text.find("513"), 3, id);
-    EXPECT_THAT(complaints(text), ElementsAre(AllOf(StartsWith("config.yaml:7:15: heads[0].sonar_id: is"),
-                                                    HasSubstr("(expected a whole number from 2 to 65535)"))))
-        << id;
-  }
-}
-
-TEST_F(Loader, RefusesAddressesThatAreNoHost) {
-  const auto with_address = [](const std::string& address) {
-    std::string text = minimal_config;
-    return text.replace(text.find("127.0.0.2"), 9, address);
-  };
-  EXPECT_THAT(complaints(with_address("0.0.0.0")),
-              ElementsAre(HasSubstr(
-                  "config.yaml:9:26: heads[0].network.alternate_address: 0.0.0.0 is not the address")));
-  EXPECT_THAT(complaints(with_address("239.1.2.3") + "      allow: [127.0.0.0/8]\n"),
-              ElementsAre(HasSubstr("239.1.2.3 is not the address of one host")));
-  EXPECT_THAT(complaints(with_address("127.255.255.255")),
-              ElementsAre(HasSubstr("is the broadcast address of its network")));
-  EXPECT_THAT(complaints(with_address("127.0.0.300")),
-              ElementsAre(HasSubstr(
-                  "'127.0.0.300' is not understood (expected an IPv4 address such as 127.0.0.2, or an "
-                  "interface of this machine such as eth0)")));
 }
 
 TEST_F(Loader, AnInterfaceThatIsNotThereIsAMatterOfTheNetwork) {
@@ -677,25 +398,6 @@ TEST_F(Loader, SaysWhichBoundOfTheAbsorptionFormulaIsLeft) {
           HasSubstr("here: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
                     "degrees."),
           high("2099 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 degrees")));
-}
-
-TEST_F(Loader, RefusesMasksWithHoles) {
-  std::string text = minimal_config;
-  text.replace(text.find("255.0.0.0"), 9, "255.0.255.0");
-  EXPECT_THAT(complaints(text),
-              ElementsAre(StartsWith("config.yaml:10:16: heads[0].network.netmask: 255.0.255.0 is not")));
-}
-
-TEST_F(Loader, WantsAnAllowListForEverythingButLoopback) {
-  std::string text = minimal_config;
-  text.replace(text.find("127.0.0.2"), 9, "10.61.19.200");
-  EXPECT_THAT(complaints(text),
-              ElementsAre(HasSubstr("heads[0].network.allow: missing (expected the address blocks")));
-  EXPECT_THAT(complaints(text + "      allow: []\n"), ElementsAre(HasSubstr("the list is empty")));
-  EXPECT_THAT(complaints(text + "      allow: [10.61.19.0/24]\n"), IsEmpty());
-  EXPECT_THAT(
-      complaints(minimal_config + "      allow: [127.0.0.1/8]\n"),
-      ElementsAre(HasSubstr("heads[0].network.allow[0]: is '127.0.0.1/8' (expected an address block")));
 }
 
 TEST_F(Loader, ReadsWhereStatusPacketsGo) {
@@ -844,45 +546,6 @@ TEST_F(Loader, LeavesAMountToTheWorld) {
               ElementsAre(HasSubstr("heads[0].mount.rpy_deg: cannot be combined with from_world")));
 }
 
-TEST_F(Loader, WantsASourceOfPoses) {
-  const std::string heads = minimal_config.substr(minimal_config.find("heads:"));
-  const std::string world = "world: {file: w.sdf}\n";
-  EXPECT_THAT(complaints(world + "poses: {stale: silence}\n" + heads),
-              ElementsAre(HasSubstr("poses.initial: no source of poses is given")));
-  EXPECT_THAT(complaints(world + "poses: {udp: {bind: 127.0.0.1:1}, trajectory: {file: t.csv}}\n" + heads),
-              ElementsAre(HasSubstr("poses.trajectory: cannot be combined with a live input")));
-  EXPECT_THAT(complaints(world + heads),
-              ElementsAre(StartsWith("config.yaml:1:1: poses: missing (expected")));
-  EXPECT_THAT(complaints(world + "poses: {tcp: {bind: 0.0.0.0:14600}}\n" + heads),
-              ElementsAre(HasSubstr("poses.tcp.allow: missing")));
-}
-
-TEST_F(Loader, RefusesHeadsThatOverlap) {
-  const std::string same =
-      "  - name: front\n"
-      "    type: gemini_720i\n"
-      "    sonar_id: 513\n"
-      "    network: {alternate_address: 127.0.0.2, netmask: 255.0.0.0}\n";
-  EXPECT_THAT(
-      complaints(minimal_config + same),
-      ElementsAre(HasSubstr(":11:11: heads[1].name: 'front' is already used by heads[0]"),
-                  HasSubstr(":13:15: heads[1].sonar_id: 513 is already used by heads[0]"),
-                  HasSubstr(":14:34: heads[1].network.bind: UDP 127.0.0.2:52901 overlaps 127.0.0.2:52901 of "
-                            "heads[0].network.bind"),
-                  HasSubstr(":14:34: heads[1].network.alternate_address: 127.0.0.2 is already used")));
-}
-
-TEST_F(Loader, KnowsThatASocketOnAllAddressesOverlapsEveryOther) {
-  const std::string any =
-      "  - name: back\n"
-      "    type: gemini_720i\n"
-      "    sonar_id: 514\n"
-      "    network: {alternate_address: 127.0.0.3, netmask: 255.0.0.0, bind: 0.0.0.0, allow: [127.0.0.0/8]";
-  EXPECT_THAT(complaints(minimal_config + any + "}\n"),
-              ElementsAre(HasSubstr("heads[1].network.bind: UDP 0.0.0.0:52901 overlaps 127.0.0.2:52901")));
-  EXPECT_THAT(complaints(minimal_config + any + ", command_port: 52911}\n"), IsEmpty());
-}
-
 /// An item for the list of heads: a Micron with this `serial` section.
 std::string micron_of(const std::string& name, int node, const std::string& serial) {
   return "  - {name: " + name + ", type: micron, serial: {" + serial +
@@ -935,14 +598,6 @@ TEST_F(Loader, KnowsTheSocketsOfAllInputsAndHeadsByTheirTransport) {
                            std::tuple(Transport::tcp, at(5), "heads[1].serial.tcp[1].bind")));
 }
 
-TEST_F(Loader, RefusesASocketOfAHeadThatAnInputHas) {
-  const std::string poses = "world: {file: w.sdf}\nposes: {tcp: {bind: 127.0.0.9:4001}}\nheads:\n";
-  EXPECT_THAT(
-      complaints(poses + micron_of("mast", 2, "tcp: [{bind: 0.0.0.0:4001, allow: [127.0.0.0/8]}]")),
-      ElementsAre(HasSubstr("heads[0].serial.tcp[0].bind: TCP 0.0.0.0:4001 overlaps 127.0.0.9:4001 of "
-                            "poses.tcp.bind")));
-}
-
 TEST_F(Loader, NamesTheTypesThatAHeadCanBeOf) {
   std::vector<std::string_view> types;
   for (const HeadType* type : head_types()) {
@@ -963,102 +618,6 @@ TEST_F(Loader, NamesTheTypesThatAHeadCanBeOf) {
                                       fmt::join(types, " or "))));
 }
 
-// The valid keys of an unknown type are unknown, so the head's other keys are not reported.
-TEST_F(Loader, EndsTheComplaintsAboutAHeadWithItsUnknownType) {
-  const auto complaint = [this](const std::string& type) {
-    std::string text = minimal_config + "    wibble: 1\n    serial: {}\n";
-    text.replace(text.find("gemini_720i"), 11, type);
-    return complaints(text);
-  };
-  for (const auto& [given, meant] :
-       std::vector<std::pair<std::string, std::string>>{{"gemini", "gemini_720i"},
-                                                        {"Gemini-720i", "gemini_720i"},
-                                                        {"'Gemini 720i'", "gemini_720i"},
-                                                        {"oculus_m750d", "oculus"},
-                                                        {"ping-360", "ping360"},
-                                                        {"tritech_micron", "micron"},
-                                                        {"micorn", "micron"}}) {
-    EXPECT_THAT(
-        complaint(given),
-        ElementsAre(AllOf(StartsWith("config.yaml:6:11: heads[0].type: "),
-                          HasSubstr("is not understood, did you mean '" + meant + "'? (expected one of "))))
-        << given;
-  }
-  for (const char* model : {"m750d", "m1200d"}) {
-    EXPECT_THAT(complaint(model),
-                ElementsAre(fmt::format("config.yaml:6:11: heads[0].type: '{0}' is a model (expected type: "
-                                        "oculus, model: {0})",
-                                        model)));
-  }
-  EXPECT_THAT(complaint("norbit"),
-              ElementsAre(HasSubstr("heads[0].type: 'norbit' is not understood (expected one of ")));
-}
-
-TEST_F(Loader, SaysWhichWordWasProbablyMeant) {
-  EXPECT_THAT(
-      complaints(minimal_config + "engine: CPU\n"),
-      ElementsAre("config.yaml:11:9: engine: 'CPU' is not understood, did you mean 'cpu'? (expected one of "
-                  "auto, gpu, cpu)"));
-  EXPECT_THAT(complaints(minimal_config + "sampling: {preset: defaultx}\n"),
-              ElementsAre(HasSubstr("did you mean 'default'?")));
-  EXPECT_THAT(
-      complaints(minimal_config + "log: {format: xml}\n"),
-      ElementsAre("config.yaml:11:15: log.format: 'xml' is not understood (expected one of text, json)"));
-}
-
-// The parser gives an empty value the place of the next token.
-TEST_F(Loader, PlacesAnEmptyValueAtItsKey) {
-  EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m:\n  ph: 8\n"),
-              ElementsAre(StartsWith("config.yaml:12:3: water.depth_m: is empty (expected a number")));
-  EXPECT_THAT(complaints(minimal_config + "engine:\nlog: {level: info}\n"),
-              ElementsAre(StartsWith("config.yaml:11:1: engine: is empty (expected one of")));
-  EXPECT_THAT(complaints(minimal_config + "log:\nengine: cpu\n"),
-              ElementsAre(StartsWith("config.yaml:11:1: log: is empty (expected a mapping")));
-  EXPECT_THAT(complaints(minimal_config + "    hides_vehicle:\nengine: cpu\n"),
-              ElementsAre(StartsWith("config.yaml:11:5: heads[0].hides_vehicle: is empty (expected true")));
-  EXPECT_THAT(complaints(minimal_config + "sampling:\n  preset: grid\n  views:\n  rows: 16\n"),
-              ElementsAre(StartsWith("config.yaml:13:3: sampling.views: is empty (expected a whole number")));
-  EXPECT_THAT(complaints(minimal_config + "skip:\n  off:\nengine: cpu\n"),
-              ElementsAre(StartsWith("config.yaml:12:3: skip.off: is empty (expected a list")));
-  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {}}\nheads:\n  -\nengine: cpu\n"),
-              Contains(StartsWith("config.yaml:4:3: heads[0]: is empty (expected a mapping")));
-}
-
-// Places were counted by hand; columns count from 1.
-TEST_F(Loader, NamesAQuoteOrBracketThatNothingClosesWhereItBegins) {
-  const std::string rest = "poses: {initial: {}}\nheads:\n  - name: \"bow\"\n    type: micron\n";
-  const std::string quote = "the quote that begins here is not closed (expected another ";
-  EXPECT_THAT(complaints("world:\n  file: \"w.sdf\n" + rest),
-              ElementsAre("config.yaml:2:9: " + quote + "\" at its end)"));
-  EXPECT_THAT(complaints("world:\n  file: 'w.sdf\n" + rest),
-              ElementsAre("config.yaml:2:9: " + quote + "' at its end)"));
-  EXPECT_THAT(complaints("world: {file: \"w.sdf}\n# don't\nposes: {initial: {}}\n"),
-              ElementsAre("config.yaml:1:15: " + quote + "\" at its end)"));
-  EXPECT_THAT(complaints("world: {file: 'w.sdf}\n# don't\nposes: {initial: {}}\n"),
-              ElementsAre("config.yaml:1:15: " + quote + "' at its end)"));
-  EXPECT_THAT(complaints("a: 'it''s'\nworld:\n  - \"x\n  - \"y\"\n"),
-              ElementsAre("config.yaml:3:5: " + quote + "\" at its end)"));
-  // The quote reaches to the end of the file, because the parser takes the rest for text.
-  EXPECT_THAT(complaints("world: {file: w.sdf}\nengine: \"cpu\nposes: {initial: {}}\n"),
-              ElementsAre("config.yaml:2:9: " + quote + "\" at its end)"));
-  EXPECT_THAT(complaints("heads:\n  - name: \"bow\n    type: micron\n"),
-              ElementsAre("config.yaml:2:11: " + quote + "\" at its end)"));
-  const std::string bracket = "the bracket that begins here is not closed (expected ";
-  EXPECT_THAT(
-      complaints("world: {file: w}\nposes:\n  initial:\n    position_m: [1, 2, 3\n    rpy_deg: [0, 0, 0]\n"),
-      ElementsAre("config.yaml:4:17: " + bracket + "])"));
-  EXPECT_THAT(complaints("world: {file: w\nposes: {initial: {}}\n"),
-              ElementsAre("config.yaml:1:8: " + bracket + "})"));
-}
-
-TEST_F(Loader, BlamesNoQuoteThatIsClosed) {
-  // Quotes over two lines, in a comment and within a word. The error is the indent of the last line.
-  EXPECT_THAT(complaints("world:\n  file: \"a\n    b.sdf\" # it's\n  missing: don't\n   x: 1\n"),
-              ElementsAre(StartsWith("config.yaml:5:4: this line is indented by 3 space(s)")));
-  EXPECT_THAT(complaints("world: {file: [a,\n  b], x: \"y\"}\n  z: 1\n"),
-              ElementsAre(testing::Not(HasSubstr("not closed"))));
-}
-
 TEST_F(Loader, TakesNoOtherTypesThanItIsGiven) {
   const std::string micron = micron_of("mast", 2, "tcp: [{bind: 127.0.0.9:4001}]");
   load(minimal_config + micron);  // load() writes the file
@@ -1072,14 +631,6 @@ TEST_F(Loader, TakesNoOtherTypesThanItIsGiven) {
         testing::Contains(HasSubstr(
             "config.yaml:11:24: heads[1].type: 'micron' is not understood (expected one of gemini_720i)")));
   }
-}
-
-TEST_F(Loader, CollectsEveryProblemInTheOrderOfTheFile) {
-  std::string text = minimal_config + "sampling: {preset: grid, views: 0}\nwater: {ph: 15}\nbogus: 1\n";
-  text.replace(text.find("513"), 3, "1");
-  EXPECT_THAT(complaints(text),
-              ElementsAre(HasSubstr(":7:15: heads[0].sonar_id"), HasSubstr(":11:33: sampling.views"),
-                          HasSubstr(":12:13: water.ph"), HasSubstr(":13:1: bogus")));
 }
 
 TEST_F(Loader, ReadsTheErrorThatIsAimedAt) {
@@ -1101,42 +652,6 @@ TEST_F(Loader, ReadsTheErrorThatIsAimedAt) {
               ElementsAre(AllOf(HasSubstr("sampling.preset"), HasSubstr("reference"))));
 }
 
-TEST_F(Loader, PointsAtMalformedYaml) {
-  EXPECT_THAT(complaints(minimal_config + "water: {ph: 8\n"),
-              ElementsAre("config.yaml:11:8: the bracket that begins here is not closed (expected })"));
-  EXPECT_THAT(complaints("world: [\n"),
-              ElementsAre("config.yaml:1:8: the bracket that begins here is not closed (expected ])"));
-  EXPECT_THAT(complaints("world: a: b\n"), ElementsAre(HasSubstr("(expected valid YAML)")));
-}
-
-// Places were counted by hand; columns count from 1.
-TEST_F(Loader, NamesTabsAndWrongIndents) {
-  EXPECT_THAT(
-      complaints("a: 1\n\tb: 2\n"),
-      ElementsAre("config.yaml:2:1: a tab indents this line (expected spaces; YAML allows no tabs there)"));
-  EXPECT_THAT(complaints("world:\n  \tfile: a.sdf\n"),
-              ElementsAre(StartsWith("config.yaml:2:3: a tab indents")));
-  EXPECT_THAT(complaints("world:\n  file: w\n   x: 1\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 space(s)"),
-                                HasSubstr("(expected 0 or 2)"))));
-  EXPECT_THAT(complaints("world:\n  file: w\n b: 1\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:2: this line is indented by 1 space(s)"),
-                                HasSubstr("(expected 0 or 2)"))));
-  EXPECT_THAT(complaints("heads:\n  - name: f\n   type: x\n"),
-              ElementsAre(AllOf(StartsWith("config.yaml:3:4: this line is indented by 3 space(s)"),
-                                HasSubstr("(expected 0 or 2 or 4)"))));
-}
-
-TEST_F(Loader, NamesDecimalCommas) {
-  EXPECT_THAT(complaints(minimal_config + "water:\n  depth_m: 20,5\n"),
-              ElementsAre(AllOf(
-                  StartsWith("config.yaml:12:12: water.depth_m: '20,5' has a decimal comma, write 20.5"),
-                  HasSubstr("(expected a number from 0 to 11000, in m)"))));
-  EXPECT_THAT(complaints("world: {file: w}\nposes: {initial: {position_m: [1,5, 2,0, 3,1]}}\n"),
-              Contains(AllOf(StartsWith("config.yaml:2:31: poses.initial.position_m: is a list of 6"),
-                             HasSubstr("decimals need a point"))));
-}
-
 TEST_F(Loader, SaysWhichKeysTakeAnInterface) {
   const std::vector<InterfaceAddress> interfaces = interface_addresses();
   if (interfaces.empty()) {
@@ -1150,21 +665,6 @@ TEST_F(Loader, SaysWhichKeysTakeAnInterface) {
                       "and `netmask` under `network` can (expected an address and port such as "
                       "127.0.0.1:14600; {0} has {1})",
                       one.interface, address_text(one.address)))));
-}
-
-TEST_F(Loader, NamesIpv6Addresses) {
-  const std::string udp = "world: {file: w}\nposes:\n  udp:\n";
-  EXPECT_THAT(complaints(udp + "    bind: ::1\n"),
-              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: '::1' is an IPv6 address"),
-                             HasSubstr("127.0.0.1"))));
-  EXPECT_THAT(complaints(udp + "    bind: \"[::1]:14600\"\n"),
-              Contains(StartsWith("config.yaml:4:11: poses.udp.bind: '[::1]:14600' is an IPv6 address")));
-  EXPECT_THAT(complaints(udp + "    bind: [::1]:14600\n"),
-              ElementsAre(StartsWith("config.yaml:4:11: '[::1]:14600' is an IPv6 address")));
-  EXPECT_THAT(complaints(udp + "    bind: [::1]\n"),
-              Contains(AllOf(StartsWith("config.yaml:4:11: poses.udp.bind: is a list"), HasSubstr("IPv6"))));
-  EXPECT_THAT(complaints(udp + "    bind: 0.0.0.0:14600\n    allow: [fe80::1/64]\n"),
-              Contains(StartsWith("config.yaml:5:13: poses.udp.allow[0]: 'fe80::1/64' is an IPv6 address")));
 }
 
 TEST_F(Loader, SaysLittleAboutFilesThatAreFarTooLong) {
