@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "clients/wireshark/field_tables.hpp"
+#include "tests/support/message_fields.hpp"
 #include "tests/support/run_process.hpp"
 
 namespace sonard::testing {
@@ -67,6 +69,21 @@ std::vector<std::string> tshark_command(const std::string& path, const std::vect
   return command;
 }
 
+/// All messages in one direction, one after another.
+Bytes stream_of(const std::string& device, bool from_head) {
+  Bytes all;
+  for (const Message& message : messages_of(device)) {
+    if (message.from_head == from_head) {
+      all.insert(all.end(), message.bytes.begin(), message.bytes.end());
+    }
+  }
+  return all;
+}
+
+void append(std::vector<pcapng::Bytes>& packets, const std::vector<pcapng::Bytes>& more) {
+  packets.insert(packets.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
@@ -105,6 +122,66 @@ pcapng::Bytes to_head(pcapng::ByteView payload) {
 
 pcapng::Bytes from_head(pcapng::ByteView payload) {
   return pcapng::udp_packet(head, client, payload);
+}
+
+std::vector<pcapng::ByteView> pieces_of(pcapng::ByteView bytes, std::size_t piece) {
+  std::vector<pcapng::ByteView> pieces;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += piece) {
+    pieces.push_back(bytes.subspan(begin, std::min(piece, bytes.size() - begin)));
+  }
+  return pieces;
+}
+
+std::vector<pcapng::Bytes> pieces_over_tcp(const std::string& device, pcapng::TcpConversation line,
+                                           std::size_t piece) {
+  std::vector<pcapng::Bytes> packets = line.open();
+  const Bytes commands = stream_of(device, false);
+  const Bytes reports = stream_of(device, true);
+  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
+    append(packets, line.from_client(bytes));
+  }
+  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
+    append(packets, line.from_server(bytes));
+  }
+  append(packets, line.close());
+  return packets;
+}
+
+std::vector<pcapng::Bytes> pieces_over_udp(const std::string& device, pcapng::Endpoint client,
+                                           pcapng::Endpoint head, std::size_t piece) {
+  std::vector<pcapng::Bytes> packets;
+  const Bytes commands = stream_of(device, false);
+  const Bytes reports = stream_of(device, true);
+  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
+    packets.push_back(pcapng::udp_packet(client, head, bytes));
+  }
+  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
+    packets.push_back(pcapng::udp_packet(head, client, bytes));
+  }
+  return packets;
+}
+
+std::string names_in_pieces(const std::string& device) {
+  std::string names;
+  for (const bool from_head : {false, true}) {
+    for (const Message& message : messages_of(device)) {
+      names += message.from_head == from_head ? message.message + "," : "";
+    }
+  }
+  return names;
+}
+
+Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
+             const std::vector<std::string>& options) {
+  Row all;
+  for (const Row& row : dissect(packets, fields, options)) {
+    for (const auto& [field, value] : row) {
+      if (!value.empty()) {
+        all[field] += value + ",";
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace sonard::testing

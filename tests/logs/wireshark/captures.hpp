@@ -24,6 +24,21 @@ std::vector<Row> dissect(const std::vector<pcapng::Bytes>& packets, const std::v
 pcapng::Bytes to_head(pcapng::ByteView payload);
 pcapng::Bytes from_head(pcapng::ByteView payload);
 
+/// All messages of a device, `piece` bytes at a time that begin and end anywhere in messages: first those to
+/// the head, then those from it.
+std::vector<pcapng::Bytes> pieces_over_tcp(const std::string& device, pcapng::TcpConversation line,
+                                           std::size_t piece);
+std::vector<pcapng::Bytes> pieces_over_udp(const std::string& device, pcapng::Endpoint client,
+                                           pcapng::Endpoint head, std::size_t piece);
+std::vector<pcapng::ByteView> pieces_of(pcapng::ByteView bytes, std::size_t piece);
+
+/// The names of these messages, each followed by a comma.
+std::string names_in_pieces(const std::string& device);
+
+/// The values of `fields` in all packets, each followed by a comma; without fields that no packet has.
+Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& fields,
+             const std::vector<std::string>& options = {});
+
 /// The field with the warnings of Wireshark and the dissectors.
 inline const std::string expert_field = "_ws.expert.message";
 

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/logs/wireshark/captures.hpp"
 #include "tests/support/message_fields.hpp"
 
@@ -31,20 +29,12 @@ TEST(OculusDissector, AStreamIsPutTogetherFromAnyPieces) {
     SCOPED_TRACE(piece);
     pcapng::TcpConversation line{client, head};
     std::vector<pcapng::Bytes> packets = line.open();
-    for (std::size_t begin = 0; begin < stream.size(); begin += piece) {
-      const auto sent =
-          line.from_server(pcapng::ByteView{stream}.subspan(begin, std::min(piece, stream.size() - begin)));
+    for (const pcapng::ByteView bytes : pieces_of(stream, piece)) {
+      const auto sent = line.from_server(bytes);
       packets.insert(packets.end(), sent.begin(), sent.end());
     }
-    std::string found;
-    std::string complaints;
-    for (const Row& row :
-         dissect(packets, {prefix + "message", prefix + "malformed", prefix + "no_message"})) {
-      found += row.at(prefix + "message").empty() ? "" : row.at(prefix + "message") + ",";
-      complaints += row.at(prefix + "malformed") + row.at(prefix + "no_message");
-    }
-    EXPECT_EQ(found, names);
-    EXPECT_EQ(complaints, "");
+    EXPECT_EQ(found_in(packets, {prefix + "message", prefix + "malformed", prefix + "no_message"}),
+              (Row{{prefix + "message", names}}));
   }
 }
 

@@ -37,10 +37,6 @@ Bytes text_bytes(std::string_view text) {
   return {text.begin(), text.end()};
 }
 
-void append(std::vector<pcapng::Bytes>& packets, const std::vector<pcapng::Bytes>& more) {
-  packets.insert(packets.end(), more.begin(), more.end());
-}
-
 void append(Bytes& bytes, const Bytes& more) {
   bytes.insert(bytes.end(), more.begin(), more.end());
 }
@@ -95,94 +91,21 @@ TEST(Ping360Dissector, StraightAheadIsAPreference) {
 
 // ---- Streams
 
-const std::vector<std::string> complaints{
-    prefix + "bad_checksum", prefix + "malformed",      prefix + "too_long",   prefix + "no_frame",
-    prefix + "unfinished",   prefix + "between_frames", prefix + "unknown_id", "_ws.malformed"};
-
-/// All examples of one direction, one after another.
-Bytes stream(bool commands) {
-  Bytes all;
-  for (const std::string& name : message_names("ping360")) {
-    const Bytes bytes = message_bytes("ping360", name);
-    if (is_command(bytes) == commands) {
-      append(all, bytes);
-    }
-  }
-  return all;
-}
-
-/// The numbers of these examples in the same order.
-std::string ids_of(bool commands) {
-  std::string ids;
-  for (const std::string& name : message_names("ping360")) {
-    const Bytes bytes = message_bytes("ping360", name);
-    ids += is_command(bytes) == commands ? std::to_string(bytes[4] | bytes[5] << 8) + "," : "";
-  }
-  return ids;
-}
-
-std::vector<pcapng::ByteView> pieces_of(const Bytes& bytes, std::size_t size) {
-  std::vector<pcapng::ByteView> pieces;
-  for (std::size_t begin = 0; begin < bytes.size(); begin += size) {
-    pieces.push_back(pcapng::ByteView{bytes}.subspan(begin, std::min(size, bytes.size() - begin)));
-  }
-  return pieces;
-}
-
-/// The dissector's frames and warnings in all of `packets`, by field.
-Row found_in(const std::vector<pcapng::Bytes>& packets, const std::vector<std::string>& options = {}) {
-  std::vector<std::string> fields{prefix + "frame.message_id"};
-  fields.insert(fields.end(), complaints.begin(), complaints.end());
-  Row all;
-  for (const Row& row : dissect(packets, fields, options)) {
-    for (const auto& [field, value] : row) {
-      if (!value.empty()) {
-        all[field] += value + ",";
-      }
-    }
-  }
-  return all;
-}
-
-/// Both streams in a TCP connection, in parts that begin and end anywhere in frames.
-std::vector<pcapng::Bytes> over_tcp(pcapng::TcpConversation line, std::size_t piece) {
-  std::vector<pcapng::Bytes> packets = line.open();
-  const Bytes commands = stream(true);
-  const Bytes reports = stream(false);
-  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
-    append(packets, line.from_client(bytes));
-  }
-  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
-    append(packets, line.from_server(bytes));
-  }
-  append(packets, line.close());
-  return packets;
-}
-
-/// Both streams in datagrams.
-std::vector<pcapng::Bytes> over_udp(std::size_t piece) {
-  std::vector<pcapng::Bytes> packets;
-  const Bytes commands = stream(true);
-  const Bytes reports = stream(false);
-  for (const pcapng::ByteView bytes : pieces_of(commands, piece)) {
-    packets.push_back(pcapng::udp_packet(client, head, bytes));
-  }
-  for (const pcapng::ByteView bytes : pieces_of(reports, piece)) {
-    packets.push_back(pcapng::udp_packet(head, client, bytes));
-  }
-  return packets;
-}
+/// A message, and all complaints of the dissector.
+const std::vector<std::string> stream_fields{
+    prefix + "message",    prefix + "bad_checksum",   prefix + "malformed",
+    prefix + "too_long",   prefix + "no_frame",       prefix + "unfinished",
+    prefix + "unknown_id", prefix + "between_frames", "_ws.malformed"};
 
 // A recording's serial line uses a port that the Micron's dissector has, too.
 TEST(Ping360Dissector, AStreamOverTcpIsPutTogetherFromAnyPieces) {
   for (const std::size_t piece : {2000U, 50U, 3U}) {
     for (const std::uint16_t port : {std::uint16_t{12'345}, pcapng::serial_head.port}) {
       SCOPED_TRACE(std::to_string(piece) + " bytes, port " + std::to_string(port));
-      const Row all = found_in(
-          over_tcp(pcapng::TcpConversation{pcapng::serial_client, {pcapng::serial_head.address, port}},
-                   piece),
-          {"-o", "ping360_sonar.tcp:12345"});
-      EXPECT_EQ(all, (Row{{prefix + "frame.message_id", ids_of(true) + ids_of(false)}}));
+      const pcapng::TcpConversation line{pcapng::serial_client, {pcapng::serial_head.address, port}};
+      const Row all =
+          found_in(pieces_over_tcp("ping360", line, piece), stream_fields, {"-o", "ping360_sonar.tcp:12345"});
+      EXPECT_EQ(all, (Row{{prefix + "message", names_in_pieces("ping360")}}));
     }
   }
 }
@@ -193,8 +116,9 @@ TEST(Ping360Dissector, DatagramsArePutTogetherFromAnyPieces) {
   for (const std::size_t piece : {2000U, 100U, 7U, 1U}) {
     for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"-2"}}) {
       SCOPED_TRACE(std::to_string(piece) + " bytes");
-      EXPECT_EQ(found_in(over_udp(piece), options),
-                (Row{{prefix + "frame.message_id", ids_of(true) + ids_of(false)}}));
+      const auto packets = pieces_over_udp("ping360", client, head, piece);
+      EXPECT_EQ(found_in(packets, stream_fields, options),
+                (Row{{prefix + "message", names_in_pieces("ping360")}}));
     }
   }
 }
