@@ -4,13 +4,13 @@
 #include <map>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/pattern.hpp"
 #include "tests/unit/server/config/config_text.hpp"
 
 namespace sonard::server {
@@ -77,22 +77,6 @@ std::vector<ComplaintCase> complaint_cases() {
   return cases;
 }
 
-bool matches(std::string_view line, std::string_view pattern) {
-  const std::size_t gap = pattern.find("...");
-  if (gap == std::string_view::npos) {
-    return line == pattern;
-  }
-  if (!line.starts_with(pattern.substr(0, gap))) {
-    return false;
-  }
-  for (std::size_t end = gap; end <= line.size(); ++end) {
-    if (matches(line.substr(end), pattern.substr(gap + 3))) {
-      return true;
-    }
-  }
-  return false;
-}
-
 class Complaints : public ConfigFolder, public testing::WithParamInterface<ComplaintCase> {};
 
 TEST_P(Complaints, AreThoseOfTheFile) {
@@ -100,7 +84,7 @@ TEST_P(Complaints, AreThoseOfTheFile) {
   const std::vector<std::string>& patterns = GetParam().complaints;
   ASSERT_EQ(lines.size(), patterns.size()) << fmt::format("{}", fmt::join(lines, "\n"));
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    EXPECT_TRUE(matches(lines[i], patterns[i])) << lines[i] << "\nis not\n" << patterns[i];
+    EXPECT_TRUE(test::matches(lines[i], patterns[i])) << lines[i] << "\nis not\n" << patterns[i];
   }
 }
 
