@@ -44,11 +44,16 @@ std::string_view name_of(ping360::MessageId id) {
   return "unknown";
 }
 
+template <class Message>
+std::string_view name_of() {
+  return name_of(ping360::MessageId{static_cast<std::uint16_t>(Message::id)});
+}
+
 template <class Direction>
 void append_types(std::string& lua) {
   for_each_message<Direction>([&]<class Message>(std::type_identity<Message>) {
     if constexpr (!std::is_same_v<Message, ping360::Unknown>) {
-      append_type(lua, static_cast<unsigned>(Message::id), name_of(Message::id));
+      append_type(lua, static_cast<unsigned>(Message::id), name_of<Message>());
     }
   });
 }
@@ -63,7 +68,7 @@ template <class Direction, class Besides = void>
 void append_messages(std::string& lua) {
   for_each_message<Direction>([&]<class Message>(std::type_identity<Message>) {
     if constexpr (HasLayout<Message> && !std::is_same_v<Message, Besides>) {
-      append_message<ping360::Layout<Message>>(lua, name_of(Message::id));
+      append_message<ping360::Layout<Message>>(lua, name_of<Message>());
     }
   });
 }

@@ -14,7 +14,6 @@
 #include <variant>
 #include <vector>
 
-#include "protocol/ping360/frame.hpp"
 #include "protocol/ping360/messages.hpp"
 #include "protocol/ping360/ping_form.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "protocol/common/result.hpp"
 #include "protocol/common/wire_error.hpp"
-#include "protocol/ping360/frame.hpp"
 #include "protocol/ping360/messages.hpp"
 
 namespace sonard::ping360 {

@@ -40,12 +40,10 @@ const DeviceConfig& validated(const DeviceConfig& config) {
   require(config.ping_overhead >= zero, "ping_overhead must not be negative");
   require(config.time_per_gradian >= zero, "time_per_gradian must not be negative");
   require(config.time_scale >= 0.0 && config.time_scale <= 1000.0, "time_scale must be 0..1000");
-  require(config.idle_timeout >= zero, "idle_timeout must not be negative");
   require(config.reset_silence >= zero, "reset_silence must not be negative");
   require(config.bootloader_silence >= zero, "bootloader_silence must not be negative");
-  require(!config.lock_to_first || config.idle_timeout > zero,
-          "idle_timeout must be positive if lock_to_first is set");
-  require(config.max_clients >= 2, "max_clients must be at least 2");
+  const auto invalid = invalid_field(config);
+  require(!invalid, invalid.value_or("").c_str());
   return config;
 }
 
@@ -54,7 +52,7 @@ const DeviceConfig& validated(const DeviceConfig& config) {
 class Device::Impl {
  public:
   Impl(const DeviceConfig& config, TimePoint start)
-      : config_(validated(config)), scanner_(config_, start, counters_), id_(config_.id) {}
+      : config_(validated(config)), scanner_(config_, start, counters_), clients_(config_), id_(config_.id) {}
 
   // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
@@ -76,27 +74,13 @@ class Device::Impl {
   std::uint8_t id() const { return id_; }
 
  private:
-  struct Client {
-    Peer peer;
-    FrameBuffer input;
-    TimePoint heard{};
-  };
-
-  /// The address that controls the head while it is locked to the first client.
-  struct Holder {
-    Ipv4 address = 0;  ///< 0: the serial line
-    TimePoint heard{};
-  };
+  using Client = Clients::Client;
 
   // Clients.
-  bool locked_against(TimePoint now, const Peer& peer);
   Client& client_of(TimePoint now, const Peer& peer);
-  void make_room();
-  void forget(TimePoint now, std::size_t index, std::string_view why);
+  bool scans(const Peer& peer) const;
+  void forget(TimePoint now, const Peer& peer, std::string_view why);
   void forget_silent_clients(TimePoint now);
-  bool is_serial(const Peer& peer) const { return peer.channel == config_.serial_channel; }
-  bool can_fall_silent(const Client& client) const;
-  std::string name_of(const Peer& peer) const;
   void notice(std::string text) { notices_.push_back({Notice::Level::info, std::move(text)}); }
   std::optional<TimePoint> next_deadline() const;
 
@@ -104,14 +88,13 @@ class Device::Impl {
   void read_frames(TimePoint now, Client& client);
   void note_break(TimePoint now, Client& client);
   void take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame);
-  void send(const Peer& to, const std::vector<std::uint8_t>& frame);
-  void send_to(const Peer& to, const std::vector<std::uint8_t>& frame);
+  void send(const Peer& to, const std::vector<std::uint8_t>& frame) { clients_.send(to, frame, outgoing_); }
   void reply(const Peer& asker, const Report& report) { send(asker, encode(report, id_)); }
   void refuse(const Peer& asker, std::uint16_t id, std::string_view text);
   template <class Command>
   bool refused(const Peer& asker, const Command& command);
   void end_scan(TimePoint now, std::string_view why);
-  void set_id(const Peer& asker, MessageId order, std::uint8_t device_id);
+  void set_id(const Peer& asker, std::uint16_t order, std::uint8_t device_id);
 
   // One overload for each command.
   void handle(TimePoint now, const Peer& asker, const GeneralRequest& command);
@@ -127,10 +110,9 @@ class Device::Impl {
   DeviceCounters counters_;
   SettingsWarnings warnings_;
   Scanner scanner_;
+  Clients clients_;
   std::uint8_t id_;
   TimePoint silent_until_ = TimePoint::min();  ///< in the future while the head restarts
-  std::vector<Client> clients_;
-  std::optional<Holder> holder_;
 
   // Of the step in progress.
   std::vector<Outgoing> outgoing_;
@@ -139,80 +121,40 @@ class Device::Impl {
 
 // ---- Clients
 
-bool Device::Impl::locked_against(TimePoint now, const Peer& peer) {
-  if (holder_ && now - holder_->heard >= config_.idle_timeout) {
-    holder_.reset();
-  }
-  if (!config_.lock_to_first || !holder_) {
-    return false;
-  }
-  if (holder_->address == peer.remote.address) {
-    holder_->heard = now;
-    return false;
-  }
-  return true;
+/// The starter of a scan may only listen.
+bool Device::Impl::scans(const Peer& peer) const {
+  const auto scan = scanner_.running_scan();
+  return scan && same_client(scan->first, peer);
 }
 
 Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
-  auto found = std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, peer); });
-  if (found == clients_.end()) {
-    notice(fmt::format("client {} connected", name_of(peer)));
-    make_room();
-    found = clients_.insert(clients_.end(), Client{});
+  if (clients_.find(peer) == nullptr) {
+    notice(fmt::format("client {} connected", clients_.name_of(peer)));
   }
-  found->peer = peer;  // the client may use another of our addresses than before
-  found->heard = now;
-  return *found;
+  Client& client = clients_.heard(now, peer, [this](const Peer& known) { return scans(known); });
+  counters_.clients_dropped = clients_.dropped();
+  return client;
 }
 
-/// Drops the client that has been silent longest, if there are too many. Keeps the starter of a scan, which
-/// may only listen. max_clients is at least 2.
-void Device::Impl::make_room() {
-  if (clients_.size() < config_.max_clients) {
-    return;
-  }
-  const auto scan = scanner_.running_scan();
-  const auto longest_silent = std::ranges::min_element(clients_, {}, [&](const Client& client) {
-    const bool scans = scan && same_client(scan->first, client.peer);
-    return scans ? TimePoint::max() : client.heard;
-  });
-  clients_.erase(longest_silent);
-  ++counters_.clients_dropped;
-}
-
-void Device::Impl::forget(TimePoint now, std::size_t index, std::string_view why) {
-  const Peer peer = clients_[index].peer;
-  const auto scan = scanner_.running_scan();
-  if (scan && same_client(scan->first, peer)) {
+void Device::Impl::forget(TimePoint now, const Peer& peer, std::string_view why) {
+  if (scans(peer)) {
     end_scan(now, why);
   }
   scanner_.forget(now, peer);
-  clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(index));
-  notice(fmt::format("client {} is gone: {}", name_of(peer), why));
+  clients_.remove(peer);
+  notice(fmt::format("client {} is gone: {}", clients_.name_of(peer), why));
 }
 
 void Device::Impl::take(TimePoint now, const ClientGone& gone) {
-  const auto found =
-      std::ranges::find_if(clients_, [&](const Client& it) { return same_client(it.peer, gone.who); });
-  if (found != clients_.end()) {
-    forget(now, static_cast<std::size_t>(found - clients_.begin()), "disconnected");
+  if (const Client* const client = clients_.find(gone.who)) {
+    forget(now, Peer{client->peer}, "disconnected");
   }
-}
-
-bool Device::Impl::can_fall_silent(const Client& client) const {
-  return config_.idle_timeout.count() > 0 && !is_serial(client.peer);
 }
 
 void Device::Impl::forget_silent_clients(TimePoint now) {
-  for (std::size_t i = clients_.size(); i-- > 0;) {
-    if (can_fall_silent(clients_[i]) && now - clients_[i].heard >= config_.idle_timeout) {
-      forget(now, i, "timed out");
-    }
+  for (const Peer& peer : clients_.silent(now)) {
+    forget(now, peer, "timed out");
   }
-}
-
-std::string Device::Impl::name_of(const Peer& peer) const {
-  return is_serial(peer) ? "on the serial line" : endpoint_text(peer.remote);
 }
 
 // ---- Frames
@@ -224,7 +166,7 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
     counters_.unheard_bytes += piece.bytes.size();
     return;
   }
-  if (locked_against(now, piece.from)) {
+  if (clients_.locked_against(now, piece.from)) {
     ++counters_.locked_out;
     return;
   }
@@ -232,13 +174,12 @@ void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
   if (piece.bytes.size() > 0) {
     client.input.append(now, {piece.bytes.data(), piece.bytes.size()});
     read_frames(now, client);
-  } else if (!is_serial(client.peer)) {
+  } else if (!clients_.is_serial(client.peer)) {
     client.input.clear();
     end_scan(now, "empty datagram received");
   }
   if (now < silent_until_) {
     clients_.clear();  // a reset command came
-    holder_.reset();
   }
 }
 
@@ -256,7 +197,7 @@ void Device::Impl::read_frames(TimePoint now, Client& client) {
 }
 
 void Device::Impl::note_break(TimePoint now, Client& client) {
-  if (client.input.take_baud_bytes() && is_serial(client.peer)) {
+  if (client.input.take_baud_bytes() && clients_.is_serial(client.peer)) {
     end_scan(now, "break received");
   }
 }
@@ -275,27 +216,8 @@ void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const 
     return;
   }
   counters_.commands += std::holds_alternative<Unknown>(*command) ? 0 : 1;
-  holder_ = Holder{asker.remote.address, now};
+  clients_.hold(now, asker);
   std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
-}
-
-void Device::Impl::send(const Peer& to, const std::vector<std::uint8_t>& frame) {
-  if (config_.fan_out == FanOut::requester) {
-    send_to(to, frame);
-    return;
-  }
-  for (const Client& client : clients_) {
-    send_to(client.peer, frame);
-  }
-}
-
-void Device::Impl::send_to(const Peer& to, const std::vector<std::uint8_t>& frame) {
-  const auto shared = std::make_shared<const std::vector<std::uint8_t>>(frame);
-  const std::size_t most = config_.max_datagram > 0 ? config_.max_datagram : frame.size();
-  for (std::size_t begin = 0; begin < frame.size(); begin += most) {
-    outgoing_.push_back(
-        {Outgoing::To::peer, to, SharedBytes(shared, begin, std::min(most, frame.size() - begin))});
-  }
 }
 
 void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
@@ -350,24 +272,24 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const GeneralRequest
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetCommonDeviceId& command) {
   if (config_.obeys_set_common_device_id) {
-    set_id(asker, SetCommonDeviceId::id, command.device_id);
+    set_id(asker, id_of(command), command.device_id);
   } else {
     refuse(asker, id_of(command), not_recognised);
   }
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetDeviceId& command) {
-  set_id(asker, SetDeviceId::id, command.device_id);
+  set_id(asker, static_cast<std::uint16_t>(SetDeviceId::id), command.device_id);
 }
 
 /// The answer still has the old id as source.
-void Device::Impl::set_id(const Peer& asker, MessageId order, std::uint8_t device_id) {
-  const auto order_id = static_cast<std::uint16_t>(order);
+void Device::Impl::set_id(const Peer& asker, std::uint16_t order, std::uint8_t device_id) {
   if (is_device_id(device_id)) {
-    reply(asker, Ack{order_id});
+    reply(asker, Ack{order});
     id_ = device_id;
   } else {
-    refuse(asker, order_id, order == MessageId::set_device_id ? "id out of range" : "device_id out of range");
+    const bool of_head = order == static_cast<std::uint16_t>(SetDeviceId::id);
+    refuse(asker, order, of_head ? "id out of range" : "device_id out of range");
   }
 }
 
@@ -399,7 +321,7 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const AutoTransmit& 
   const auto before = scanner_.running_scan();
   scanner_.scan(now, asker, command);
   if (!before || before->second != command || !same_client(before->first, asker)) {
-    notice(fmt::format("auto scan by client {}: {}", name_of(asker), scan_text(command)));
+    notice(fmt::format("auto scan by client {}: {}", clients_.name_of(asker), scan_text(command)));
   }
 }
 
@@ -439,14 +361,9 @@ Actions Device::Impl::actions() {
 }
 
 std::optional<TimePoint> Device::Impl::next_deadline() const {
-  auto next = scanner_.next_deadline();
-  for (const Client& client : clients_) {
-    if (can_fall_silent(client)) {
-      const TimePoint due = client.heard + config_.idle_timeout;
-      next = std::min(next.value_or(due), due);
-    }
-  }
-  return next;
+  const auto work = scanner_.next_deadline();
+  const auto silence = clients_.next_silence();
+  return work && silence ? std::min(work, silence) : (work ? work : silence);
 }
 
 // ---- Device

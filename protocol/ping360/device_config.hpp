@@ -7,21 +7,19 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "protocol/ping360/frame.hpp"
+#include "protocol/ping/clients.hpp"
 #include "protocol/ping360/messages.hpp"
 
 namespace sonard::ping360 {
 
-/// Receivers of the head's messages (4.2).
-enum class FanOut : std::uint8_t {
-  requester,  ///< the client that requested it, or started the scan
-  all,        ///< every client, as behind the bridge of a vehicle
-};
-
 /// Section numbers refer to docs/protocols/ping360.md. The Device constructor rejects values out of range.
-struct DeviceConfig {
+/// `idle_timeout` also ends the scan of its client. It is 0, as on a real head, because clients may listen
+/// for a whole turn of 38 s without sending (3.3).
+struct DeviceConfig : ClientsConfig {
   std::uint8_t id = default_device_id;  ///< 1..254, until a client sets another (1, 3.6)
-  DeviceInformation information;        ///< the device_revision must not be 0 (2.1)
+  /// The device_revision must not be 0 (2.1). Up to firmware 3.3.0 a known viewer scans with `transducer`
+  /// (6).
+  DeviceInformation information{2, 1, 3, 3, 8};
 
   /// True speed of sound at the head, used to convert times to ranges; > 0 (2.3).
   double water_sound_speed_mps = 1500.0;
@@ -33,10 +31,6 @@ struct DeviceConfig {
   /// Factor on all times from ping to ping, 0..1000; 0: as fast as pings are rendered (3.7).
   double time_scale = 1.0;
 
-  /// A client that is silent for this time is dropped, and its scan ends. 0: never, as on a real head,
-  /// because clients may listen for a whole turn of 38 s without sending. Clients on a serial line are never
-  /// dropped. (3.3)
-  std::chrono::nanoseconds idle_timeout{0};
   std::chrono::nanoseconds reset_silence{std::chrono::seconds{1}};       ///< >= 0 (3.5)
   std::chrono::nanoseconds bootloader_silence{std::chrono::seconds{5}};  ///< >= 0 (3.5)
 
@@ -49,15 +43,6 @@ struct DeviceConfig {
   bool signed_scan_angles = false;          ///< scan limits are signed and never refused (2.3)
   bool clamps_scan_to_stop = false;         ///< a sector ends at its limit, not at the last whole step (3.3)
   bool ignores_other_destinations = false;  ///< ignore frames to other ids than its own, 0 and 255 (1)
-
-  FanOut fan_out = FanOut::requester;
-  std::size_t max_clients = 32;  ///< >= 2; beyond that the client that has been silent longest is dropped
-  /// Maximum bytes of a datagram; longer frames are split. 0: one datagram per frame (4.1).
-  std::size_t max_datagram = 0;
-  /// Only the first address that sends a command controls the head, until it is silent for `idle_timeout`,
-  /// which must be > 0. Datagrams of others are dropped (docs/security.md).
-  bool lock_to_first = false;
-  int serial_channel = -1;  ///< the Peer::channel of the serial line; -1: no serial line (4.4)
 
   /// The head sends only the pings that it is fed (PingFed).
   bool plays_back = false;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "protocol/common/layout.hpp"
+#include "protocol/ping/layout.hpp"
 #include "protocol/ping360/messages.hpp"
 
 namespace sonard::ping360 {
@@ -16,14 +17,17 @@ template <class Message>
 struct Layout;
 
 template <>
-struct Layout<GeneralRequest> : WholeLayout<10> {
-  static constexpr auto fields = std::tuple{Field{8, "requested_id", &GeneralRequest::requested_id}};
-};
-
+struct Layout<GeneralRequest> : CommonLayout<GeneralRequest> {};
 template <>
-struct Layout<SetCommonDeviceId> : WholeLayout<9> {
-  static constexpr auto fields = std::tuple{Field{8, "device_id", &SetCommonDeviceId::device_id}};
-};
+struct Layout<SetCommonDeviceId> : CommonLayout<SetCommonDeviceId> {};
+template <>
+struct Layout<Ack> : CommonLayout<Ack> {};
+template <>
+struct Layout<Nack> : CommonLayout<Nack> {};
+template <>
+struct Layout<DeviceInformation> : CommonLayout<DeviceInformation> {};
+template <>
+struct Layout<ProtocolVersion> : CommonLayout<ProtocolVersion> {};
 
 template <>
 struct Layout<SetDeviceId> : WholeLayout<10> {
@@ -63,39 +67,6 @@ struct Layout<AutoTransmit> : WholeLayout<24> {
       Field{20, "stop_angle", &AutoTransmit::stop_angle},
       Field{22, "num_steps", &AutoTransmit::num_steps},
       Field{23, "delay", &AutoTransmit::delay_ms},
-  };
-};
-
-template <>
-struct Layout<Ack> : WholeLayout<10> {
-  static constexpr auto fields = std::tuple{Field{8, "acked_id", &Ack::acked_id}};
-};
-
-/// Without the text, which follows.
-template <>
-struct Layout<Nack> : WholeLayout<10> {
-  static constexpr auto fields = std::tuple{Field{8, "nacked_id", &Nack::nacked_id}};
-};
-
-template <>
-struct Layout<DeviceInformation> : WholeLayout<14> {
-  static constexpr auto fields = std::tuple{
-      Field{8, "device_type", &DeviceInformation::device_type},
-      Field{9, "device_revision", &DeviceInformation::device_revision},
-      Field{10, "firmware_version_major", &DeviceInformation::firmware_major},
-      Field{11, "firmware_version_minor", &DeviceInformation::firmware_minor},
-      Field{12, "firmware_version_patch", &DeviceInformation::firmware_patch},
-      Spare<1>{13},
-  };
-};
-
-template <>
-struct Layout<ProtocolVersion> : WholeLayout<12> {
-  static constexpr auto fields = std::tuple{
-      Field{8, "version_major", &ProtocolVersion::major},
-      Field{9, "version_minor", &ProtocolVersion::minor},
-      Field{10, "version_patch", &ProtocolVersion::patch},
-      Spare<1>{11},
   };
 };
 

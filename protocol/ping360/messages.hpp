@@ -3,15 +3,21 @@
 // Source: docs/protocols/ping360.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
 // and skipped on reading. "Client" is the other end; "head" is the sonar. Multi-byte integers are
-// little-endian. Frame headers (frame.hpp) are not part of a message.
+// little-endian. Frame headers are not part of a message.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <variant>
 
+#include "protocol/ping/frame.hpp"
+#include "protocol/ping/messages.hpp"
+
 namespace sonard::ping360 {
+
+using namespace ping;  // frames and common messages
+
+inline constexpr std::uint8_t default_device_id = 2;  ///< of the head
 
 enum class MessageId : std::uint16_t {
   ack = 1,
@@ -30,31 +36,7 @@ enum class MessageId : std::uint16_t {
   motor_off = 2903,
 };
 
-/// A message with an unknown id.
-struct Unknown {
-  std::uint16_t id = 0;
-
-  bool operator==(const Unknown&) const = default;
-};
-
 // ---- Client -> head
-
-/// Requests the message `requested_id` (2.1, 3.1). An empty message with the id 4, 5 or 2300 is an older form
-/// of this request and decodes to it.
-struct GeneralRequest {
-  static constexpr MessageId id = MessageId::general_request;
-  std::uint16_t requested_id = 0;
-
-  bool operator==(const GeneralRequest&) const = default;
-};
-
-/// Sets the device id; from the common message set. Real heads refuse it (3.6).
-struct SetCommonDeviceId {
-  static constexpr MessageId id = MessageId::set_common_device_id;
-  std::uint8_t device_id = 0;  ///< 1..254
-
-  bool operator==(const SetCommonDeviceId&) const = default;
-};
 
 /// Sets the device id. A head also sends it with its current id, in answer to a request (3.1, 3.6).
 struct SetDeviceId {
@@ -114,49 +96,6 @@ using Command = std::variant<Unknown, GeneralRequest, SetCommonDeviceId, SetDevi
                              AutoTransmit, MotorOff>;
 
 // ---- Head -> client
-
-struct Ack {
-  static constexpr MessageId id = MessageId::ack;
-  std::uint16_t acked_id = 0;
-
-  bool operator==(const Ack&) const = default;
-};
-
-/// A refusal (3.8).
-struct Nack {
-  static constexpr MessageId id = MessageId::nack;
-  std::uint16_t nacked_id = 0;
-  std::string text;  ///< the rest of the payload, without a terminator
-
-  bool operator==(const Nack&) const = default;
-};
-
-struct AsciiText {
-  static constexpr MessageId id = MessageId::ascii_text;
-  std::string text;  ///< the whole payload, without a terminator
-
-  bool operator==(const AsciiText&) const = default;
-};
-
-struct DeviceInformation {
-  static constexpr MessageId id = MessageId::device_information;
-  std::uint8_t device_type = 2;      ///< 1 Ping1D, 2 Ping360
-  std::uint8_t device_revision = 1;  ///< > 0
-  std::uint8_t firmware_major = 3;   ///< up to version 3.3.0 a known viewer scans with `transducer` (6)
-  std::uint8_t firmware_minor = 3;
-  std::uint8_t firmware_patch = 8;
-
-  bool operator==(const DeviceInformation&) const = default;
-};
-
-struct ProtocolVersion {
-  static constexpr MessageId id = MessageId::protocol_version;
-  std::uint8_t major = 1;
-  std::uint8_t minor = 0;
-  std::uint8_t patch = 0;
-
-  bool operator==(const ProtocolVersion&) const = default;
-};
 
 /// A ping of `transducer`, or the current state of the head (3.1, 3.2).
 struct DeviceData {

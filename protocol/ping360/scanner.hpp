@@ -133,9 +133,4 @@ class Scanner {
   TimePoint busy_until_{};  ///< end of the last work by the timing of the head
 };
 
-/// True if two messages are from one client.
-inline bool same_client(const Peer& a, const Peer& b) {
-  return a.channel == b.channel && a.remote == b.remote;
-}
-
 }  // namespace sonard::ping360

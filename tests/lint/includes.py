@@ -23,8 +23,8 @@ DEVICES = devices()
 MAY_INCLUDE = {
     "common": (),
     "protocol": ("protocol",),
-    # Devices do not depend on each other, but may use a log format of their users.
-    **{f"protocol/{device}": ("protocol/common", "protocol/glf") for device in DEVICES},
+    # Devices do not depend on each other, but may use a protocol of several devices, or a log format of their users.
+    **{f"protocol/{device}": ("protocol/common", "protocol/ping", "protocol/glf") for device in DEVICES},
     "renderer": ("renderer", "common/text"),
     # Clients also draw pictures; they use no other part of the renderer.
     "renderer/picture": (),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boundaries of frames in a stream (docs/protocols/ping360.md 1.1).
-#include "protocol/ping360/frame.hpp"
+#include "protocol/ping/frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 namespace sonard::ping360::testing {
 namespace {
 
+using namespace ping;
 using namespace std::chrono_literals;
 
 Bytes joined(const std::vector<Bytes>& pieces) {

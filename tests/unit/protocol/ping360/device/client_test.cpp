@@ -76,7 +76,7 @@ TEST(Ping360Client, MeetsTheHead) {
   Session session;
   session.run_for(100ms);
   EXPECT_EQ(session.client.head().protocol, ProtocolVersion{});
-  EXPECT_EQ(session.client.head().information, DeviceInformation{});
+  EXPECT_EQ(session.client.head().information, DeviceConfig{}.information);
   EXPECT_EQ(session.client.head().state, PingForm{});
   session.run_for(10s);
   EXPECT_EQ(session.client.statistics().frames, 3U) << "then it is quiet";

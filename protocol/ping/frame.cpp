@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "protocol/ping360/frame.hpp"
+#include "protocol/ping/frame.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 
 #include "protocol/common/byte_writer.hpp"
 
-namespace sonard::ping360 {
+namespace sonard::ping {
 namespace {
 
 constexpr std::chrono::milliseconds give_up_silence{100};
@@ -128,4 +128,4 @@ void FrameBuffer::drop(std::size_t count) {
   front_size_ = 0;
 }
 
-}  // namespace sonard::ping360
+}  // namespace sonard::ping

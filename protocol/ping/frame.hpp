@@ -11,7 +11,7 @@
 
 #include "protocol/common/ping_job.hpp"
 
-namespace sonard::ping360 {
+namespace sonard::ping {
 
 inline constexpr std::uint8_t frame_start_1 = 0x42;  ///< 'B'
 inline constexpr std::uint8_t frame_start_2 = 0x52;  ///< 'R'
@@ -19,7 +19,6 @@ inline constexpr std::size_t frame_header_size = 8;
 inline constexpr std::size_t checksum_size = 2;
 inline constexpr std::size_t frame_overhead = frame_header_size + checksum_size;
 inline constexpr std::size_t max_payload_size = 4096;  ///< a longer one is not a frame (1.1)
-inline constexpr std::uint8_t default_device_id = 2;   ///< of the head
 inline constexpr std::uint8_t client_id = 0;           ///< of every known client
 inline constexpr std::uint8_t broadcast_id = 255;
 inline constexpr std::uint8_t baud_byte = 0x55;  ///< 'U', with which a serial head detects the baud rate
@@ -86,4 +85,4 @@ class FrameBuffer {
   std::uint64_t bad_checksums_ = 0;
 };
 
-}  // namespace sonard::ping360
+}  // namespace sonard::ping
