@@ -70,7 +70,7 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
   const render::PingRequest ahead = usual_ping(settings, T_world_vehicle);
   renderer_.render_ping(ahead, static_cast<int>(head));
   render::PingStatistics seen = renderer_.last_statistics();
-  for (int i = 1; type_of(settings).scanning() && i < bearings; ++i) {
+  for (int i = 1; type_of(settings).turns() && i < bearings; ++i) {
     render::PingRequest turned = ahead;
     turned.T_world_sonar = T_world_transducer(ahead.T_world_sonar, 2.0 * std::numbers::pi * i / bearings);
     renderer_.render_ping(turned, static_cast<int>(head));
@@ -91,7 +91,7 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
 std::string TrialPings::view(std::size_t head, const std::optional<render::Pose>& T_world_vehicle,
                              const std::vector<PosedBody>& moved) const {
   const HeadConfig& settings = config_.heads[head];
-  const std::string looks = fmt::format("{}{}", type_of(settings).scanning() ? "turns, and ahead is " : "",
+  const std::string looks = fmt::format("{}{}", type_of(settings).turns() ? "turns, and ahead is " : "",
                                         looks_text(settings.T_vehicle_sonar));
   if (!T_world_vehicle) {
     return looks;

@@ -59,6 +59,8 @@ class DeviceType : public HeadType {
  public:
   /// True if a ping is one beam, at the bearing of the job; false if it is a fan.
   virtual bool scanning() const = 0;
+  /// False for a head whose one beam always looks along the axis of its mount.
+  virtual bool turns() const { return scanning(); }
   /// True if the head has attitude or depth sensors: it receives SensorsRead.
   virtual bool has_sensors() const { return false; }
 

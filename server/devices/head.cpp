@@ -519,7 +519,7 @@ bool Head::Impl::render(const PingJob& job) {
     recording.posed(of_ping);
   }
   PosedPing ping = posed(job, of_ping);
-  log.ping(job, type.scanning(), ping.request.T_world_sonar);
+  log.ping(job, type.turns(), ping.request.T_world_sonar);
   const render::Aperture& aperture = ping.request.settings.aperture;
   newest = NewestPing{job.settings,
                       job.range_m(),

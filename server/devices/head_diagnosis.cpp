@@ -51,7 +51,7 @@ void HeadDiagnosis::look(TimePoint now, const NewestPing& ping, const PosesUsed&
   // line each time that it passes the limit.
   const double least = stands_out_.value_or(true) ? least_visible_echo : 2.0 * least_visible_echo;
   bool stands_out = echo_over_floor >= least;
-  if (type_of(config_).scanning()) {
+  if (type_of(config_).turns()) {
     sees_surface = surface_seen_.note(now, ping.bearing_rad, sees_surface);
     stands_out = echo_seen_.note(now, ping.bearing_rad, stands_out);
   }

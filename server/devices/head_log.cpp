@@ -59,11 +59,11 @@ void HeadLog::settings(const PingJob& job) {
   setting_changes_.info("head={}: pings{}", head_, text);
 }
 
-void HeadLog::ping(const PingJob& job, bool scanning, const render::Pose& T_world_sonar) {
+void HeadLog::ping(const PingJob& job, bool turns, const render::Pose& T_world_sonar) {
   settings(job);
   const glm::dvec3& p = T_world_sonar.position_m;
   const glm::dvec3 axis = T_world_sonar.orientation * glm::dvec3(1, 0, 0);
-  const std::string bearing = scanning ? fmt::format(" bearing={:.3f}deg", job.bearing_rad / degree) : "";
+  const std::string bearing = turns ? fmt::format(" bearing={:.3f}deg", job.bearing_rad / degree) : "";
   spdlog::debug(
       "head={}: ping number={}{} transmit_us={} position_m=[{:.3f}, {:.3f}, {:.3f}] axis=[{:.4f}, {:.4f}, "
       "{:.4f}]",

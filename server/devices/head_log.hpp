@@ -27,7 +27,7 @@ class HeadLog {
 
   void notice(const Notice& notice);
   /// Logs a ping that is about to be rendered.
-  void ping(const PingJob& job, bool scanning, const render::Pose& T_world_sonar);
+  void ping(const PingJob& job, bool turns, const render::Pose& T_world_sonar);
   /// Logs rates; call it every `period`. Silent if nothing happened in the period.
   void rates(const HeadCounts& total, std::chrono::duration<double> period);
   /// Call it once, at the end.
