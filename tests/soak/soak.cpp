@@ -148,8 +148,9 @@ void Soak::answer() {
     step(PingNotRendered{work.job.number});
     return;
   }
-  rendered_ = {work.job.number, work.job.transmit_time, samples_of(work.job, head_.beams())};
-  step(PingRendered{PingImage{work.job.number, rendered_.samples, {}}});
+  const std::vector<std::uint8_t> image = samples_of(work.job, head_.beams());
+  rendered_ = {work.job.number, work.job.transmit_time, head_.made_of(image)};
+  step(PingRendered{PingImage{work.job.number, image, {}}});
 }
 
 void Soak::see(const SeenPing& ping) {

@@ -67,6 +67,8 @@ class HeadUnderSoak {
   virtual std::uint64_t id_modulus() const = 0;
   /// The exact time from ping to ping in one visit; nullopt if it depends on the angle.
   virtual std::optional<std::chrono::nanoseconds> period() const = 0;
+  /// The samples that the head sends of an image.
+  virtual std::vector<std::uint8_t> made_of(const std::vector<std::uint8_t>& image) const { return image; }
   /// Creates a visitor. Visitors differ in address, in requests and in the way they leave; half of them leave
   /// without a message.
   virtual std::unique_ptr<Visitor> visitor(std::uint64_t visit, TimePoint now) = 0;
