@@ -49,7 +49,7 @@ Clients::Client& Clients::heard(TimePoint now, const Peer& peer,
           clients_, {}, [&](const Client& it) { return keeps(it.peer) ? TimePoint::max() : it.heard; }));
       ++dropped_;
     }
-    client = &clients_.emplace_back();
+    client = &clients_.emplace_back(Client{peer, FrameBuffer(config_.max_payload), now});
   }
   client->peer = peer;  // the client may use another of our addresses than before
   client->heard = now;

@@ -32,6 +32,7 @@ struct ClientsConfig {
   /// Only the first address that sends a command controls the head, until it is silent for `idle_timeout`,
   /// which must be > 0. Datagrams of others are dropped (docs/security.md).
   bool lock_to_first = false;
+  std::size_t max_payload = max_payload_size;  ///< of a client's frame; a longer one is noise (1.1)
   int serial_channel = -1;  ///< the Peer::channel of the serial line; -1: no serial line (4.4)
 };
 

@@ -47,7 +47,7 @@ std::vector<std::uint8_t> make_frame(std::uint16_t message_id, std::uint8_t sour
   return frame;
 }
 
-std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes) {
+std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_payload) {
   const auto start = std::ranges::find(bytes, frame_start_1) - bytes.begin();
   if (start > 0) {
     return -start;
@@ -59,7 +59,7 @@ std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes) {
     return 0;
   }
   const std::size_t payload_length = u16le(bytes, 2);
-  if (payload_length > max_payload_size) {
+  if (payload_length > max_payload) {
     return -1;
   }
   const std::size_t size = payload_length + frame_overhead;
@@ -85,7 +85,7 @@ void FrameBuffer::append(TimePoint now, std::span<const std::uint8_t> bytes) {
 
 std::optional<std::span<const std::uint8_t>> FrameBuffer::front() {
   std::ptrdiff_t found = 0;
-  while ((found = next_frame(rest())) < 0) {
+  while ((found = next_frame(rest(), max_payload_)) < 0) {
     note_broken_frame();
     drop(static_cast<std::size_t>(-found));
   }
@@ -112,7 +112,7 @@ bool FrameBuffer::take_baud_bytes() {
 void FrameBuffer::note_broken_frame() {
   const auto bytes = rest();
   if (bytes.size() >= length_end && bytes[0] == frame_start_1 && bytes[1] == frame_start_2 &&
-      u16le(bytes, 2) <= max_payload_size) {
+      u16le(bytes, 2) <= max_payload_) {
     broken_ = std::max(broken_, u16le(bytes, 2) + frame_overhead);
     ++bad_checksums_;
   }

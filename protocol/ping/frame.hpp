@@ -45,12 +45,15 @@ std::vector<std::uint8_t> make_frame(std::uint16_t message_id, std::uint8_t sour
 ///   n < 0  drop -n bytes: no frame starts in them
 ///   0      more bytes are needed
 /// Drops only the first byte of a false frame, because a true frame may start inside it.
-std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes);
+std::ptrdiff_t next_frame(std::span<const std::uint8_t> bytes, std::size_t max_payload = max_payload_size);
 
 /// Collects the bytes of one client, in parts of any size, into frames. Holds less than one frame plus the
 /// last part. Not thread-safe; `now` never goes backwards.
 class FrameBuffer {
  public:
+  /// A longer payload than `max_payload` is not a frame. With a small one, a false length hides few frames.
+  explicit FrameBuffer(std::size_t max_payload = max_payload_size) : max_payload_(max_payload) {}
+
   /// Adds bytes. Drops an unfinished frame after a gap of 100 ms, so that a false length caused by noise
   /// cannot hide frames for longer.
   void append(TimePoint now, std::span<const std::uint8_t> bytes);
@@ -75,6 +78,7 @@ class FrameBuffer {
   void drop(std::size_t count);
   void note_broken_frame();
 
+  std::size_t max_payload_;
   std::vector<std::uint8_t> bytes_;
   std::size_t begin_ = 0;       ///< bytes before it have been consumed
   std::size_t front_size_ = 0;  ///< of the frame that front() returned

@@ -91,6 +91,15 @@ TEST(Ping360Frame, ALengthBeyondTheLimitIsNoFrame) {
   EXPECT_EQ(next_frame(std::span{beyond}.first(4)), -1);
 }
 
+TEST(Ping360Frame, ABufferForShortFramesDropsLongerOnesAtTheirLength) {
+  const Bytes frame = load_fixture("motor_off");
+  const Bytes long_header{0x42, 0x52, 65, 0x00};
+  FrameBuffer buffer(64);
+  buffer.append({}, joined({long_header, frame, make_frame(1, 0, 0, Bytes(64))}));
+  EXPECT_EQ(frames_in(buffer).size(), 2U);
+  EXPECT_EQ(buffer.dropped(), long_header.size());
+}
+
 TEST(Ping360Frame, WhatStopsToComeFor100MsIsGivenUp) {
   const Bytes frame = load_fixture("motor_off");
   const Bytes header_of_many{0x42, 0x52, 0xFF, 0x0F, 'U'};
