@@ -2,6 +2,7 @@
 #include "protocol/gemini/client.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 #include <variant>
 
@@ -14,90 +15,23 @@ using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 using std::chrono::seconds;
 
-constexpr std::uint16_t resent_head = 0x0100;  // bit of PingHead::ping_id (6.3)
-
 constexpr nanoseconds stay_alive_period = seconds{1};
-
-/// Time from a configuration to the first datagram of its ping. The head may be rendering or waiting for its
-/// rate limit, so waiting costs less than a second ping.
-constexpr ResponseTime::Limits config_limits{seconds{1}, milliseconds{200}, seconds{2}};
 constexpr nanoseconds config_patience_most = seconds{2};
-
-/// Time from a retry request to the first resent datagram. In continuous mode a head delays its next ping
-/// only while requests arrived within the last 10 ms (7.3). Two datagrams every 2 ms fail to keep this up
-/// once in 1e13 times on a link that loses 5 %. On a slow link the answer takes longer than the 10 ms, so the
-/// client sends several requests.
-constexpr ResponseTime::Limits answer_limits{milliseconds{3}, milliseconds{2}, milliseconds{25}};
-constexpr nanoseconds answer_patience_continuous = milliseconds{2};
-constexpr nanoseconds answer_patience_most = milliseconds{100};
-constexpr int fruitless_rounds_at_full_speed = 4;
-
-/// A line that arrives later than this after a higher one counts as lost. The head answers only after the
-/// tail, so an earlier request would gain nothing.
-constexpr nanoseconds reorder_patience = milliseconds{1};
-/// Silence in the first pass that means its end was lost, in addition to the acoustic time of a burst, for
-/// which a head waits before it sends one. A false alarm costs a resent tail. Real clients wait similarly
-/// long (7.1, 7.2). Near the end early ones repeat requests after 5 ms, later ones if the last 35 lines come
-/// slower than one per millisecond. Before, they give a ping 400 ms.
-constexpr nanoseconds stream_patience = milliseconds{8};
-constexpr nanoseconds stream_patience_before_the_end = milliseconds{400};
-constexpr int last_lines = 35;
-constexpr int burst_lines = 32;
-/// The tail follows the last line immediately, and the first line follows the head immediately.
-constexpr nanoseconds neighbour_patience = milliseconds{2};
-/// This close to its end, an incomplete ping gets a precautionary request in continuous mode. Without a
-/// recent request the head begins its next ping at once, and the last lines may be lost along with the tail.
-constexpr int precaution_lines = 8;
-/// Rounds of requests if only the tail is missing, which the image does not need.
-constexpr int rounds_for_the_tail_alone = 8;
-/// If nothing new arrives for this long, the rest of the ping will not arrive.
-constexpr nanoseconds give_up_after = seconds{1};
+constexpr int probes_before_config = 3;
+constexpr int copies_of_a_probe = 2;
 /// Datagrams in transit at the start of the next ping arrive within this time.
 constexpr nanoseconds linger_time = milliseconds{10};
-/// An unrequested ping has ended if no datagram of it arrives for this long.
-constexpr nanoseconds unrequested_patience = milliseconds{100};
-
-constexpr int copies_of_a_repeated_request = 2;
-constexpr int few_lines = 16;  ///< up to this number, second copies of requests cost the link little
-constexpr std::size_t most_ranges_a_round = 256;
-constexpr int probes_before_config = 3;
 constexpr std::size_t ended_kept = 8;
 /// If more IDs than this are skipped, it is a jump, not loss.
 constexpr int most_missed_at_once = 32;
 /// A larger step back of the head's clock is a reboot, not a delayed status.
 constexpr std::uint64_t reboot_jump_us = 500'000;
 
-std::uint8_t low_byte(std::uint16_t ping_id) {
-  return static_cast<std::uint8_t>(ping_id & 0xFF);
-}
-
 bool due_by(const std::optional<TimePoint>& due, TimePoint now) {
   return due && *due <= now;
 }
 
-void take_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePoint>& candidate) {
-  if (candidate && (!earliest || *candidate < *earliest)) {
-    earliest = candidate;
-  }
-}
-
-/// Without a head, assumes the maximum compression of 4.
-/// @param highest highest line number that has arrived, -1 if no line has
-nanoseconds stream_quiet(const PingAssembly& ping, int highest) {
-  const bool before_the_end = ping.head() && highest < ping.line_count() - last_lines;
-  const int native_lines = burst_lines << (ping.head() ? ping.head()->compression_log2() : 4);
-  return (before_the_end ? stream_patience_before_the_end : stream_patience) +
-         nanoseconds{static_cast<std::int64_t>(native_lines * (1e9 / line_rate_hz))};
-}
-
-nanoseconds doubled(nanoseconds patience, int times, nanoseconds most) {
-  return std::min(patience * (1 << std::clamp(times, 0, 10)), most);
-}
-
 }  // namespace
-
-Client::Client(const ClientConfig& config)
-    : config_(config), config_to_ping_(config_limits), request_to_answer_(answer_limits) {}
 
 void Client::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
   ++statistics_.datagrams;
@@ -107,24 +41,22 @@ void Client::on_datagram(TimePoint now, std::span<const std::uint8_t> bytes) {
     return;
   }
   const std::uint16_t wanted_id = head_ ? head_->status.sonar_id : config_.sonar_id;
-  if (wanted_id != 0 && header_of(*report).sonar_id != wanted_id) {
-    ++statistics_.other_heads;
-    return;
+  if (wanted_id == 0 || header_of(*report).sonar_id == wanted_id) {
+    std::visit([&](const auto& message) { on_report(now, message); }, *report);
+  } else if (const auto* const status = std::get_if<Status>(&*report)) {
+    other_heads_[status->sonar_id] = status->alternate_ip;
   }
-  std::visit([&](const auto& message) { on_report(now, message); }, *report);
 }
 
 void Client::start(TimePoint now, const PingConfig& config, std::uint64_t pings) {
   programme_ = Programme{.config = config, .wanted = pings};
   stopped_ = false;
-  request_.reset();
-  next_request_due_.reset();
-  silence_due_.reset();
+  forget_requests();
   lingering_.reset();
   last_id_.reset();
   last_end_.reset();
   if (incoming_) {
-    incoming_->requested = false;
+    incoming_->disown();
   }
   if (head_ && !stay_alive_due_) {
     stay_alive_due_ = now;
@@ -142,9 +74,7 @@ void Client::stop() {
   }
   stopped_ = true;
   stay_alive_due_.reset();
-  request_.reset();
-  next_request_due_.reset();
-  silence_due_.reset();
+  forget_requests();
   incoming_.reset();
   lingering_.reset();
 }
@@ -157,8 +87,13 @@ void Client::advance(TimePoint now) {
   if (lingering_ && lingering_due_ <= now) {
     close_lingering(now);
   }
-  if (incoming_ && due(*incoming_) <= now) {
-    on_incoming_due(now);
+  if (incoming_ && incoming_->due(request_to_answer_) <= now) {
+    if (incoming_->is_over(now)) {
+      finish(now);
+    } else {
+      incoming_->ask_again(now);
+      send_requests(*incoming_);
+    }
   }
   if (due_by(next_request_due_, now) && !incoming_) {
     next_request_due_.reset();
@@ -166,7 +101,9 @@ void Client::advance(TimePoint now) {
   }
   if (due_by(silence_due_, now)) {
     silence_due_.reset();
-    watch_for_silence(now);
+    if (!request_ && !incoming_) {
+      request_ = Request{.sends = 1, .due = now};  // the programme's first configuration counts as sent
+    }
   }
   if (request_ && due_by(request_->due, now)) {
     on_request_due(now);
@@ -176,42 +113,31 @@ void Client::advance(TimePoint now) {
 
 std::optional<TimePoint> Client::next_deadline() const {
   std::optional<TimePoint> earliest = stay_alive_due_;
+  const auto consider = [&earliest](const std::optional<TimePoint>& due) {
+    earliest = due ? std::min(*due, earliest.value_or(*due)) : earliest;
+  };
   if (lingering_) {
-    take_earlier(earliest, lingering_due_);
+    consider(lingering_due_);
   }
-  if (incoming_) {
-    take_earlier(earliest, due(*incoming_));
-  } else {
-    take_earlier(earliest, next_request_due_);
-  }
-  take_earlier(earliest, silence_due_);
+  consider(incoming_ ? incoming_->due(request_to_answer_) : next_request_due_);
+  consider(silence_due_);
   if (request_) {
-    take_earlier(earliest, request_->due);
+    consider(request_->due);
   }
   return earliest;
 }
 
-std::vector<ClientDatagram> Client::take_outgoing() {
-  return std::exchange(outgoing_, {});
-}
-
-std::vector<ReceivedPing> Client::take_pings() {
-  return std::exchange(pings_, {});
-}
-
-// ---------------------------------------------------------------------------------------------------------------
-// The head
-// ---------------------------------------------------------------------------------------------------------------
+// ---- The head
 
 void Client::on_report(TimePoint now, const Status& status) {
   const Ipv4 address = config_.head_address != 0 ? config_.head_address : status.alternate_ip;
   if (status.sonar_id < min_sonar_id || status.sonar_id != status.header.sonar_id || address == 0) {
     ++statistics_.bad_datagrams;  // no client could reach such a head (1.2, 1.4)
+    other_heads_[status.sonar_id] = status.alternate_ip;
     return;
   }
-  ++statistics_.statuses;
-  const bool met_before = head_.has_value();
-  const bool rebooted = met_before && status.clock_us + reboot_jump_us < head_->status.clock_us;
+  const bool rebooted = head_ && status.clock_us + reboot_jump_us < head_->status.clock_us;
+  const bool is_new = !head_ || rebooted;
   head_ = HeadInfo{status, address};
   if (rebooted) {
     on_reboot();
@@ -220,41 +146,35 @@ void Client::on_report(TimePoint now, const Status& status) {
   if (stopped_) {
     return;
   }
-  if (!met_before || rebooted) {
-    meet_head(now);
+  if (is_new) {
+    NetworkConfig network;  // as later clients send it at first contact
+    network.serial_routing = 0x0100;
+    network.extension = 10'000;
+    send(network);
+    stay_alive_due_ = now;
+    if (programme_ && !programme_->finished()) {
+      request_ping(now);
+    }
   }
   if (!diagnostic_known_) {
     send(DiagnosticRequest{});
   }
 }
 
-void Client::meet_head(TimePoint now) {
-  NetworkConfig network;  // as later clients send it at first contact
-  network.serial_routing = 0x0100;
-  network.extension = 10'000;
-  send(network);
-  stay_alive_due_ = now;
-  if (programme_ && !programme_->finished()) {
-    request_ping(now);
-  }
-}
-
 void Client::on_reboot() {
   ++statistics_.reboots;
   for (auto* ping : {&incoming_, &lingering_}) {
-    statistics_.pings_abandoned += *ping && (*ping)->requested ? 1 : 0;
+    statistics_.pings_abandoned += *ping && (*ping)->requested() ? 1 : 0;
     ping->reset();
   }
   head_clock_.forget();
   diagnostic_known_ = false;
   ended_.clear();
   last_id_.reset();
-  next_request_due_.reset();
-  silence_due_.reset();
+  forget_requests();
 }
 
 void Client::on_report(TimePoint now, const Acknowledge& acknowledge) {
-  ++statistics_.acknowledges;
   head_clock_.observe(now, acknowledge.reply_us);
 }
 
@@ -262,12 +182,16 @@ void Client::on_report(TimePoint, const Diagnostic&) {
   diagnostic_known_ = true;
 }
 
-// ---------------------------------------------------------------------------------------------------------------
-// Configurations
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Configurations
+
+void Client::forget_requests() {
+  request_.reset();
+  next_request_due_.reset();
+  silence_due_.reset();
+}
 
 void Client::request_ping(TimePoint now) {
-  request_.emplace(Request{});
+  request_ = Request{};
   if (head_) {
     send_config(now);
   }
@@ -295,17 +219,10 @@ void Client::on_request_due(TimePoint now) {
     return;
   }
   ++request_->probes;
-  ask(nullptr, RetryKind::head, {0, 1}, copies_of_a_repeated_request);
-  request_->due = now + request_to_answer_.patience();
-}
-
-void Client::watch_for_silence(TimePoint now) {
-  if (request_ || incoming_) {
-    return;
+  for (int copy = 0; copy < copies_of_a_probe; ++copy) {
+    send(RetryRequest{});
   }
-  request_.emplace(Request{});
-  request_->sends = 1;  // counts the programme's first configuration, so that the next one is a repetition
-  request_->due = now;
+  request_->due = now + request_to_answer_.patience();
 }
 
 void Client::await_next(TimePoint now) {
@@ -328,9 +245,7 @@ void Client::await_next(TimePoint now) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
-// The ping that is coming in
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Pings
 
 void Client::on_report(TimePoint now, const PingHead& head) {
   if (!takes_pings()) {
@@ -340,7 +255,7 @@ void Client::on_report(TimePoint now, const PingHead& head) {
     ++statistics_.bad_datagrams;
     return;
   }
-  const std::uint8_t id = low_byte(head.ping_id);
+  const auto id = static_cast<std::uint8_t>(head.ping_id & 0xFF);
   const Ended* ended = find_ended(id);
   if (ended != nullptr && ended->transmit_time_us.value_or(head.transmit_time_us) == head.transmit_time_us) {
     if (request_ && request_->due && request_->probes > 0) {
@@ -348,87 +263,58 @@ void Client::on_report(TimePoint now, const PingHead& head) {
     }
     return;
   }
-  Incoming* ping = find_incoming(id);
+  ArrivingPing* ping = arriving(id);
   if (ping == nullptr || !ping->may_have(head)) {
     ping = &begin(now, id);
   }
-  ping->last_arrival = now;
-  if ((head.ping_id & resent_head) != 0) {
-    on_answer(now, *ping);
+  if (!ping->assembly().head()) {
+    if (head.transmit_time_us < programme_->least_head_us) {
+      ping->disown();  // transmitted before our configuration; the request waits for its end
+    } else if (request_ && request_->sends == 1 && request_->probes == 0 &&
+               !std::exchange(request_->timed, true)) {
+      config_to_ping_.sample(ping->first_datagram() - request_->sent);
+    }
   }
-  if (!ping->assembly.head()) {
-    adopt_head(now, *ping, head);
-  }
-  settle(now);
+  ping->on_head(now, head, request_to_answer_);
+  settle(now, *ping);
 }
 
 void Client::on_report(TimePoint now, const PingLine& line) {
   if (!takes_pings()) {
     return;
   }
-  Incoming* ping = incoming_for(now, line.ping_id);
-  if (ping == nullptr) {
-    ++statistics_.lines_duplicate;
-    return;
+  ArrivingPing* const ping = arriving_or_new(now, line.ping_id);
+  const auto added =
+      ping != nullptr ? ping->on_line(now, line, request_to_answer_) : PingAssembly::Added::duplicate;
+  statistics_.bad_datagrams += added == PingAssembly::Added::unusable ? 1 : 0;
+  statistics_.lines_duplicate += added == PingAssembly::Added::duplicate ? 1 : 0;
+  statistics_.lines_repaired += added == PingAssembly::Added::fresh && line.resent() ? 1 : 0;
+  if (ping != nullptr) {
+    settle(now, *ping);
   }
-  ping->last_arrival = now;
-  const auto added = ping->assembly.add_line(line);
-  if (added == PingAssembly::Added::unusable) {
-    ++statistics_.bad_datagrams;
-    return;
-  }
-  if (added == PingAssembly::Added::duplicate) {
-    ++statistics_.lines_duplicate;
-  } else {
-    ping->progress = now;
-    ++statistics_.lines_received;
-    statistics_.lines_repaired += line.resent() ? 1 : 0;
-    ping->lines_repaired += line.resent() ? 1 : 0;
-  }
-  if (line.resent()) {
-    on_answer(now, *ping);
-  } else if (!ping->pass_over) {
-    follow_first_pass(now, *ping, line.line_number());
-  }
-  settle(now);
 }
 
 void Client::on_report(TimePoint now, const PingTail& tail) {
-  if (!takes_pings()) {
-    return;
+  ArrivingPing* const ping = takes_pings() ? arriving_or_new(now, tail.ping_id) : nullptr;
+  if (ping != nullptr) {
+    ping->on_tail(now, tail, request_to_answer_);
+    settle(now, *ping);
   }
-  Incoming* ping = incoming_for(now, tail.ping_id);
-  if (ping == nullptr) {
-    return;
-  }
-  ping->last_arrival = now;
-  if (!ping->has_tail) {
-    ping->has_tail = true;
-    ping->progress = now;
-  }
-  if (tail.resent()) {
-    on_answer(now, *ping);
-  } else {
-    end_pass(*ping);
-  }
-  settle(now);
 }
 
-Client::Incoming* Client::find_incoming(std::uint8_t id) {
+ArrivingPing* Client::arriving(std::uint8_t id) {
   for (auto* ping : {&incoming_, &lingering_}) {
-    if (*ping && (*ping)->assembly.id() == id) {
+    if (*ping && (*ping)->assembly().id() == id) {
       return &**ping;
     }
   }
   return nullptr;
 }
 
-Client::Incoming* Client::incoming_for(TimePoint now, std::uint8_t id) {
-  Incoming* ping = find_incoming(id);
-  if (ping != nullptr) {
-    return ping;
-  }
-  return find_ended(id) != nullptr ? nullptr : &begin(now, id);
+/// Null if the ping has ended.
+ArrivingPing* Client::arriving_or_new(TimePoint now, std::uint8_t id) {
+  ArrivingPing* const ping = arriving(id);
+  return ping != nullptr || find_ended(id) != nullptr ? ping : &begin(now, id);
 }
 
 const Client::Ended* Client::find_ended(std::uint8_t id) const {
@@ -437,7 +323,7 @@ const Client::Ended* Client::find_ended(std::uint8_t id) const {
   return found == ended_.rend() ? nullptr : &*found;
 }
 
-Client::Incoming& Client::begin(TimePoint now, std::uint8_t id) {
+ArrivingPing& Client::begin(TimePoint now, std::uint8_t id) {
   if (incoming_) {
     supersede(now);
   }
@@ -446,144 +332,45 @@ Client::Incoming& Client::begin(TimePoint now, std::uint8_t id) {
     statistics_.pings_missed += static_cast<std::uint64_t>(skipped <= most_missed_at_once ? skipped : 0);
   }
   last_id_ = id;
-  incoming_.emplace(id, now);
-  incoming_->requested = !programme_->finished() && (programme_->continuous() || request_);
-  if (request_ && incoming_->requested) {
+  const bool requested = !programme_->finished() && (programme_->continuous() || request_);
+  incoming_.emplace(id, now, programme_->continuous(), requested);
+  if (request_ && requested) {
     request_->due.reset();
   }
   return *incoming_;
 }
 
-void Client::adopt_head(TimePoint now, Incoming& ping, const PingHead& head) {
-  ping.assembly.set_head(head);
-  ping.progress = now;
-  if (head.transmit_time_us < programme_->least_head_us) {
-    ping.requested = false;  // transmitted before our configuration; the request waits for its end
+/// Handles a new ping that begins before the end of the old one, which the head has dropped (7.3).
+void Client::supersede(TimePoint now) {
+  if (incoming_->requested() && incoming_->assembly().is_complete()) {
+    finish(now);  // only the tail was missing
     return;
   }
-  if (request_ && request_->sends == 1 && request_->probes == 0 && !request_->timed) {
-    config_to_ping_.sample(ping.first_datagram - request_->sent);
-    request_->timed = true;
-  }
-  if (ping.pass_over) {
-    ask_unasked(ping, ping.assembly.line_count());
-  }
-}
-
-/// A head serves requests only after the tail, so any resent datagram ends the first pass.
-void Client::on_answer(TimePoint now, Incoming& ping) {
-  if (ping.asked) {
-    request_to_answer_.sample(now - *ping.asked);
-    ping.asked.reset();
-  }
-  ping.fruitless = 0;
-  end_pass(ping);
-}
-
-void Client::end_pass(Incoming& ping) {
-  if (ping.pass_over) {
-    return;
-  }
-  ping.pass_over = true;
-  if (!ping.requested) {
-    return;
-  }
-  if (ping.assembly.head()) {
-    ask_unasked(ping, ping.assembly.line_count());
-  } else if (!ping.head_asked) {
-    ask(&ping, RetryKind::head, {0, 1}, 1);
-  }
-}
-
-/// Handles line `number` of the first pass.
-void Client::follow_first_pass(TimePoint now, Incoming& ping, int number) {
-  ping.highest = std::max(ping.highest, number);
-  if (!ping.requested) {
-    return;
-  }
-  if (now - ping.marked_at >= reorder_patience) {
-    ask_unasked(ping, ping.marked);
-    ping.marked_at = now;
-    ping.marked = ping.highest;
-  }
-  const bool damaged = ping.assembly.lines_received() <= ping.highest;
-  if (programme_->continuous() && damaged && !ping.asked_ahead && ping.assembly.head() &&
-      ping.highest >= ping.assembly.line_count() - precaution_lines) {
-    ping.asked_ahead = true;
-    ask(&ping, RetryKind::tail, {0, 1}, copies_of_a_repeated_request);
-  }
-}
-
-/// Requests the lines below `end` that are missing and have not been requested.
-void Client::ask_unasked(Incoming& ping, int end) {
-  for (const LineRange& range : ping.assembly.missing(ping.asked_to, end)) {
-    ask(&ping, RetryKind::lines, range, 1);
-  }
-  ping.asked_to = std::max(ping.asked_to, end);
-}
-
-/// One round: requests everything that is missing, the head first.
-void Client::ask_again(TimePoint now, Incoming& ping) {
-  ++ping.fruitless;
-  ping.last_arrival = now;
-  if (!ping.assembly.head()) {
-    ask(&ping, RetryKind::head, {0, 1}, copies_of_a_repeated_request);
-  }
-  if (ping.pass_over) {
-    if (!ping.asked) {
-      ping.asked = now;
-    }
-    const int missing = ping.assembly.line_count() - ping.assembly.lines_received();
-    auto ranges = ping.assembly.missing(0, ping.assembly.line_count());
-    ranges.resize(std::min(ranges.size(), most_ranges_a_round));
-    for (const LineRange& range : ranges) {
-      ask(&ping, RetryKind::lines, range, missing <= few_lines ? copies_of_a_repeated_request : 1);
-    }
-  }
-  if (!ping.has_tail) {
-    ask(&ping, RetryKind::tail, {0, 1}, copies_of_a_repeated_request);
-  }
-}
-
-TimePoint Client::due(const Incoming& ping) const {
-  if (!ping.requested) {
-    return ping.last_arrival + unrequested_patience;
-  }
-  const int slower = ping.fruitless - fruitless_rounds_at_full_speed;
-  if (ping.pass_over) {
-    const auto patience = request_to_answer_.patience();
-    return ping.last_arrival +
-           doubled(programme_->continuous() ? std::min(patience, answer_patience_continuous) : patience,
-                   slower, answer_patience_most);
-  }
-  if (ping.assembly.is_complete()) {
-    return ping.last_arrival + doubled(neighbour_patience, slower, answer_patience_most);
-  }
-  const nanoseconds patience = stream_quiet(ping.assembly, ping.highest);
-  const TimePoint quiet =
-      ping.last_arrival + doubled(patience, slower, std::max(patience, answer_patience_most));
-  const bool headless = !ping.assembly.head() && !ping.head_asked;
-  return headless ? std::min(quiet, ping.first_datagram + neighbour_patience) : quiet;
-}
-
-void Client::on_incoming_due(TimePoint now) {
-  Incoming& ping = *incoming_;
-  const bool only_tail_lacks = ping.assembly.is_complete() && ping.fruitless >= rounds_for_the_tail_alone;
-  if (!ping.requested || only_tail_lacks || now - ping.progress >= give_up_after) {
-    finish(now);
-  } else if (!ping.assembly.head() && !ping.head_asked) {
-    ask(&ping, RetryKind::head, {0, 1}, 1);
+  if (!incoming_->requested()) {
+    ++statistics_.pings_unrequested;
+  } else if (!programme_->continuous()) {
+    ++statistics_.pings_abandoned;  // the new one answers the configuration
+  } else if (!incoming_->assembly().head()) {
+    ++statistics_.pings_missed;
   } else {
-    ask_again(now, ping);
+    close_lingering(now);
+    lingering_ = std::exchange(incoming_, std::nullopt);
+    lingering_->superseded();
+    lingering_due_ = now + linger_time;
+    return;
   }
+  note_end(*incoming_);
+  incoming_.reset();
 }
 
-void Client::settle(TimePoint now) {
-  if (lingering_ && lingering_->assembly.is_complete()) {
+/// Sends what `ping` requests, and ends the pings that have all their parts.
+void Client::settle(TimePoint now, ArrivingPing& ping) {
+  send_requests(ping);
+  if (lingering_ && lingering_->assembly().is_complete()) {
     close_lingering(now);
   }
-  const bool ends = incoming_ && incoming_->has_tail;
-  if (ends && (!incoming_->requested || incoming_->assembly.is_complete())) {
+  if (incoming_ && incoming_->has_tail() &&
+      (!incoming_->requested() || incoming_->assembly().is_complete())) {
     finish(now);
   }
   stop_when_finished();
@@ -596,36 +383,10 @@ void Client::stop_when_finished() {
   }
 }
 
-/// Handles a new ping that begins before the end of the old one, which the head has dropped (7.3).
-void Client::supersede(TimePoint now) {
-  Incoming& ping = *incoming_;
-  if (ping.requested && ping.assembly.is_complete()) {
-    finish(now);  // only the tail was missing
-    return;
-  }
-  if (!ping.requested) {
-    ++statistics_.pings_unrequested;
-  } else if (!programme_->continuous()) {
-    ++statistics_.pings_abandoned;  // the new one answers the configuration
-  } else if (!ping.assembly.head()) {
-    ++statistics_.pings_missed;
-  } else {
-    close_lingering(now);
-    lingering_ = std::move(incoming_);
-    lingering_->pass_over = true;  // the head cannot resend parts of it any more
-    lingering_due_ = now + linger_time;
-    incoming_.reset();
-    return;
-  }
-  note_end(ping);
-  incoming_.reset();
-}
-
 void Client::finish(TimePoint now) {
   close_lingering(now);
-  Incoming ping = std::move(*incoming_);
-  incoming_.reset();
-  if (!ping.requested) {
+  ArrivingPing ping = *std::exchange(incoming_, std::nullopt);
+  if (!ping.requested()) {
     note_end(ping);
     ++statistics_.pings_unrequested;
     if (next_request_due_) {
@@ -634,84 +395,67 @@ void Client::finish(TimePoint now) {
     if (request_ && request_->sends > 0) {
       request_->due = now + config_to_ping_.patience();
     }
-    return;
-  }
-  if (!ping.assembly.head()) {
+  } else if (!ping.assembly().head()) {
     ++statistics_.pings_abandoned;
-    if (!request_) {
-      request_.emplace(Request{});
-    }
     // The configuration is still unanswered. If a late head answers it, the whole ping can be repaired.
+    if (!request_) {
+      request_ = Request{};
+    }
     request_->due = now;
-    return;
+  } else {
+    note_end(ping);
+    deliver(now, std::move(ping));
+    await_next(now);
   }
-  note_end(ping);
-  deliver(now, std::move(ping));
-  await_next(now);
 }
 
 void Client::close_lingering(TimePoint now) {
-  if (!lingering_) {
-    return;
+  if (auto ping = std::exchange(lingering_, std::nullopt)) {
+    note_end(*ping);
+    deliver(now, std::move(*ping));
   }
-  Incoming ping = std::move(*lingering_);
-  lingering_.reset();
-  note_end(ping);
-  deliver(now, std::move(ping));
 }
 
-void Client::deliver(TimePoint now, Incoming ping) {
+void Client::deliver(TimePoint now, ArrivingPing ping) {
   if (programme_->finished()) {
     ++statistics_.pings_unrequested;
     return;
   }
-  ReceivedPing received;
-  received.number = next_number_++;
-  received.head = *ping.assembly.head();
-  received.lines = ping.assembly.line_count();
-  received.lines_lost = received.lines - ping.assembly.lines_received();
-  received.lines_repaired = ping.lines_repaired;
-  received.retries = ping.retries;
-  received.first_datagram = ping.first_datagram;
-  received.finished = now;
-  received.samples = ping.assembly.take_samples();
-  ++(received.complete() ? statistics_.pings_complete : statistics_.pings_incomplete);
-  statistics_.lines_missing += static_cast<std::uint64_t>(received.lines_lost);
+  PingAssembly& parts = ping.assembly();
+  const int lost = parts.line_count() - parts.lines_received();
+  ++(lost == 0 ? statistics_.pings_complete : statistics_.pings_incomplete);
+  statistics_.lines_missing += static_cast<std::uint64_t>(lost);
   ++programme_->delivered;
-  pings_.push_back(std::move(received));
+  pings_.push_back({.number = next_number_++,
+                    .head = *parts.head(),
+                    .samples = parts.take_samples(),
+                    .lines = parts.line_count(),
+                    .lines_lost = lost,
+                    .lines_repaired = ping.lines_repaired(),
+                    .retries = ping.retries(),
+                    .first_datagram = ping.first_datagram(),
+                    .finished = now});
 }
 
-void Client::note_end(const Incoming& ping) {
-  const auto& head = ping.assembly.head();
-  ended_.push_back({ping.assembly.id(), head ? std::optional{head->transmit_time_us} : std::nullopt});
+void Client::note_end(const ArrivingPing& ping) {
+  const auto& head = ping.assembly().head();
+  ended_.push_back({ping.assembly().id(), head ? std::optional{head->transmit_time_us} : std::nullopt});
   if (ended_.size() > ended_kept) {
     ended_.pop_front();
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------
-// Sending
-// ---------------------------------------------------------------------------------------------------------------
+// ---- Sending
 
-void Client::ask(Incoming* ping, RetryKind kind, LineRange range, int copies) {
-  RetryRequest request;
-  request.kind = kind;
-  request.first_line = static_cast<std::uint16_t>(range.first);
-  request.line_count = static_cast<std::uint16_t>(range.count);
-  for (int copy = 0; copy < copies; ++copy) {
+void Client::send_requests(ArrivingPing& ping) {
+  for (const RetryRequest& request : ping.take_requests()) {
     send(request);
   }
-  const auto count = [&](RetryCounters& counters) {
-    auto& counter = kind == RetryKind::head    ? counters.head
-                    : kind == RetryKind::lines ? counters.lines
-                                               : counters.tail;
-    counter += static_cast<std::uint64_t>(copies);
-  };
-  count(statistics_.retries);
-  if (ping != nullptr) {
-    count(ping->retries);
-    ping->head_asked = ping->head_asked || kind == RetryKind::head;
-  }
+}
+
+void Client::send(const RetryRequest& request) {
+  statistics_.retries.count(request.kind);
+  send<RetryRequest>(request);
 }
 
 template <class Message>

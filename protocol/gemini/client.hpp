@@ -7,15 +7,17 @@
 // next ping, or nothing new has arrived for a second.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "protocol/common/endpoint.hpp"
 #include "protocol/common/ping_job.hpp"
+#include "protocol/gemini/arriving_ping.hpp"
 #include "protocol/gemini/head_clock.hpp"
 #include "protocol/gemini/messages.hpp"
 #include "protocol/gemini/ping_assembly.hpp"
@@ -40,13 +42,6 @@ struct HeadInfo {
   Ipv4 address = 0;  ///< destination of commands
 };
 
-/// Retry requests by kind, in datagrams. A request sent in two copies counts twice.
-struct RetryCounters {
-  std::uint64_t head = 0, lines = 0, tail = 0;
-
-  std::uint64_t total() const { return head + lines + tail; }
-};
-
 /// One finished ping.
 struct ReceivedPing {
   std::uint64_t number = 0;  ///< 0, 1, 2, ... in the order of delivery
@@ -64,14 +59,10 @@ struct ReceivedPing {
 
 /// Counters since construction. They only grow.
 struct LinkStatistics {
-  std::uint64_t datagrams = 0;      ///< arrived, of any kind
-  std::uint64_t bad_datagrams = 0;  ///< undecodable, or with impossible contents
-  std::uint64_t other_heads = 0;    ///< from another sonar ID
-  std::uint64_t statuses = 0;
-  std::uint64_t acknowledges = 0;
+  std::uint64_t datagrams = 0;        ///< arrived, of any kind
+  std::uint64_t bad_datagrams = 0;    ///< undecodable, or with impossible contents
   std::uint64_t reboots = 0;          ///< the clock of the head jumped back
-  std::uint64_t lines_received = 0;   ///< new lines, without duplicates
-  std::uint64_t lines_repaired = 0;   ///< part of lines_received: resent lines
+  std::uint64_t lines_repaired = 0;   ///< resent lines that were missing
   std::uint64_t lines_duplicate = 0;  ///< arrived again, or after their ping had ended
   std::uint64_t lines_missing = 0;    ///< never arrived, in delivered pings
   std::uint64_t pings_complete = 0;
@@ -88,7 +79,7 @@ struct LinkStatistics {
 /// Not thread-safe: one thread calls everything. `now` never goes backwards.
 class Client {
  public:
-  explicit Client(const ClientConfig& config);
+  explicit Client(const ClientConfig& config) : config_(config) {}
 
   /// Handles a datagram that arrived on port 52900. Counts and drops bad ones.
   void on_datagram(TimePoint now, std::span<const std::uint8_t> bytes);
@@ -106,12 +97,14 @@ class Client {
   std::optional<TimePoint> next_deadline() const;
 
   /// Datagrams due, in order. Each call empties the list.
-  std::vector<ClientDatagram> take_outgoing();
+  std::vector<ClientDatagram> take_outgoing() { return std::exchange(outgoing_, {}); }
   /// Pings that ended, in order. Each call empties the list.
-  std::vector<ReceivedPing> take_pings();
+  std::vector<ReceivedPing> take_pings() { return std::exchange(pings_, {}); }
 
   /// nullopt until the first status of the head.
   const std::optional<HeadInfo>& head() const { return head_; }
+  /// Sonar IDs and alternate addresses in the statuses of heads that this client does not talk to.
+  const std::map<std::uint16_t, Ipv4>& other_heads() const { return other_heads_; }
   /// True if all pings of start() are delivered, or stop() was called.
   bool finished() const { return stopped_ || (programme_ && programme_->finished()); }
   const LinkStatistics& statistics() const { return statistics_; }
@@ -137,35 +130,6 @@ class Client {
     std::optional<TimePoint> due;  ///< next probe or repetition; nullopt while a ping is arriving
   };
 
-  /// The ping that is arriving.
-  struct Incoming {
-    Incoming(std::uint8_t id, TimePoint now)
-        : assembly(id), first_datagram(now), last_arrival(now), progress(now), marked_at(now) {}
-
-    /// False if `head` belongs to another ping with an equal ID: then the transmit times differ.
-    bool may_have(const PingHead& head) const {
-      return !assembly.head() || assembly.head()->transmit_time_us == head.transmit_time_us;
-    }
-
-    PingAssembly assembly;
-    TimePoint first_datagram;
-    TimePoint last_arrival;  ///< of the last datagram of this ping, or of the last request
-    TimePoint progress;      ///< of the last datagram with new content
-    bool requested = true;   ///< false: answers no configuration of ours; only watched until it ends
-    bool pass_over = false;  ///< the first pass is over: the head now answers requests
-    bool has_tail = false;
-    bool head_asked = false;
-    bool asked_ahead = false;
-    int highest = -1;     ///< highest line number of the first pass
-    TimePoint marked_at;  ///< when `marked` was the highest line
-    int marked = 0;       ///< missing lines below it are lost, not late
-    int asked_to = 0;     ///< missing lines below it have been requested
-    int fruitless = 0;    ///< rounds of requests without an answer
-    int lines_repaired = 0;
-    RetryCounters retries;
-    std::optional<TimePoint> asked;  ///< first request since the last answer
-  };
-
   /// Identity of a ping that has ended, to recognise its late datagrams.
   struct Ended {
     std::uint8_t id = 0;
@@ -180,46 +144,38 @@ class Client {
   void on_report(TimePoint now, const PingTail& tail);
   template <class Other>
   void on_report(TimePoint, const Other&) {}  // a client does not need these
-
-  void meet_head(TimePoint now);
   void on_reboot();
 
   // Configurations.
+  void forget_requests();
   void request_ping(TimePoint now);
   void send_config(TimePoint now);
   void on_request_due(TimePoint now);
   void await_next(TimePoint now);
-  void stop_when_finished();
-  void watch_for_silence(TimePoint now);
 
-  // The ping that is arriving.
+  // Pings.
   /// False before the first status, because the address of the head is unknown.
   bool takes_pings() const { return head_ && programme_ && !stopped_; }
-  Incoming* find_incoming(std::uint8_t id);
-  Incoming* incoming_for(TimePoint now, std::uint8_t id);
-  Incoming& begin(TimePoint now, std::uint8_t id);
-  void adopt_head(TimePoint now, Incoming& ping, const PingHead& head);
-  void on_answer(TimePoint now, Incoming& ping);
-  void end_pass(Incoming& ping);
-  void follow_first_pass(TimePoint now, Incoming& ping, int number);
-  void ask_unasked(Incoming& ping, int end);
-  void ask_again(TimePoint now, Incoming& ping);
-  TimePoint due(const Incoming& ping) const;
-  void on_incoming_due(TimePoint now);
-  void settle(TimePoint now);
+  ArrivingPing* arriving(std::uint8_t id);
+  ArrivingPing* arriving_or_new(TimePoint now, std::uint8_t id);
+  ArrivingPing& begin(TimePoint now, std::uint8_t id);
   void supersede(TimePoint now);
+  void settle(TimePoint now, ArrivingPing& ping);
+  void stop_when_finished();
   void finish(TimePoint now);
-  void deliver(TimePoint now, Incoming ping);
+  void deliver(TimePoint now, ArrivingPing ping);
   void close_lingering(TimePoint now);
-  void note_end(const Incoming& ping);
+  void note_end(const ArrivingPing& ping);
   const Ended* find_ended(std::uint8_t id) const;
 
-  void ask(Incoming* ping, RetryKind kind, LineRange range, int copies);
+  void send_requests(ArrivingPing& ping);
+  void send(const RetryRequest& request);
   template <class Message>
   void send(Message message);
 
   ClientConfig config_;
   std::optional<HeadInfo> head_;
+  std::map<std::uint16_t, Ipv4> other_heads_;
   HeadClock head_clock_;
   bool diagnostic_known_ = false;
   std::optional<TimePoint> stay_alive_due_;
@@ -227,19 +183,22 @@ class Client {
   std::optional<Programme> programme_;
   bool stopped_ = false;
   std::optional<Request> request_;
-  std::optional<TimePoint>
-      next_request_due_;                  ///< single mode: the next configuration waits for a second ping
+  /// Single mode: the next configuration waits for a second ping.
+  std::optional<TimePoint> next_request_due_;
   std::optional<TimePoint> last_end_;     ///< continuous mode: end of the newest ping
   std::optional<TimePoint> silence_due_;  ///< continuous mode: the next ping must have ended by then
 
-  std::optional<Incoming> incoming_;
-  std::optional<Incoming> lingering_;  ///< superseded ping; accepts late datagrams until lingering_due_
+  std::optional<ArrivingPing> incoming_;
+  std::optional<ArrivingPing> lingering_;  ///< superseded ping; accepts late datagrams until lingering_due_
   TimePoint lingering_due_{};
   std::deque<Ended> ended_;
   std::optional<std::uint8_t> last_id_;
 
-  ResponseTime config_to_ping_;
-  ResponseTime request_to_answer_;
+  /// Time from a configuration to the first datagram of its ping. The head may be rendering or waiting for
+  /// its rate limit, so waiting costs less than a second ping.
+  ResponseTime config_to_ping_{
+      {std::chrono::seconds{1}, std::chrono::milliseconds{200}, std::chrono::seconds{2}}};
+  ResponseTime request_to_answer_{ArrivingPing::answer_limits};
 
   std::uint64_t next_number_ = 0;
   std::vector<ClientDatagram> outgoing_;

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 
 namespace sonard::gemini {
 
@@ -21,34 +21,32 @@ class HeadClock {
     if (head_us > most_us) {
       return;
     }
-    behind_[next_] = now - std::chrono::microseconds{head_us};
-    next_ = (next_ + 1) % behind_.size();
-    count_ = std::min(count_ + 1, behind_.size());
+    behind_.push_back(now - std::chrono::microseconds{head_us});
+    if (behind_.size() > kept) {
+      behind_.pop_front();
+    }
   }
 
   /// Drops all stamps, after a restart of the head.
-  void forget() { count_ = next_ = 0; }
+  void forget() { behind_.clear(); }
 
   /// Lower bound of the head's clock at `now` in microseconds; 0 before the first stamp.
   std::uint64_t at_least_us(std::chrono::nanoseconds now) const {
-    if (count_ == 0) {
+    if (behind_.empty()) {
       return 0;
     }
-    const auto least =
-        now - *std::min_element(behind_.begin(), behind_.begin() + static_cast<long>(count_)) - slack;
+    const auto least = now - *std::min_element(behind_.begin(), behind_.end()) - slack;
     return least.count() <= 0 ? 0 : static_cast<std::uint64_t>(least / std::chrono::microseconds{1});
   }
 
  private:
+  static constexpr std::size_t kept = 8;
   /// Two crystals drift apart by less than 2 ms over the seconds that the samples span.
   static constexpr std::chrono::nanoseconds slack = std::chrono::milliseconds{2};
-
   /// 100 years, which still fits in nanoseconds.
   static constexpr std::uint64_t most_us = 3'153'600'000'000'000;
 
-  std::array<std::chrono::nanoseconds, 8> behind_{};  ///< client time less head time, ring
-  std::size_t next_ = 0;
-  std::size_t count_ = 0;
+  std::deque<std::chrono::nanoseconds> behind_;  ///< client time less head time
 };
 
 }  // namespace sonard::gemini

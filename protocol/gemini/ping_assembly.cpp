@@ -25,19 +25,10 @@ void PingAssembly::set_head(const PingHead& head) {
   assert(!head_ && is_receivable(head));
   head_ = head;
   const auto lines = static_cast<std::size_t>(head.line_count());
-  const auto samples = lines * head.beams;
-  if (head.eight_bit()) {
-    samples_.u8.assign(samples, 0);
-  } else {
-    samples_.u16.assign(samples, 0);
-  }
-  // Count again: a waiting line counts only if its content can be decoded.
+  (head.eight_bit() ? samples_.u8.resize(lines * head.beams) : samples_.u16.resize(lines * head.beams));
   received_.assign(lines, false);
-  lines_received_ = 0;
-  for (const Waiting& line : std::exchange(waiting_, {})) {
-    if (line.number < head.line_count() && store(line.number, line.data)) {
-      mark(line.number);
-    }
+  for (const auto& [number, data] : std::exchange(waiting_, {})) {
+    store(number, data);
   }
 }
 
@@ -47,20 +38,15 @@ PingAssembly::Added PingAssembly::add_line(const PingLine& line) {
     return Added::duplicate;
   }
   if (!head_) {
-    waiting_.push_back({number, {line.data.begin(), line.data.end()}});
-    mark(number);
+    waiting_.emplace(number, std::vector(line.data.begin(), line.data.end()));
     return Added::fresh;
   }
-  if (number >= line_count() || !store(number, line.data)) {
-    return Added::unusable;
-  }
-  mark(number);
-  return Added::fresh;
+  return store(number, line.data) ? Added::fresh : Added::unusable;
 }
 
 bool PingAssembly::has_line(int number) const {
   const auto index = static_cast<std::size_t>(number);
-  return index < received_.size() && received_[index];
+  return head_ ? index < received_.size() && received_[index] : waiting_.count(number) > 0;
 }
 
 std::vector<LineRange> PingAssembly::missing(int from, int to) const {
@@ -78,40 +64,27 @@ std::vector<LineRange> PingAssembly::missing(int from, int to) const {
   return ranges;
 }
 
-ReceivedSamples PingAssembly::take_samples() {
-  return std::move(samples_);
-}
-
 bool PingAssembly::store(int number, std::span<const std::uint8_t> data) {
   const std::size_t beams = head_->beams;
+  const bool coded = head_->eight_bit() && head_->rle_threshold > 0;
+  if (number >= line_count() || (!coded && data.size() < (head_->eight_bit() ? 1 : 2) * beams)) {
+    return false;
+  }
   const std::size_t first = static_cast<std::size_t>(number) * beams;
-  if (!head_->eight_bit()) {
-    if (data.size() < 2 * beams) {
+  if (coded) {
+    if (rle_decode(data, std::span(samples_.u8).subspan(first, beams)) != beams) {
       return false;
     }
+  } else if (head_->eight_bit()) {
+    std::copy_n(data.begin(), beams, samples_.u8.begin() + static_cast<std::ptrdiff_t>(first));
+  } else {
     for (std::size_t beam = 0; beam < beams; ++beam) {
       samples_.u16[first + beam] = static_cast<std::uint16_t>(data[2 * beam] << 8 | data[2 * beam + 1]);
     }
-    return true;
   }
-  const std::span<std::uint8_t> out{samples_.u8.data() + first, beams};
-  if (head_->rle_threshold > 0) {
-    return rle_decode(data, out) == beams;
-  }
-  if (data.size() < beams) {
-    return false;
-  }
-  std::copy_n(data.begin(), beams, out.begin());
-  return true;
-}
-
-void PingAssembly::mark(int number) {
-  const auto index = static_cast<std::size_t>(number);
-  if (index >= received_.size()) {
-    received_.resize(index + 1, false);
-  }
-  received_[index] = true;
+  received_[static_cast<std::size_t>(number)] = true;
   ++lines_received_;
+  return true;
 }
 
 }  // namespace sonard::gemini

@@ -3,9 +3,11 @@
 // Source: docs/protocols/gemini.md 6, 7.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "protocol/gemini/messages.hpp"
@@ -55,8 +57,8 @@ class PingAssembly {
 
   /// Number of lines that the head announces; 0 before the head.
   int line_count() const { return head_ ? head_->line_count() : 0; }
+  /// Decoded lines; 0 before the head.
   int lines_received() const { return lines_received_; }
-  bool has_line(int number) const;
   /// True if the head and all lines are there. The tail holds no part of the image.
   bool is_complete() const { return head_ && lines_received_ == line_count(); }
 
@@ -64,24 +66,19 @@ class PingAssembly {
   std::vector<LineRange> missing(int from, int to) const;
 
   /// Moves the samples out; the assembly cannot be used afterwards. Empty if there is no head.
-  ReceivedSamples take_samples();
+  ReceivedSamples take_samples() { return std::move(samples_); }
 
  private:
-  struct Waiting {
-    int number = 0;
-    std::vector<std::uint8_t> data;
-  };
-
-  /// Decodes into the image; false if `data` holds fewer samples than the head announces beams.
+  bool has_line(int number) const;
+  /// Decodes into the image. False if the line does not fit the head.
   bool store(int number, std::span<const std::uint8_t> data);
-  void mark(int number);
 
   std::uint8_t id_;
   std::optional<PingHead> head_;
   ReceivedSamples samples_;
   std::vector<bool> received_;
   int lines_received_ = 0;
-  std::vector<Waiting> waiting_;
+  std::map<int, std::vector<std::uint8_t>> waiting_;
 };
 
 }  // namespace sonard::gemini

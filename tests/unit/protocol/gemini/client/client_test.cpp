@@ -242,7 +242,7 @@ TEST_F(ClientTest, TalksToOneHeadOnly) {
   other.alternate_ip = 0x0A0A0A0A;
   receive(other);
   EXPECT_EQ(client_.head()->status.sonar_id, sonar_id);
-  EXPECT_EQ(client_.statistics().other_heads, 1U);
+  EXPECT_THAT(client_.other_heads(), ElementsAre(testing::Pair(777, 0x0A0A0A0A)));
 }
 
 TEST_F(ClientTest, WaitsForTheHeadItWasToldToTalkTo) {
