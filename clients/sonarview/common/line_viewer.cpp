@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <utility>
-
-#include "common/text/printable.hpp"
 
 namespace sonard::client {
 namespace {
@@ -15,16 +12,7 @@ namespace {
 using boost::system::error_code;
 using std::chrono::nanoseconds;
 
-constexpr nanoseconds progress_period = std::chrono::seconds{1};
 constexpr nanoseconds retry_period = std::chrono::milliseconds{500};
-
-TimePoint now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
-}
-
-double seconds(nanoseconds time) {
-  return std::chrono::duration<double>(time).count();
-}
 
 }  // namespace
 
@@ -35,12 +23,6 @@ std::string foreign_bytes_text(std::uint64_t bytes, std::string_view head) {
       bytes, head);
 }
 
-LineViewer::LineViewer(const RunOptions& options) : options_(options), started_(now()) {
-  if (!options_.out.empty()) {
-    writer_.emplace(options_.out);
-  }
-}
-
 ExitStatus LineViewer::run() {
   signals_.async_wait([this](const error_code& cancelled, int) {
     if (!cancelled) {
@@ -48,11 +30,8 @@ ExitStatus LineViewer::run() {
       advance();
     }
   });
-  begin(started_);
-  if (!options_.quiet) {
-    fmt::print(stderr, "sonarview: waiting up to {:.1f} s for {}\n", seconds(options_.wait),
-               printable(awaited_text()));
-  }
+  begin(started());
+  say(fmt::format("waiting up to {:.1f} s for {}", in_seconds(options_.wait), awaited_text()));
   advance();
   io_.run();
   return end_status();
@@ -61,14 +40,14 @@ ExitStatus LineViewer::run() {
 // ---- The line
 
 void LineViewer::open_line(const LineAddress& address) {
-  lost_at_ = now();
+  lost_at_ = steady_now();
   line_text_ = address.text();
   line_.emplace(io_, address,
                 SerialLine::Events{.opened = [this] { line_opened(); },
                                    .received =
                                        [this](std::span<const std::uint8_t> bytes) {
                                          line_speaks();
-                                         on_bytes(now(), bytes);
+                                         on_bytes(steady_now(), bytes);
                                          advance();
                                        },
                                    .lost = [this](const std::string& why) { line_lost(why); }});
@@ -76,7 +55,7 @@ void LineViewer::open_line(const LineAddress& address) {
 }
 
 void LineViewer::line_opened() {
-  waiting_since_ = now();
+  run_.wait_from(steady_now());
   on_opened();
   advance();
 }
@@ -87,8 +66,8 @@ void LineViewer::line_speaks() {
     return;
   }
   if (spoke_) {
-    ++counters_.reconnects;
-    fmt::print(stderr, "sonarview: {} is open again\n", printable(line_text_));
+    ++run_.counters().reconnects;
+    run_.warn(line_text_ + " is open again");
   }
   spoke_ = true;
   lost_at_.reset();
@@ -100,14 +79,13 @@ void LineViewer::line_lost(const std::string& why) {
     end();
     return;
   }
-  const TimePoint at = now();
+  const TimePoint at = steady_now();
   retry_due_ = at + retry_period;
   if (!lost_at_) {
     lost_at_ = at;
-    fmt::print(stderr, "sonarview: lost {}: {}; retrying for {:.1f} s\n", printable(line_text_),
-               printable(why), seconds(options_.wait));
+    run_.warn(fmt::format("lost {}: {}; retrying for {:.1f} s", line_text_, why, in_seconds(options_.wait)));
   } else if (why != trouble_) {  // logged once, not at each try
-    fmt::print(stderr, "sonarview: cannot open {}: {}; retrying\n", printable(line_text_), printable(why));
+    run_.warn(fmt::format("cannot open {}: {}; retrying", line_text_, why));
   }
   trouble_ = why;
   advance();
@@ -119,7 +97,7 @@ void LineViewer::advance() {
   if (io_.stopped()) {
     return;
   }
-  const TimePoint at = now();
+  const TimePoint at = steady_now();
   if (retry_due_ && at >= *retry_due_ && !stopping()) {
     retry_due_.reset();
     line_->open();
@@ -127,69 +105,47 @@ void LineViewer::advance() {
   if (line_is_open()) {
     talk(at);
   }
-  if (!met_at_ && head_met()) {
-    met_at_ = waiting_since_ = at;
-    progress_due_ = at + progress_period;
+  if (!run_.met() && head_met()) {
+    run_.meet(at);
   }
   if (!stopping()) {
     take_received();
   }
-  if (met_at_ && at >= progress_due_ && !stopping()) {
-    show_progress(at);
+  if (const auto fresh = stopping() ? std::nullopt : run_.fresh_pings(at)) {
+    say(progress_text(*fresh));
+    if (ImageWriter* const to = writer()) {
+      refresh_pictures(*to);
+    }
   }
   check_limits(at);
   arm_timer();
 }
 
-void LineViewer::count_ping(TimePoint received) {
-  if (counters_.pings++ == 0) {
-    first_ping_at_ = received;
-  }
-  last_ping_at_ = waiting_since_ = received;
-}
-
-void LineViewer::show_progress(TimePoint at) {
-  progress_due_ = at + progress_period;
-  const std::uint64_t fresh = counters_.pings - std::exchange(pings_at_progress_, counters_.pings);
-  if (!options_.quiet) {
-    fmt::print(stderr, "sonarview: {}\n", progress_text(fresh));
-  }
-  if (writer_) {
-    refresh_pictures(*writer_);
-  }
-}
-
 // ---- Ends
 
 void LineViewer::check_limits(TimePoint at) {
-  const double wait_s = seconds(options_.wait);
-  const auto over = [at](TimePoint since, nanoseconds limit) {
-    return limit.count() > 0 && at - since >= limit;
-  };
   if (stopping()) {
     if (finished() || at >= *stopping_until_) {
       end();
     }
-  } else if (finished() || (met_at_ && over(*met_at_, options_.duration))) {
+    return;
+  }
+  const HeadRun::Limit limit = run_.limit(at, listens());
+  if (finished() || limit == HeadRun::Limit::duration) {
     stop();
-  } else if (line_ && !line_is_open() && lost_at_ && over(*lost_at_, options_.wait)) {
-    const std::string why =
-        fmt::format("within {:.1f} s: {}", wait_s, trouble_.empty() ? "no answer" : trouble_);
+  } else if (!listens() && lost_at_ && at - *lost_at_ >= options_.wait) {
+    const std::string why = fmt::format("within {:.1f} s: {}", in_seconds(options_.wait),
+                                        trouble_.empty() ? "no answer" : trouble_);
     if (spoke_) {
       give_up(ExitStatus::incomplete, line_text_ + " did not open again " + why);
     } else {
       give_up(ExitStatus::no_head, "cannot open " + line_text_ + " " + why + not_open_advice());
     }
-  } else if (!met_at_ && (!line_ || line_is_open()) && over(waiting_since_, options_.wait)) {
-    give_up(ExitStatus::no_head, no_head_text(wait_s));
-  } else if (met_at_ && line_is_open() && over(waiting_since_, options_.ping_wait)) {
-    give_up(ExitStatus::incomplete, no_ping_text(seconds(options_.ping_wait)));
+  } else if (limit == HeadRun::Limit::no_head) {
+    give_up(ExitStatus::no_head, no_head_text(in_seconds(options_.wait)));
+  } else if (limit == HeadRun::Limit::no_ping) {
+    give_up(ExitStatus::incomplete, no_ping_text(in_seconds(options_.ping_wait)));
   }
-}
-
-void LineViewer::fail(ExitStatus failure, const std::string& message) {
-  fmt::print(stderr, "sonarview: {}\n", printable(message));
-  failure_ = failure_.value_or(failure);
 }
 
 void LineViewer::give_up(ExitStatus failure, const std::string& message) {
@@ -201,7 +157,7 @@ void LineViewer::stop() {
   if (stopping()) {
     return;
   }
-  const TimePoint at = now();
+  const TimePoint at = steady_now();
   const nanoseconds patience = say_goodbye(at);
   stopping_until_ = at + (line_is_open() ? patience : nanoseconds{});
   if (line_is_open()) {
@@ -217,27 +173,16 @@ void LineViewer::end() {
 }
 
 void LineViewer::arm_timer() {
-  TimePoint wake = now() + progress_period;
-  const auto earlier = [&wake](bool matters, TimePoint time) {
-    wake = matters ? std::min(wake, time) : wake;
+  TimePoint wake = stopping() ? *stopping_until_ : run_.next_wake(listens());
+  const auto earlier = [&wake](const std::optional<TimePoint>& time) {
+    wake = std::min(wake, time.value_or(wake));
   };
-  const auto at_limit = [&earlier](bool matters, TimePoint since, nanoseconds limit) {
-    earlier(matters && limit.count() > 0, since + limit);
-  };
-  const bool open = line_is_open();
-  if (const auto due = next_deadline(); due && open) {
-    earlier(true, *due);
+  if (line_is_open()) {
+    earlier(next_deadline());
   }
-  if (stopping()) {
-    earlier(true, *stopping_until_);
-  } else {
-    const bool met = met_at_.has_value();
-    earlier(retry_due_.has_value(), retry_due_.value_or(wake));
-    earlier(met, progress_due_);
-    at_limit(met, met_at_.value_or(wake), options_.duration);
-    at_limit(!met && (!line_ || open), waiting_since_, options_.wait);
-    at_limit(line_ && !open && lost_at_, lost_at_.value_or(wake), options_.wait);
-    at_limit(met && open, waiting_since_, options_.ping_wait);
+  if (!stopping() && !line_is_open()) {
+    earlier(retry_due_);
+    earlier(lost_at_ ? std::optional(*lost_at_ + options_.wait) : std::nullopt);
   }
   timer_.expires_at(std::chrono::steady_clock::time_point(wake));
   timer_.async_wait([this](const error_code& cancelled) {
@@ -248,21 +193,13 @@ void LineViewer::arm_timer() {
 }
 
 ExitStatus LineViewer::end_status() {
-  if (writer_) {
-    finish_pictures(*writer_);
-    writer_->finish();
-    counters_.images_written = writer_->written();
-    counters_.images_skipped = writer_->skipped();
-    if (!writer_->error().empty()) {
-      fail(ExitStatus::system, writer_->error());
-    }
+  if (ImageWriter* const to = writer()) {
+    finish_pictures(*to);
   }
-  if (const double span_s = seconds(last_ping_at_ - first_ping_at_); span_s > 0.0) {
-    counters_.rate_hz = static_cast<double>(counters_.pings - 1) / span_s;
-  }
-  const bool all = sum_up(counters_);
+  run_.finish();
+  const bool all = sum_up(run_.counters());
   std::fflush(stdout);
-  return failure_.value_or(all ? ExitStatus::ok : ExitStatus::incomplete);
+  return run_.status(all);
 }
 
 }  // namespace sonard::client

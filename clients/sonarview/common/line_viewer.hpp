@@ -14,21 +14,13 @@
 #include <string_view>
 
 #include "clients/sonarview/common/exit_status.hpp"
+#include "clients/sonarview/common/head_run.hpp"
 #include "clients/sonarview/common/image_writer.hpp"
 #include "clients/sonarview/common/run_options.hpp"
 #include "clients/sonarview/common/serial_line.hpp"
 #include "protocol/common/ping_job.hpp"
 
 namespace sonard::client {
-
-/// The counters that each summary prints.
-struct RunCounters {
-  std::uint64_t pings = 0;
-  double rate_hz = 0.0;  ///< pings per second, from the first ping to the last
-  std::uint64_t reconnects = 0;
-  std::uint64_t images_written = 0;
-  std::uint64_t images_skipped = 0;
-};
 
 /// Why bytes arrive but no ping: "120 bytes arrived that are not of an Example 100 (...)".
 /// @param head with its article: "an Example 100"
@@ -41,7 +33,7 @@ std::string foreign_bytes_text(std::uint64_t bytes, std::string_view head);
 class LineViewer {
  public:
   /// @throws std::runtime_error (folder for pictures)
-  explicit LineViewer(const RunOptions& options);
+  explicit LineViewer(const RunOptions& options) : options_(options), run_(options, options.out) {}
   LineViewer(const LineViewer&) = delete;
   LineViewer& operator=(const LineViewer&) = delete;
   virtual ~LineViewer() = default;
@@ -91,17 +83,17 @@ class LineViewer {
   void open_line(const LineAddress& address);
   bool line_is_open() const { return line_ && line_->is_open(); }
   void send(std::span<const std::uint8_t> frame) { line_->send(frame); }
-  void count_ping(TimePoint received);
-  std::uint64_t pings() const { return counters_.pings; }
+  void count_ping(TimePoint received) { run_.count_ping(received); }
+  std::uint64_t pings() const { return run_.counters().pings; }
   void stop();
   bool stopping() const { return stopping_until_.has_value(); }
   /// Calls fail() and stop().
   void give_up(ExitStatus failure, const std::string& message);
-  /// Prints the message; the program ends with the first such status.
-  void fail(ExitStatus failure, const std::string& message);
-  TimePoint started() const { return started_; }
-  /// Null if no pictures are wanted.
-  ImageWriter* writer() { return writer_ ? &*writer_ : nullptr; }
+  /// As in HeadRun.
+  void fail(ExitStatus failure, const std::string& message) { run_.fail(failure, message); }
+  void say(const std::string& message) const { run_.say(message); }
+  ImageWriter* writer() { return run_.writer(); }
+  TimePoint started() const { return run_.started(); }
   boost::asio::io_context& io() { return io_; }
 
  private:
@@ -109,7 +101,8 @@ class LineViewer {
   void line_speaks();
   void line_lost(const std::string& why);
   void advance();
-  void show_progress(TimePoint at);
+  /// False if a line exists but is lost.
+  bool listens() const { return !line_ || line_is_open(); }
   void check_limits(TimePoint at);
   void end();
   void arm_timer();
@@ -122,22 +115,12 @@ class LineViewer {
   boost::asio::steady_timer timer_{io_};
   boost::asio::signal_set signals_{io_, SIGINT, SIGTERM};
 
-  const TimePoint started_;
-  std::optional<TimePoint> met_at_;
+  HeadRun run_;
   std::optional<TimePoint> lost_at_;    ///< nullopt: no line yet, or bytes have arrived since the last loss
   bool spoke_ = false;                  ///< whether bytes ever arrived
   std::optional<TimePoint> retry_due_;  ///< nullopt: the line is open, or being opened
   std::string trouble_;                 ///< why the line was lost, or could not be opened
-  TimePoint first_ping_at_{};
-  TimePoint last_ping_at_{};
-  TimePoint waiting_since_ = started_;  ///< start of the wait for the head, or for the next ping
-  TimePoint progress_due_{};
-  std::uint64_t pings_at_progress_ = 0;
   std::optional<TimePoint> stopping_until_;
-
-  RunCounters counters_;
-  std::optional<ImageWriter> writer_;
-  std::optional<ExitStatus> failure_;
 };
 
 }  // namespace sonard::client

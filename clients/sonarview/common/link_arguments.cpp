@@ -2,8 +2,7 @@
 #include "clients/sonarview/common/link_arguments.hpp"
 
 #include <CLI/CLI.hpp>
-
-#include "protocol/common/endpoint.hpp"
+#include <boost/asio/ip/address_v4.hpp>
 
 namespace sonard::client {
 namespace {
@@ -17,6 +16,15 @@ LineAddress host_and_port(LineAddress::Way way, const std::string& option, const
 }
 
 }  // namespace
+
+Ipv4 ipv4_argument(const std::string& option, const std::string& text) {
+  boost::system::error_code error;
+  const auto address = boost::asio::ip::make_address_v4(text, error);
+  if (error) {
+    throw CLI::ValidationError(option, "expected an IPv4 address, found '" + text + "'");
+  }
+  return address.to_uint();
+}
 
 void LinkArguments::declare(CLI::App& app) {
   CLI::Option* tcp = app.add_option("--tcp", tcp_, "HOST:PORT of a serial device server, or of sonard");

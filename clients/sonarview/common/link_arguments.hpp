@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options for the serial line, or its device server, that leads to a head.
+// The options for the address of a head.
 #pragma once
 
 #include <string>
 
 #include "clients/sonarview/common/serial_line.hpp"
+#include "protocol/common/endpoint.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
@@ -12,7 +13,10 @@ class App;
 
 namespace sonard::client {
 
-/// --tcp, --udp, --tty and --baud.
+/// Reads the value of `option`. @throws CLI::ValidationError
+Ipv4 ipv4_argument(const std::string& option, const std::string& text);
+
+/// --tcp, --udp, --tty and --baud: the serial line, or its device server, that leads to a head.
 class LinkArguments {
  public:
   static constexpr const char* group = "Link (one of --tcp, --udp, --tty)";

@@ -2,113 +2,74 @@
 #include "clients/sonarview/gemini/options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/ip/address_v4.hpp>
 #include <cmath>
-#include <cstdint>
-#include <optional>
 #include <set>
-#include <string>
+
+#include "clients/sonarview/common/link_arguments.hpp"
 
 namespace sonard::client {
-namespace {
-
-Ipv4 address_of(const std::string& option, const std::string& text) {
-  boost::system::error_code error;
-  const auto address = boost::asio::ip::make_address_v4(text, error);
-  if (error) {
-    throw CLI::ValidationError(option, "expected an IPv4 address, found '" + text + "'");
-  }
-  return address.to_uint();
-}
-
-}  // namespace
-
-void GeminiArguments::declare_link(CLI::App& app) {
-  app.add_option(
-         "--client-address", client_address_,
-         "Local address that sends commands, port 52901; default: the address that routes to the head")
-      ->group("Link");
-  app.add_option("--surface-address", client_address_)->group("");  // former name, not in --help
-  app.add_option("--bind", bind_address_,
-                 "Local address that receives replies and status packets, port 52900")
-      ->capture_default_str()
-      ->group("Link");
-  app.add_option("--head", head_address_,
-                 "Address of the head, port 52901; default: the alternate address in its status packet")
-      ->group("Link");
-  app.add_option("--sonar-id", options_.sonar_ids,
-                 "Sonar ID of the head, or several (513,514), each with its own folder in --out; 0: the "
-                 "first head that sends a status packet")
-      ->delimiter(',')
-      ->capture_default_str()
-      ->group("Link");
-}
-
-void GeminiArguments::declare_sonar(CLI::App& app) {
-  auto& settings = options_.settings;
-  app.add_option("--range", settings.range_m, "Range in metres")
-      ->check(CLI::Range(0.3, 150.0))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--gain", settings.gain_percent, "Gain in percent")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--sound-speed", settings.sound_speed_mps,
-                 "Sound speed in metres per second, to convert times to ranges")
-      ->check(CLI::Range(1400.0, 1588.0))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--compression", settings.compression_log2,
-                 "0..4: average 1, 2, 4, 8 or 16 range lines into one")
-      ->check(CLI::Range(0, 4))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--rle", settings.rle_threshold,
-                 "Samples below this become zero and are run-length coded; 0: off")
-      ->check(CLI::Range(0, 255))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--bits", bits_, "Bits per sample")
-      ->check(CLI::IsMember({8, 16}))
-      ->capture_default_str()
-      ->group("Sonar");
-  app.add_option("--continuous", interval_ms_,
-                 "Let the head ping by itself at this interval, in milliseconds; default: request each ping")
-      ->check(CLI::Range(1.0, 1e6))
-      ->group("Sonar");
-}
-
-void GeminiArguments::declare_drops(CLI::App& app) {
-  app.add_option("--drop-rx", options_.drop_rx, "Fraction of arriving datagrams to drop on purpose")
-      ->check(CLI::Range(0.0, 1.0))
-      ->group("Test of the link");
-  app.add_option("--drop-tx", options_.drop_tx, "Fraction of sent datagrams to drop on purpose")
-      ->check(CLI::Range(0.0, 1.0))
-      ->group("Test of the link");
-  app.add_option("--seed", options_.seed, "Seed that selects the dropped datagrams")
-      ->capture_default_str()
-      ->group("Test of the link");
-}
 
 GeminiArguments::GeminiArguments(CLI::App& app) {
-  declare_link(app);
-  declare_sonar(app);
+  const auto add = [&app](const char* group, const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group(group);
+  };
+  add("Link", "--client-address", client_address_,
+      "Local address that sends commands, port 52901; default: the address that routes to the head");
+  add("Link", "--bind", bind_address_, "Local address that receives replies and status packets, port 52900")
+      ->capture_default_str();
+  add("Link", "--head", head_address_,
+      "Address of the head, port 52901; default: the alternate address in its status packet");
+  add("Link", "--sonar-id", options_.sonar_ids,
+      "Sonar ID of the head, or several (513,514), each with its own folder in --out; 0: the first head that "
+      "sends a status packet")
+      ->delimiter(',')
+      ->capture_default_str();
+
+  auto& settings = options_.settings;
+  add("Sonar", "--range", settings.range_m, "Range in metres")
+      ->check(CLI::Range(0.3, 150.0))
+      ->capture_default_str();
+  add("Sonar", "--gain", settings.gain_percent, "Gain in percent")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  add("Sonar", "--sound-speed", settings.sound_speed_mps,
+      "Sound speed in metres per second, to convert times to ranges")
+      ->check(CLI::Range(1400.0, 1588.0))
+      ->capture_default_str();
+  add("Sonar", "--compression", settings.compression_log2,
+      "0..4: average 1, 2, 4, 8 or 16 range lines into one")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str();
+  add("Sonar", "--rle", settings.rle_threshold,
+      "Samples below this become zero and are run-length coded; 0: off")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str();
+  add("Sonar", "--bits", bits_, "Bits per sample")->check(CLI::IsMember({8, 16}))->capture_default_str();
+  add("Sonar", "--continuous", interval_ms_,
+      "Let the head ping by itself at this interval, in milliseconds; default: request each ping")
+      ->check(CLI::Range(1.0, 1e6));
+
   run_.declare(app, {.wait = "Seconds to wait for the first status packet"});
-  declare_drops(app);
+
+  add("Test of the link", "--drop-rx", options_.drop_rx, "Fraction of arriving datagrams to drop on purpose")
+      ->check(CLI::Range(0.0, 1.0));
+  add("Test of the link", "--drop-tx", options_.drop_tx, "Fraction of sent datagrams to drop on purpose")
+      ->check(CLI::Range(0.0, 1.0));
+  add("Test of the link", "--seed", options_.seed, "Seed that selects the dropped datagrams")
+      ->capture_default_str();
 }
 
 GeminiOptions GeminiArguments::options() const {
   GeminiOptions options = options_;
-  options.bind_address = address_of("--bind", bind_address_);
+  options.bind_address = ipv4_argument("--bind", bind_address_);
   if (!client_address_.empty()) {
-    options.client_address = address_of("--client-address", client_address_);
+    options.client_address = ipv4_argument("--client-address", client_address_);
     if (options.client_address == 0) {
       throw CLI::ValidationError("--client-address", "must name one address of this machine");
     }
   }
   if (!head_address_.empty()) {
-    options.client.head_address = address_of("--head", head_address_);
+    options.head_address = ipv4_argument("--head", head_address_);
   }
   std::set<std::uint16_t> ids;
   for (const std::uint16_t id : options.sonar_ids) {

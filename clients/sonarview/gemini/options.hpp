@@ -8,7 +8,6 @@
 
 #include "clients/sonarview/common/run_options.hpp"
 #include "protocol/common/endpoint.hpp"
-#include "protocol/gemini/client.hpp"
 #include "protocol/gemini/ping_settings.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
@@ -18,9 +17,9 @@ class App;
 namespace sonard::client {
 
 struct GeminiOptions {
-  Ipv4 client_address = 0;      ///< source address of commands; 0: the address that routes to the head
-  Ipv4 bind_address = 0;        ///< reports arrive here; 0: all addresses
-  gemini::ClientConfig client;  ///< template: each head gets its own sonar_id
+  Ipv4 client_address = 0;  ///< source address of commands; 0: the address that routes to the head
+  Ipv4 bind_address = 0;    ///< reports arrive here; 0: all addresses
+  Ipv4 head_address = 0;    ///< 0: the alternate address in the status
   std::vector<std::uint16_t> sonar_ids{0};  ///< the heads to view; 0: the first whose status arrives
   gemini::PingSettings settings;
 
@@ -42,10 +41,6 @@ class GeminiArguments {
   GeminiOptions options() const;
 
  private:
-  void declare_link(CLI::App& app);
-  void declare_sonar(CLI::App& app);
-  void declare_drops(CLI::App& app);
-
   GeminiOptions options_;
   // As typed, before the conversion of units.
   RunArguments run_{900, 5.0};

@@ -6,36 +6,30 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/address_v4.hpp>
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 
-#include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/messages.hpp"
 
 namespace sonard::client {
 namespace {
 
+using boost::asio::ip::address_v4;
 using boost::asio::ip::udp;
+using boost::system::error_code;
 
+constexpr std::size_t longest_datagram = 2048;  // as in the vendor's libraries
 constexpr int receive_buffer_bytes = 16 << 20;  // as later versions of the vendor's libraries request
 
-/// Only privileged processes may exceed the system's limit; others get the limit.
-void enlarge_receive_buffer(udp::socket& socket) {
-  const int wanted = receive_buffer_bytes;
-  if (setsockopt(socket.native_handle(), SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0) {
-    boost::system::error_code ignored;  // a smaller buffer only means more retries
-    socket.set_option(boost::asio::socket_base::receive_buffer_size(wanted), ignored);
-  }
-}
-
-const char* advice(const boost::system::error_code& error, std::uint16_t port) {
+const char* advice(const error_code& error, std::uint16_t port) {
   if (error == boost::asio::error::address_in_use) {
     return port == gemini::client_port
                ? "; another client of a sonar is running on this machine (ss -ulpn 'sport = :52900' shows it)"
                : "; another client, or a head that serves all addresses, runs on this machine (ss -ulpn "
-                 "'sport = "
-                 ":52901' shows it)";
+                 "'sport = :52901' shows it)";
   }
   if (error == boost::system::errc::address_not_available) {
     return "; no interface of this machine has that address (ip address shows them)";
@@ -43,79 +37,95 @@ const char* advice(const boost::system::error_code& error, std::uint16_t port) {
   return "";
 }
 
-udp::socket open(boost::asio::io_context& io, std::uint32_t address, std::uint16_t port,
-                 const char* purpose) {
+udp::socket open(boost::asio::io_context& io, Ipv4 address, std::uint16_t port, const char* purpose) {
   udp::socket socket(io);
-  boost::system::error_code error;
+  error_code error;
   socket.open(udp::v4(), error);
   if (!error) {
-    socket.bind({boost::asio::ip::address_v4(address), port}, error);
+    socket.bind({address_v4(address), port}, error);
   }
   if (!error) {
     socket.non_blocking(true, error);
   }
   if (error) {
-    throw SocketError(fmt::format("cannot {} {}:{}: {}{}", purpose, address_text(address), port,
-                                  error.message(), advice(error, port)));
+    throw std::runtime_error(fmt::format("cannot {} {}:{}: {}{}", purpose, address_text(address), port,
+                                         error.message(), advice(error, port)));
   }
   return socket;
 }
 
 }  // namespace
 
-udp::socket open_report_socket(boost::asio::io_context& io, std::uint32_t address) {
-  udp::socket socket = open(io, address, gemini::client_port, "receive on");
-  enlarge_receive_buffer(socket);
-  const int on = 1;
-  setsockopt(socket.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &on,
-             sizeof on);  // if it fails, overflows are not counted
-  return socket;
+GeminiSockets::GeminiSockets(Ipv4 bind, Ipv4 own)
+    : reports_(open(io_, bind, gemini::client_port, "receive on")),
+      commands_(io_),
+      own_(own),
+      buffer_(longest_datagram) {
+  const int descriptor = reports_.native_handle();
+  const int wanted = receive_buffer_bytes;
+  // Only privileged processes may exceed the system's limit. A smaller buffer only means more retries.
+  if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0) {
+    setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
+  }
+  const int on = 1;  // if it fails, kernel_drops() stays 0
+  setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  if (own_ != 0) {
+    commands_ = open(io_, own_, gemini::head_port, "send from");
+  }
 }
 
-udp::socket open_command_socket(boost::asio::io_context& io, std::uint32_t address) {
-  return open(io, address, gemini::head_port, "send from");
+void GeminiSockets::open_towards(Ipv4 head) {
+  if (!commands_.is_open()) {
+    own_ = address_towards(head);
+    commands_ = open(io_, own_, gemini::head_port, "send from");
+  }
 }
 
-std::optional<std::size_t> receive(udp::socket& socket, std::span<std::uint8_t> buffer,
-                                   std::uint64_t& overflows) {
+std::optional<std::span<const std::uint8_t>> GeminiSockets::receive() {
   alignas(cmsghdr) std::uint8_t control[CMSG_SPACE(sizeof(std::uint32_t))] = {};
-  iovec part{buffer.data(), buffer.size()};
+  iovec part{buffer_.data(), buffer_.size()};
   msghdr message{};
   message.msg_iov = &part;
   message.msg_iovlen = 1;
   message.msg_control = control;
   message.msg_controllen = sizeof control;
-  const ssize_t size = recvmsg(socket.native_handle(), &message, MSG_DONTWAIT);
+  const ssize_t size = recvmsg(reports_.native_handle(), &message, MSG_DONTWAIT);
   if (size < 0) {
     return std::nullopt;
   }
-  for (cmsghdr* part_of = CMSG_FIRSTHDR(&message); part_of != nullptr;
-       part_of = CMSG_NXTHDR(&message, part_of)) {
-    if (part_of->cmsg_level == SOL_SOCKET && part_of->cmsg_type == SO_RXQ_OVFL) {
-      std::uint32_t total = 0;
-      std::memcpy(&total, CMSG_DATA(part_of), sizeof total);
-      overflows = total;
-    }
+  const cmsghdr* const info = CMSG_FIRSTHDR(&message);
+  if (info != nullptr && info->cmsg_level == SOL_SOCKET && info->cmsg_type == SO_RXQ_OVFL) {
+    std::uint32_t total = 0;
+    std::memcpy(&total, CMSG_DATA(info), sizeof total);
+    kernel_drops_ = total;
   }
-  return static_cast<std::size_t>(size);
+  return std::span(buffer_).first(static_cast<std::size_t>(size));
 }
 
-std::uint32_t address_towards(std::uint32_t head) {
+error_code GeminiSockets::send(Ipv4 head, std::span<const std::uint8_t> datagram) {
+  error_code error;
+  commands_.send_to(boost::asio::buffer(datagram.data(), datagram.size()),
+                    {address_v4(head), gemini::head_port}, 0, error);
+  return error;
+}
+
+Ipv4 address_towards(Ipv4 head) {
   boost::asio::io_context io;
   udp::socket probe(io);
-  boost::system::error_code error;
+  error_code error;
   probe.open(udp::v4(), error);
   if (!error) {
-    probe.connect({boost::asio::ip::address_v4(head), gemini::head_port}, error);  // sends nothing
+    probe.connect({address_v4(head), gemini::head_port}, error);  // sends nothing
   }
   if (error) {
-    throw SocketError(fmt::format("no route to the head at {}: {}", address_text(head), error.message()));
+    throw std::runtime_error(
+        fmt::format("no route to the head at {}: {}", address_text(head), error.message()));
   }
-  const std::uint32_t own = probe.local_endpoint().address().to_v4().to_uint();
+  const Ipv4 own = probe.local_endpoint().address().to_v4().to_uint();
   return own == head ? INADDR_LOOPBACK : own;
 }
 
-std::optional<std::uint32_t> interface_netmask(std::uint32_t address) {
+std::optional<Ipv4> interface_netmask(Ipv4 address) {
   ifaddrs* first = nullptr;
   if (getifaddrs(&first) != 0) {
     return std::nullopt;

@@ -1,151 +1,108 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/gemini/viewer.hpp"
+// `sonarview gemini`.
+#include <poll.h>
 
 #include <algorithm>
-#include <array>
-#include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <deque>
+#include <memory>
 
+#include "clients/sonarview/common/subcommand.hpp"
+#include "clients/sonarview/gemini/options.hpp"
 #include "clients/sonarview/gemini/sockets.hpp"
 #include "clients/sonarview/gemini/watched_head.hpp"
 
 namespace sonard::client {
 namespace {
 
-using boost::asio::ip::udp;
-using boost::system::error_code;
+constexpr int datagrams_a_turn = 256;  // so that timers and signals are not delayed
 
-constexpr std::size_t datagram_buffer_bytes = 2048;  // as in the vendor's libraries
-constexpr int datagrams_a_turn = 256;                // per call, so that timers and signals are not delayed
+volatile std::sig_atomic_t signalled = 0;
 
-TimePoint now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
+/// SIGINT and SIGTERM set `signalled` while a thread waits with the returned mask, and at no other time. Call
+/// before other threads start.
+sigset_t hold_signals() {
+  sigset_t ends{};
+  sigset_t usual{};
+  sigemptyset(&ends);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    sigaddset(&ends, signal);
+    std::signal(signal, [](int) { signalled = 1; });
+  }
+  pthread_sigmask(SIG_BLOCK, &ends, &usual);
+  return usual;
 }
 
-/// The sockets, timer and signals for all viewed heads.
-class Viewer {
- public:
-  explicit Viewer(const GeminiOptions& options);
-
-  ExitStatus run();
-
- private:
-  void wait_for_reports();
-  void on_reports();
-  void advance();
-  void arm_timer();
-
-  GeminiOptions options_;
-  boost::asio::io_context io_;
-  udp::socket reports_;
-  udp::socket commands_;
-  boost::asio::steady_timer timer_{io_};
-  TimePoint timer_due_ = TimePoint::max();
-  boost::asio::signal_set signals_{io_, SIGINT, SIGTERM};
-  std::uint64_t kernel_drops_ = 0;
-  std::deque<WatchedHead> heads_;
-};
-
-Viewer::Viewer(const GeminiOptions& options)
-    : options_(options), reports_(open_report_socket(io_, options.bind_address)), commands_(io_) {
-  if (options_.client_address != 0) {
-    commands_ = open_command_socket(io_, options_.client_address);
-  }
-  for (std::size_t number = 0; number < options_.sonar_ids.size(); ++number) {
-    heads_.emplace_back(options_, number, commands_);
-  }
+void wait_for_reports(GeminiSockets& sockets, TimePoint wake, const sigset_t& usual) {
+  const auto left = std::max(wake - steady_now(), std::chrono::nanoseconds{});
+  const auto whole = std::chrono::floor<std::chrono::seconds>(left);
+  const timespec limit{static_cast<std::time_t>(whole.count()), static_cast<long>((left - whole).count())};
+  pollfd reports{sockets.reports_descriptor(), POLLIN, 0};
+  ppoll(&reports, 1, &limit, &usual);
 }
 
-ExitStatus Viewer::run() {
-  signals_.async_wait([this](const error_code& cancelled, int) {
-    if (!cancelled) {
-      for (WatchedHead& head : heads_) {
-        head.end();
-      }
-      io_.stop();
+/// Runs until a limit of `options` or a signal.
+/// @throws std::runtime_error (a socket, or the folder for pictures)
+ExitStatus view(const GeminiOptions& options) {
+  const sigset_t usual = hold_signals();
+  GeminiSockets sockets(options.bind_address, options.client_address);
+  std::deque<WatchedHead> heads;
+  for (std::size_t number = 0; number < options.sonar_ids.size(); ++number) {
+    heads.emplace_back(options, number, sockets);
+  }
+  while (signalled == 0 && !std::ranges::all_of(heads, &WatchedHead::ended)) {
+    TimePoint wake = TimePoint::max();
+    for (const WatchedHead& head : heads) {
+      wake = head.ended() ? wake : std::min(wake, head.next_wake());
     }
-  });
-  for (WatchedHead& head : heads_) {
-    head.start(now());
+    wait_for_reports(sockets, wake, usual);
+    for (int count = 0; count < datagrams_a_turn; ++count) {
+      const auto datagram = sockets.receive();
+      if (!datagram) {
+        break;
+      }
+      for (WatchedHead& head : heads) {
+        head.on_datagram(steady_now(), *datagram);
+      }
+    }
+    for (WatchedHead& head : heads) {
+      head.advance(steady_now());
+    }
   }
-  wait_for_reports();
-  arm_timer();
-  io_.run();
   ExitStatus worst = ExitStatus::ok;
-  for (WatchedHead& head : heads_) {
-    const ExitStatus status = head.sum_up(kernel_drops_);
+  for (WatchedHead& head : heads) {
+    head.end();
+    const ExitStatus status = head.sum_up();
     worst = worst == ExitStatus::ok ? status : worst;
   }
   return worst;
 }
 
-void Viewer::wait_for_reports() {
-  reports_.async_wait(udp::socket::wait_read, [this](const error_code& cancelled) {
-    if (!cancelled) {
-      on_reports();
-      wait_for_reports();
-    }
-  });
-}
+constexpr const char* summary =
+    "Client for a Gemini 720i that acts as a vehicle: pings, repairs losses, reports rate and loss, writes "
+    "pictures.";
 
-void Viewer::on_reports() {
-  std::array<std::uint8_t, datagram_buffer_bytes> buffer;
-  for (int count = 0; count < datagrams_a_turn; ++count) {
-    const auto size = receive(reports_, buffer, kernel_drops_);
-    if (!size) {
-      break;
-    }
-    for (WatchedHead& head : heads_) {
-      head.on_datagram(now(), std::span(buffer).first(*size));
-    }
-  }
-  advance();
-}
+constexpr const char* footer = R"(Examples:
+  sonarview --range 20 --compression 1 --out out          the head of configs/demo.yaml, until Ctrl-C
+  sonarview --continuous 100 --pings 200 --log-pings      a ping every 100 ms, one line per ping
+  sonarview --drop-rx 0.05 --drop-tx 0.05 --pings 200     a link that loses 5 % in both directions
+  sonarview --client-address 10.61.19.1                  a head on another network
 
-void Viewer::advance() {
-  const TimePoint at = now();
-  for (WatchedHead& head : heads_) {
-    if (const auto address = head.address(); address && !commands_.is_open()) {
-      options_.client_address = address_towards(*address);
-      commands_ = open_command_socket(io_, options_.client_address);
-    }
-    head.advance(at);
-  }
-  if (std::ranges::all_of(heads_, &WatchedHead::ended)) {
-    io_.stop();
-  } else {
-    arm_timer();
-  }
-}
+Exit status: 0 all pings complete; 1 a socket or file could not be opened; 2 invalid command line;
+3 no head; 4 a ping was incomplete, or no ping arrived.)";
 
-/// Keeps a timer that expires earlier: it calls advance(), which arms it again. So a burst of lines does not
-/// re-arm the timer each time.
-void Viewer::arm_timer() {
-  const TimePoint at = now();
-  TimePoint wake = TimePoint::max();
-  for (const WatchedHead& head : heads_) {
-    wake = head.ended() ? wake : std::min(wake, head.next_wake(at));
-  }
-  if (wake >= timer_due_) {
-    return;
-  }
-  timer_due_ = wake;
-  timer_.expires_at(std::chrono::steady_clock::time_point(wake));
-  timer_.async_wait([this](const error_code& cancelled) {
-    if (!cancelled) {
-      timer_due_ = TimePoint::max();
-      advance();
-    }
-  });
+Prepare declare(CLI::App& app) {
+  const auto arguments = std::make_shared<GeminiArguments>(app);
+  return [arguments] { return [options = arguments->options()] { return view(options); }; };
 }
 
 }  // namespace
 
-ExitStatus view_gemini(const GeminiOptions& options) {
-  return Viewer(options).run();
+const Subcommand& gemini_subcommand() {
+  static constexpr Subcommand subcommand{"gemini", summary, footer, &declare};
+  return subcommand;
 }
 
 }  // namespace sonard::client

@@ -5,214 +5,147 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/ip/address_v4.hpp>
+#include <boost/crc.hpp>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "clients/sonarview/gemini/sockets.hpp"
-#include "common/text/printable.hpp"
 #include "protocol/common/endpoint.hpp"
-#include "protocol/gemini/codec.hpp"
+#include "protocol/gemini/bearings.hpp"
 
 namespace sonard::client {
 namespace {
 
-using boost::system::error_code;
+/// Each of several heads has a folder of its own.
+std::filesystem::path folder_of(const GeminiOptions& options, std::size_t number) {
+  const bool alone = options.run.out.empty() || options.sonar_ids.size() == 1;
+  return alone ? options.run.out : options.run.out / std::to_string(options.sonar_ids[number]);
+}
 
-constexpr std::chrono::nanoseconds progress_period = std::chrono::seconds{1};
+/// CRC-32 (zlib's polynomial) of the samples; 16-bit samples are big-endian.
+std::uint32_t crc32_of(const gemini::ReceivedSamples& samples) {
+  boost::crc_32_type crc;
+  crc.process_bytes(samples.u8.data(), samples.u8.size());
+  for (const std::uint16_t sample : samples.u16) {
+    crc.process_byte(static_cast<unsigned char>(sample >> 8));
+    crc.process_byte(static_cast<unsigned char>(sample & 0xFF));
+  }
+  return crc.checksum();
+}
 
-gemini::ClientConfig client_of(const GeminiOptions& options, std::uint16_t sonar_id) {
-  gemini::ClientConfig config = options.client;
-  config.sonar_id = sonar_id;
-  return config;
+/// @param sound_speed_mps sound speed of the ranges that the user set
+FanPing picture_of(gemini::ReceivedPing& ping, double sound_speed_mps) {
+  picture::FanShape shape;
+  shape.bearings_rad = gemini::bearings_rad(ping.head.beams);
+  shape.lines = ping.lines;
+  shape.line_step_m = sound_speed_mps / (2.0 * gemini::line_rate_hz) * (1 << ping.head.compression_log2());
+  const cv::Mat samples = ping.head.eight_bit()
+                              ? cv::Mat(ping.lines, ping.head.beams, CV_8UC1, ping.samples.u8.data())
+                              : cv::Mat(ping.lines, ping.head.beams, CV_16UC1, ping.samples.u16.data());
+  return {.shape = shape,
+          .samples = samples.clone(),
+          .caption = fmt::format("Gemini 720i  #{}   ping {}   {:.3f} s   {:.1f} m{}",
+                                 ping.head.header.sonar_id, ping.head.ping_id & 0xFF,
+                                 static_cast<double>(ping.head.transmit_time_us) * 1e-6, shape.range_m(),
+                                 ping.complete() ? "" : fmt::format("   {} lines lost", ping.lines_lost))};
 }
 
 }  // namespace
 
-WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number,
-                         boost::asio::ip::udp::socket& commands)
+WatchedHead::WatchedHead(const GeminiOptions& options, std::size_t number, GeminiSockets& sockets)
     : options_(options),
       sonar_id_(options.sonar_ids[number]),
-      says_(options.sonar_ids.size() > 1 ? fmt::format("sonarview: {}: ", sonar_id_) : "sonarview: "),
-      commands_(commands),
-      client_(client_of(options, sonar_id_)),
-      drop_rx_(options.drop_rx, options.seed, 2 * number),
-      drop_tx_(options.drop_tx, options.seed, 2 * number + 1),
-      pictures_({.radius_px = options.run.radius_px}, options.settings.sound_speed_mps) {
-  if (!options_.run.out.empty()) {
-    writer_.emplace(options.sonar_ids.size() > 1 ? options_.run.out / fmt::format("{}", sonar_id_)
-                                                 : options_.run.out);
-  }
-}
-
-void WatchedHead::start(TimePoint at) {
-  started_ = at;
-  if (!options_.run.quiet) {
-    fmt::print(stderr, "{}waiting up to {:.1f} s for the status packet of {} on UDP port {}\n", says_,
-               std::chrono::duration<double>(options_.run.wait).count(),
-               sonar_id_ != 0 ? fmt::format("head {}", sonar_id_) : "a head", gemini::client_port);
-  }
-  client_.start(at, make_ping_config(options_.settings), options_.run.pings);
+      sockets_(sockets),
+      run_(options.run, folder_of(options, number),
+           options.sonar_ids.size() > 1 ? fmt::format("sonarview: {}: ", sonar_id_) : "sonarview: "),
+      client_({.sonar_id = sonar_id_, .head_address = options.head_address}),
+      pictures_(options.run),
+      drop_rx_(options.drop_rx, 2 * options.seed + 2 * number),
+      drop_tx_(options.drop_tx, 2 * options.seed + 2 * number + 1) {
+  run_.say(fmt::format("waiting up to {:.1f} s for the status packet of {} on UDP port {}",
+                       in_seconds(options_.run.wait),
+                       sonar_id_ != 0 ? fmt::format("head {}", sonar_id_) : "a head", gemini::client_port));
+  client_.start(run_.started(), make_ping_config(options_.settings), options_.run.pings);
 }
 
 void WatchedHead::on_datagram(TimePoint at, std::span<const std::uint8_t> datagram) {
   if (!ended_ && !drop_rx_.drop()) {
     client_.on_datagram(at, datagram);
-    note_other_head(datagram);
   }
-}
-
-/// Records statuses of other heads until the wanted head is found.
-void WatchedHead::note_other_head(std::span<const std::uint8_t> datagram) {
-  if (head_met_ || client_.head()) {
-    return;
-  }
-  const auto report = gemini::decode_report(datagram);
-  if (const auto* const status = report ? std::get_if<gemini::Status>(&*report) : nullptr) {
-    others_[status->sonar_id] = status->alternate_ip;
-  }
-}
-
-/// What to do if the wanted head sent no status.
-std::string WatchedHead::advice() const {
-  if (others_.empty()) {
-    return "check that sonard runs, that it sends its status to this address or broadcasts it on this "
-           "network, and that no firewall blocks UDP";
-  }
-  std::vector<std::string> received;
-  for (const auto& [id, address] : others_) {
-    received.push_back(fmt::format("{} at {}", id, address_text(address)));
-  }
-  return fmt::format("only head {} sent a status (to view one, use --sonar-id {})",
-                     fmt::join(received, ", head "), others_.begin()->first);
 }
 
 void WatchedHead::advance(TimePoint at) {
   if (ended_) {
     return;
   }
+  if (client_.head()) {
+    sockets_.open_towards(client_.head()->address);
+  }
   client_.advance(at);
   send_commands();
-  for (auto& ping : client_.take_pings()) {
+  for (gemini::ReceivedPing& ping : client_.take_pings()) {
     take_ping(std::move(ping));
   }
-  if (client_.head() && !head_met_) {
-    head_met_ = last_ping_at_ = at;
-    progress_due_ = at + progress_period;
-    greet_head();
+  if (client_.head() && !run_.met()) {
+    run_.meet(at);
+    greet();
   }
-  if (head_met_ && at >= progress_due_) {
-    show_progress(at);
-    refresh_picture();
+  if (const auto fresh = run_.fresh_pings(at)) {
+    const gemini::LinkStatistics& statistics = client_.statistics();
+    run_.say(fmt::format("{} pings, {} in the last second; {} lines repaired, {} missing",
+                         run_.counters().pings, *fresh, statistics.lines_repaired, statistics.lines_missing));
+    if (ImageWriter* const writer = run_.writer()) {
+      pictures_.refresh(*writer);
+    }
   }
   check_limits(at);
 }
 
 void WatchedHead::send_commands() {
-  for (const auto& datagram : client_.take_outgoing()) {
+  for (const gemini::ClientDatagram& datagram : client_.take_outgoing()) {
     if (drop_tx_.drop()) {
       continue;
     }
-    error_code error;
-    commands_.send_to(boost::asio::buffer(datagram.bytes),
-                      {boost::asio::ip::address_v4(datagram.to), gemini::head_port}, 0, error);
-    if (error && !std::exchange(send_failed_, true)) {
-      fmt::print(stderr, "{}cannot send to {}:{}: {}\n", says_, address_text(datagram.to), gemini::head_port,
-                 error.message());
+    if (const auto error = sockets_.send(datagram.to, datagram.bytes);
+        error && !std::exchange(send_failed_, true)) {
+      run_.warn(fmt::format("cannot send to {}:{}: {}", address_text(datagram.to), gemini::head_port,
+                            error.message()));
     }
   }
 }
 
 void WatchedHead::take_ping(gemini::ReceivedPing ping) {
-  last_ping_at_ = ping.finished;
-  rate_.add(ping.finished);
+  run_.count_ping(ping.finished);
   if (options_.run.log_pings) {
-    fmt::print("{}\n", ping_line(ping, client_.head()->status.sonar_id));
+    fmt::print(
+        "ping number={} id={} transmit_us={} lines={} beams={} lines_lost={} lines_repaired={} retries={} "
+        "took_ms={:.1f} crc32={:08x} sonar_id={}\n",
+        ping.number, ping.head.ping_id & 0xFF, ping.head.transmit_time_us, ping.lines, ping.head.beams,
+        ping.lines_lost, ping.lines_repaired, ping.retries.total(),
+        1e3 * in_seconds(ping.finished - ping.first_datagram), crc32_of(ping.samples),
+        client_.head()->status.sonar_id);
     std::fflush(stdout);
   }
-  if (!writer_) {
-    return;
+  if (ImageWriter* const writer = run_.writer()) {
+    pictures_.take(*writer, picture_of(ping, options_.settings.sound_speed_mps), ping.number);
   }
-  if (options_.run.every > 0 && ping.number % options_.run.every == 0) {
-    writer_->write(pictures_.of(ping, fmt::format("{:06}", ping.number)));
-  }
-  last_ping_ = std::move(ping);
-  last_ping_shown_ = false;
-}
-
-/// Shows the newest ping while the program runs.
-void WatchedHead::refresh_picture() {
-  if (writer_ && last_ping_ && !std::exchange(last_ping_shown_, true)) {
-    writer_->refresh(pictures_.of(*last_ping_, "last"));
-  }
-}
-
-void WatchedHead::greet_head() {
-  const auto& head = *client_.head();
-  const gemini::Status& status = head.status;
-  if (!options_.run.quiet) {
-    fmt::print(stderr, "{}head {} at {}, netmask {}, firmware {:#06x}\n", says_, status.sonar_id,
-               address_text(head.address), address_text(status.subnet_mask), status.firmware_version);
-  }
-  const auto own_mask = interface_netmask(options_.client_address);
-  const bool same_network = ((head.address ^ options_.client_address) & status.subnet_mask) == 0;
-  if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
-    fmt::print(
-        stderr,
-        "{}warning: {} with netmask {} and {} with netmask {} are not on one network; later libraries of "
-        "the vendor would send nothing\n",
-        says_, address_text(head.address), address_text(status.subnet_mask),
-        address_text(options_.client_address), own_mask ? address_text(*own_mask) : "unknown");
-  }
-}
-
-void WatchedHead::show_progress(TimePoint at) {
-  progress_due_ = at + progress_period;
-  const auto& statistics = client_.statistics();
-  const std::uint64_t pings = statistics.pings_complete + statistics.pings_incomplete;
-  if (!options_.run.quiet) {
-    fmt::print(stderr, "{}{} pings, {} in the last second; {} lines repaired, {} missing\n", says_, pings,
-               pings - pings_at_progress_, statistics.lines_repaired, statistics.lines_missing);
-  }
-  pings_at_progress_ = pings;
 }
 
 void WatchedHead::check_limits(TimePoint at) {
-  const bool out_of_time =
-      head_met_ && options_.run.duration.count() > 0 && at - *head_met_ >= options_.run.duration;
-  if (client_.finished() || out_of_time) {
+  const HeadRun::Limit limit = run_.limit(at, true);
+  if (client_.finished() || limit == HeadRun::Limit::duration) {
     end();
-  } else if (!head_met_ && at - started_ >= options_.run.wait) {
-    fail(ExitStatus::no_head,
-         fmt::format("no status{} on port {} within {:.1f} s: {}",
-                     sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::client_port,
-                     std::chrono::duration<double>(options_.run.wait).count(), advice()));
-  } else if (head_met_ && options_.run.ping_wait.count() > 0 &&
-             at - last_ping_at_ >= options_.run.ping_wait) {
-    fail(ExitStatus::incomplete, no_ping_text());
+  } else if (limit == HeadRun::Limit::no_head) {
+    give_up(ExitStatus::no_head, no_head_text());
+  } else if (limit == HeadRun::Limit::no_ping) {
+    give_up(ExitStatus::incomplete, no_ping_text());
   }
 }
 
-std::string WatchedHead::no_ping_text() const {
-  const gemini::HeadInfo& head = *client_.head();
-  const std::string own = address_text(head.status.alternate_ip);
-  return fmt::format(
-      "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from {}, "
-      "and that it has a pose{}",
-      std::chrono::duration<double>(options_.run.ping_wait).count(), address_text(head.address),
-      gemini::head_port, address_text(options_.client_address),
-      head.address == head.status.alternate_ip
-          ? ""
-          : fmt::format(". Its status gives the address {} (to use it, omit --head)", own));
-}
-
-void WatchedHead::fail(ExitStatus status, const std::string& why) {
-  fmt::print(stderr, "{}{}\n", says_, printable(why));
-  failure_ = status;
+void WatchedHead::give_up(ExitStatus failure, const std::string& why) {
+  run_.fail(failure, why);
   end();
 }
 
@@ -223,49 +156,80 @@ void WatchedHead::end() {
   }
 }
 
-std::optional<Ipv4> WatchedHead::address() const {
-  return client_.head() ? std::optional(client_.head()->address) : std::nullopt;
+TimePoint WatchedHead::next_wake() const {
+  const TimePoint limit = run_.next_wake(true);
+  return std::min(limit, client_.next_deadline().value_or(limit));
 }
 
-TimePoint WatchedHead::next_wake(TimePoint at) const {
-  TimePoint wake = client_.next_deadline().value_or(TimePoint::max());
-  if (!head_met_) {
-    return std::min(wake, started_ + options_.run.wait);
+// ---- Messages
+
+void WatchedHead::greet() const {
+  const gemini::Status& status = client_.head()->status;
+  const Ipv4 address = client_.head()->address;
+  const Ipv4 own = sockets_.own();
+  run_.say(fmt::format("head {} at {}, netmask {}, firmware {:#06x}", status.sonar_id, address_text(address),
+                       address_text(status.subnet_mask), status.firmware_version));
+  const auto own_mask = interface_netmask(own);
+  const bool same_network = ((address ^ own) & status.subnet_mask) == 0;
+  if (!same_network || (own_mask && *own_mask != status.subnet_mask)) {
+    run_.warn(fmt::format(
+        "warning: {} with netmask {} and {} with netmask {} are not on one network; later libraries of the "
+        "vendor would send nothing",
+        address_text(address), address_text(status.subnet_mask), address_text(own),
+        own_mask ? address_text(*own_mask) : "unknown"));
   }
-  wake = std::min(wake, progress_due_);
-  if (options_.run.duration.count() > 0) {
-    wake = std::min(wake, *head_met_ + options_.run.duration);
-  }
-  if (options_.run.ping_wait.count() > 0) {
-    wake = std::min(wake, last_ping_at_ + options_.run.ping_wait);
-  }
-  return std::max(wake, at);
 }
 
-ExitStatus WatchedHead::sum_up(std::uint64_t kernel_drops) {
-  ProgramCounters counters;
-  if (writer_) {
-    if (last_ping_) {
-      writer_->write(pictures_.of(std::move(*last_ping_), "last"));
+std::string WatchedHead::no_head_text() const {
+  std::string advice =
+      "check that sonard runs, that it sends its status to this address or broadcasts it on this network, "
+      "and that no firewall blocks UDP";
+  if (const auto& others = client_.other_heads(); !others.empty()) {
+    std::vector<std::string> received;
+    for (const auto& [id, address] : others) {
+      received.push_back(fmt::format("{} at {}", id, address_text(address)));
     }
-    writer_->finish();
-    counters.images_written = writer_->written();
-    counters.images_skipped = writer_->skipped();
-    if (!writer_->error().empty()) {
-      fmt::print(stderr, "{}{}\n", says_, printable(writer_->error()));
-      failure_ = failure_.value_or(ExitStatus::system);
-    }
+    advice = fmt::format("only head {} sent a status (to view one, use --sonar-id {})",
+                         fmt::join(received, ", head "), others.begin()->first);
   }
-  counters.sonar_id = client_.head() ? client_.head()->status.sonar_id : sonar_id_;
-  counters.rate_hz = rate_.hz();
-  counters.dropped_rx = drop_rx_.dropped();
-  counters.dropped_tx = drop_tx_.dropped();
-  counters.kernel_drops = kernel_drops;
-  const auto& statistics = client_.statistics();
-  fmt::print("{}\n", summary_line(statistics, counters));
+  return fmt::format("no status{} on port {} within {:.1f} s: {}",
+                     sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::client_port,
+                     in_seconds(options_.run.wait), advice);
+}
+
+std::string WatchedHead::no_ping_text() const {
+  const gemini::HeadInfo& head = *client_.head();
+  return fmt::format(
+      "the head sends its status, but no ping for {:.1f} s: check that it can be reached at {}:{} from {}, "
+      "and that it has a pose{}",
+      in_seconds(options_.run.ping_wait), address_text(head.address), gemini::head_port,
+      address_text(sockets_.own()),
+      head.address == head.status.alternate_ip
+          ? ""
+          : fmt::format(". Its status gives the address {} (to use it, omit --head)",
+                        address_text(head.status.alternate_ip)));
+}
+
+ExitStatus WatchedHead::sum_up() {
+  if (ImageWriter* const writer = run_.writer()) {
+    pictures_.finish(*writer);
+  }
+  run_.finish();
+  const gemini::LinkStatistics& link = client_.statistics();
+  const RunCounters& run = run_.counters();
+  fmt::print(
+      "summary pings_complete={} pings_incomplete={} pings_missed={} pings_unrequested={} pings_abandoned={} "
+      "lines_missing={} lines_repaired={} rate_hz={:.2f} retries={} retries_head={} retries_lines={} "
+      "retries_tail={} configs_sent={} configs_repeated={} datagrams={} datagrams_bad={} dropped_rx={} "
+      "dropped_tx={} kernel_drops={} reboots={} images_written={} images_skipped={} sonar_id={}\n",
+      link.pings_complete, link.pings_incomplete, link.pings_missed, link.pings_unrequested,
+      link.pings_abandoned, link.lines_missing, link.lines_repaired, run.rate_hz, link.retries.total(),
+      link.retries.head, link.retries.lines, link.retries.tail, link.configs_sent, link.configs_repeated,
+      link.datagrams, link.bad_datagrams, drop_rx_.dropped(), drop_tx_.dropped(), sockets_.kernel_drops(),
+      link.reboots, run.images_written, run.images_skipped,
+      client_.head() ? client_.head()->status.sonar_id : sonar_id_);
   std::fflush(stdout);
-  const bool all_complete = statistics.pings_complete > 0 && statistics.pings_incomplete == 0;
-  return failure_.value_or(all_complete ? ExitStatus::ok : ExitStatus::incomplete);
+  return run_.status(link.pings_complete > 0 && link.pings_incomplete == 0);
 }
 
 }  // namespace sonard::client

@@ -2,79 +2,82 @@
 // One of the heads that sonarview views: its client, its pictures and its messages.
 #pragma once
 
-#include <boost/asio/ip/udp.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <optional>
+#include <random>
 #include <span>
 #include <string>
 
 #include "clients/sonarview/common/exit_status.hpp"
-#include "clients/sonarview/common/image_writer.hpp"
-#include "clients/sonarview/gemini/datagram_dropper.hpp"
-#include "clients/sonarview/gemini/gemini_pictures.hpp"
+#include "clients/sonarview/common/fan_pictures.hpp"
+#include "clients/sonarview/common/head_run.hpp"
 #include "clients/sonarview/gemini/options.hpp"
-#include "clients/sonarview/gemini/ping_log.hpp"
+#include "clients/sonarview/gemini/sockets.hpp"
 #include "protocol/gemini/client.hpp"
 
 namespace sonard::client {
 
+/// Drops datagrams of one direction on purpose, to test head and client on a lossy link.
+class DatagramDropper {
+ public:
+  /// @param share 0..1
+  /// @param seed the same seed drops the same datagrams of a sequence
+  DatagramDropper(double share, std::uint64_t seed) : share_(share), random_(seed) {}
+
+  /// Whether to drop the next datagram.
+  bool drop() {
+    // Distributions of standard libraries differ; this formula gives the same numbers everywhere.
+    const bool lost = static_cast<double>(random_() >> 11) * 0x1p-53 < share_;
+    dropped_ += lost ? 1 : 0;
+    return lost;
+  }
+  std::uint64_t dropped() const { return dropped_; }
+
+ private:
+  double share_;
+  std::mt19937_64 random_;
+  std::uint64_t dropped_ = 0;
+};
+
 /// Everything runs on the caller's thread, except that pictures are drawn on the writer's thread.
 class WatchedHead {
  public:
+  /// Starts pinging when a status arrives.
   /// @param number index in GeminiOptions::sonar_ids
-  /// @param commands socket for commands; must outlive this object
+  /// @param options, sockets must outlive this object
   /// @throws std::runtime_error (folder for pictures)
-  WatchedHead(const GeminiOptions& options, std::size_t number, boost::asio::ip::udp::socket& commands);
+  WatchedHead(const GeminiOptions& options, std::size_t number, GeminiSockets& sockets);
 
-  void start(TimePoint at);
   /// Handles a datagram from any head.
   void on_datagram(TimePoint at, std::span<const std::uint8_t> datagram);
   /// Does the work that is due, and ends at a limit.
+  /// @throws std::runtime_error (socket for commands)
   void advance(TimePoint at);
+  /// When to advance() next.
+  TimePoint next_wake() const;
   /// Stops the pings of the head. Further calls have no effect.
   void end();
   bool ended() const { return ended_; }
-  /// The address of the head; nullopt before its first status.
-  std::optional<Ipv4> address() const;
-  /// When to advance() next; not before `at`.
-  TimePoint next_wake(TimePoint at) const;
   /// Finishes the pictures and prints the summary.
-  ExitStatus sum_up(std::uint64_t kernel_drops);
+  ExitStatus sum_up();
 
  private:
-  void note_other_head(std::span<const std::uint8_t> datagram);
-  std::string advice() const;
-  std::string no_ping_text() const;
   void send_commands();
   void take_ping(gemini::ReceivedPing ping);
-  void greet_head();
-  void show_progress(TimePoint at);
-  void refresh_picture();
+  void greet() const;
   void check_limits(TimePoint at);
-  void fail(ExitStatus status, const std::string& why);
+  void give_up(ExitStatus failure, const std::string& why);
+  std::string no_head_text() const;
+  std::string no_ping_text() const;
 
   const GeminiOptions& options_;
   const std::uint16_t sonar_id_;
-  const std::string says_;  ///< prefix of messages: "sonarview: ", with the head's ID if there are several
-  boost::asio::ip::udp::socket& commands_;
+  GeminiSockets& sockets_;
+  HeadRun run_;
   gemini::Client client_;
+  FanPictures pictures_;
   DatagramDropper drop_rx_, drop_tx_;
   bool send_failed_ = false;
-
-  TimePoint started_{};
-  std::optional<TimePoint> head_met_;
-  std::map<std::uint16_t, Ipv4> others_;  ///< others that sent a status before the wanted head
-  TimePoint last_ping_at_{};
-  TimePoint progress_due_{};
-  std::uint64_t pings_at_progress_ = 0;
-  PingRateMeter rate_;
-  std::optional<gemini::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
-  bool last_ping_shown_ = true;                    ///< its picture is drawn or queued
-  GeminiPictures pictures_;
-  std::optional<ImageWriter> writer_;
-  std::optional<ExitStatus> failure_;
   bool ended_ = false;
 };
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/micron/viewer.hpp"
-
+// `sonarview micron`.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "clients/sonarview/common/line_viewer.hpp"
+#include "clients/sonarview/common/subcommand.hpp"
 #include "clients/sonarview/micron/line_file.hpp"
+#include "clients/sonarview/micron/options.hpp"
 #include "clients/sonarview/micron/scan_log.hpp"
 #include "clients/sonarview/micron/scan_sweeps.hpp"
-#include "common/text/printable.hpp"
 #include "protocol/micron/units.hpp"
 
 namespace sonard::client {
@@ -142,20 +143,21 @@ std::chrono::nanoseconds Viewer::say_goodbye(TimePoint) {
 
 void Viewer::greet_head() {
   const auto& head = client_.head();
-  if (options_.run.quiet || client_.statistics().head_commands != 1) {
+  if (client_.statistics().head_commands != 1) {
     return;
   }
-  fmt::print(stderr, "sonarview: head {} at {}", options_.client.node, printable(options_.line.text()));
+  std::string text = fmt::format("head {} at {}", options_.client.node, options_.line.text());
   if (head.version) {
-    fmt::print(stderr, ", serial number {}, software {:#04x}", head.version->serial_number,
-               head.version->software_version);
+    text += fmt::format(", serial number {}, software {:#04x}", head.version->serial_number,
+                        head.version->software_version);
   }
   if (head.user_blocks) {
-    fmt::print(stderr, ", {} duplex", head.user_blocks->half_duplex() ? "half" : "full");
+    text += fmt::format(", {} duplex", head.user_blocks->half_duplex() ? "half" : "full");
   }
-  fmt::print(stderr, "\nsonarview: {} bins of {:.1f} mm: the head covers {:.3f} m of {:g} m\n",
-             options_.scan.bins, 1e3 * micron::bin_length_m(options_.scan),
-             micron::covered_range_m(options_.scan), options_.scan.range_m);
+  say(text);
+  say(fmt::format("{} bins of {:.1f} mm: the head covers {:.3f} m of {:g} m", options_.scan.bins,
+                  1e3 * micron::bin_length_m(options_.scan), micron::covered_range_m(options_.scan),
+                  options_.scan.range_m));
 }
 
 std::string Viewer::head_text() const {
@@ -215,10 +217,27 @@ bool Viewer::sum_up(const RunCounters& counters) {
   return statistics.lines > 0 && sweeps_.lines_missed() == 0;
 }
 
+constexpr const char* summary =
+    "Client for a Micron: scans, reports rate and loss, writes pictures and lines.";
+
+constexpr const char* footer = R"(Examples:
+  sonarview micron --tcp 127.0.0.1:4001 --range 20 --out out       all round, until Ctrl-C
+  sonarview micron --tty /dev/ttyUSB0 --turns 1 --raw sweep.jsonl   one sweep, with its lines in a file
+  sonarview micron --tcp 10.0.0.7:4001 --sector -45 45 --step 0.9  back and forth over 90 degrees ahead
+
+Exit status: 0 all lines arrived; 1 a file could not be written; 2 invalid command line; 3 no head;
+4 lines are missing, or no line arrived.)";
+
+Prepare declare(CLI::App& app) {
+  const auto arguments = std::make_shared<MicronArguments>(app);
+  return [arguments] { return [options = arguments->options()] { return Viewer(options).run(); }; };
+}
+
 }  // namespace
 
-ExitStatus view_micron(const MicronOptions& options) {
-  return Viewer(options).run();
+const Subcommand& micron_subcommand() {
+  static constexpr Subcommand subcommand{"micron", summary, footer, &declare};
+  return subcommand;
 }
 
 }  // namespace sonard::client

@@ -2,8 +2,9 @@
 #include "clients/sonarview/oculus/options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <boost/asio/ip/address_v4.hpp>
 #include <map>
+
+#include "clients/sonarview/common/link_arguments.hpp"
 
 namespace sonard::client {
 namespace {
@@ -63,11 +64,7 @@ void OculusArguments::declare_sonar(CLI::App& app) {
 OculusOptions OculusArguments::options() const {
   namespace flags = oculus::fire_flags;
   OculusOptions options = options_;
-  boost::system::error_code error;
-  options.bind_address = boost::asio::ip::make_address_v4(bind_address_, error).to_uint();
-  if (error) {
-    throw CLI::ValidationError("--bind", "expected an IPv4 address, found '" + bind_address_ + "'");
-  }
+  options.bind_address = ipv4_argument("--bind", bind_address_);
   oculus::Fire& fire = options.fire.fire;
   fire.master_mode = frequency_ == "low" ? 1 : 2;
   fire.ping_rate = rate_codes().at(rate_hz_);

@@ -1,45 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/oculus/viewer.hpp"
-
+// `sonarview oculus`.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <boost/crc.hpp>
 #include <cstdio>
+#include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
+#include "clients/sonarview/common/fan_pictures.hpp"
 #include "clients/sonarview/common/line_viewer.hpp"
-#include "clients/sonarview/oculus/oculus_pictures.hpp"
+#include "clients/sonarview/common/subcommand.hpp"
+#include "clients/sonarview/oculus/options.hpp"
 #include "clients/sonarview/oculus/status_listener.hpp"
-#include "common/text/printable.hpp"
 #include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
+#include "protocol/oculus/image_form.hpp"
 
 namespace sonard::client {
 namespace {
 
-/// A text from a head, cut to 200 bytes and made printable.
-std::string one_line(std::string text) {
-  constexpr std::size_t longest = 200;
-  text.resize(std::min(text.size(), longest));
-  return printable(text);
-}
+constexpr std::size_t longest_log = 200;  // bytes of a text from the head that are shown
 
 std::string address_of(const oculus::Status& status) {
   return fmt::format("{}", fmt::join(status.address, "."));
 }
 
+FanPing picture_of(const oculus::PingResult& ping) {
+  picture::FanShape shape;
+  for (const std::int16_t bearing : ping.bearings_cdeg) {
+    shape.bearings_rad.push_back(bearing * std::numbers::pi / 18000.0);
+  }
+  shape.lines = ping.ranges;
+  shape.line_step_m = ping.range_resolution_m;
+  std::vector<std::uint8_t> samples = oculus::eight_bit_samples(ping);
+  return {.shape = shape,
+          .samples = cv::Mat(ping.ranges, ping.beams, CV_8UC1, samples.data()).clone(),
+          .amplitude_exponent = oculus::gamma_exponent(ping.fire.fire.gamma),
+          .caption = fmt::format("Oculus  {:.0f} kHz   ping {}   {} beams   {:.1f} m",
+                                 ping.frequency_hz * 1e-3, ping.ping_id, ping.beams, shape.range_m())};
+}
+
 class Viewer final : public LineViewer {
  public:
   explicit Viewer(const OculusOptions& options)
-      : LineViewer(options.run),
-        options_(options),
-        pictures_(picture::FanStyle{.radius_px = options.run.radius_px}) {}
+      : LineViewer(options.run), options_(options), pictures_(options.run) {}
 
  private:
   void begin(TimePoint at) override;
@@ -48,8 +57,8 @@ class Viewer final : public LineViewer {
   bool head_met() const override { return connected_; }
   void take_received() override;
   bool finished() const override { return options_.run.pings > 0 && pings() >= options_.run.pings; }
-  void refresh_pictures(ImageWriter& to) override;
-  void finish_pictures(ImageWriter& to) override;
+  void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to); }
+  void finish_pictures(ImageWriter& to) override { pictures_.finish(to); }
   std::string progress_text(std::uint64_t fresh) const override;
   std::string awaited_text() const override;
   std::string no_head_text(double wait_s) const override;
@@ -59,15 +68,14 @@ class Viewer final : public LineViewer {
 
   void meet(const oculus::Status& status);
   void connect_to(const std::string& address);
-  void take_ping(oculus::ReceivedPing ping);
+  void take_ping(const oculus::ReceivedPing& ping);
 
   const OculusOptions options_;
   std::optional<StatusListener> statuses_;  ///< until the connection is open
   std::set<std::string> addresses_;         ///< of the heads that sent a status
   bool connected_ = false;                  ///< whether the connection was ever open
   oculus::Client client_;
-  OculusPictures pictures_;
-  std::optional<oculus::ReceivedPing> last_ping_;  ///< kept only if pictures are wanted
+  FanPictures pictures_;
 };
 
 void Viewer::begin(TimePoint) {
@@ -87,10 +95,8 @@ void Viewer::begin(TimePoint) {
 
 void Viewer::meet(const oculus::Status& status) {
   const auto& client = status.client;
-  if (!options_.run.quiet) {
-    fmt::print(stderr, "sonarview: head {}, part {}, at {}{}\n", status.device_id, status.part_number,
-               address_of(status), client == decltype(status.client){} ? "" : ", which already has a client");
-  }
+  say(fmt::format("head {}, part {}, at {}{}", status.device_id, status.part_number, address_of(status),
+                  client == decltype(status.client){} ? "" : ", which already has a client"));
   statuses_->close();
   connect_to(address_of(status));
 }
@@ -110,18 +116,16 @@ void Viewer::on_opened() {
 
 void Viewer::take_received() {
   for (const std::string& text : client_.take_logs()) {
-    if (!options_.run.quiet) {
-      fmt::print(stderr, "sonarview: log of the head: {}\n", one_line(text));
-    }
+    say("log of the head: " + text.substr(0, longest_log));
   }
-  for (oculus::ReceivedPing& ping : client_.take_pings()) {
+  for (const oculus::ReceivedPing& ping : client_.take_pings()) {
     if (!finished()) {
-      take_ping(std::move(ping));
+      take_ping(ping);
     }
   }
 }
 
-void Viewer::take_ping(oculus::ReceivedPing ping) {
+void Viewer::take_ping(const oculus::ReceivedPing& ping) {
   count_ping(ping.received);
   const oculus::PingResult& result = ping.result;
   if (options_.run.log_pings) {
@@ -139,22 +143,7 @@ void Viewer::take_ping(oculus::ReceivedPing ping) {
     std::fflush(stdout);
   }
   if (ImageWriter* const to = writer()) {
-    if (options_.run.every > 0 && pings() % options_.run.every == 0) {
-      to->write(pictures_.of(ping, fmt::format("{:06}", pings())));
-    }
-    last_ping_ = std::move(ping);
-  }
-}
-
-void Viewer::refresh_pictures(ImageWriter& to) {
-  if (last_ping_) {
-    to.refresh(pictures_.of(*last_ping_, "last"));
-  }
-}
-
-void Viewer::finish_pictures(ImageWriter& to) {
-  if (last_ping_) {
-    to.write(pictures_.of(std::move(*last_ping_), "last"));
+    pictures_.take(*to, picture_of(result), pings());
   }
 }
 
@@ -202,10 +191,26 @@ bool Viewer::sum_up(const RunCounters& counters) {
   return counters.pings > 0 && client.pings_missed == 0 && client.bad_messages == 0;
 }
 
+constexpr const char* summary = "Client for an Oculus: pings, reports the rate, writes pictures.";
+
+constexpr const char* footer = R"(Examples:
+  sonarview oculus --out out                              the head whose status packet arrives first, until Ctrl-C
+  sonarview oculus --head 127.0.0.3 --pings 10 --bits 16  ten pings of 512 beams
+  sonarview oculus --frequency high --range 5 --rate 40   the narrow fan, as fast as the head can
+
+Exit status: 0 pings arrived, and no ping was missed; 1 a socket or a file could not be opened or written;
+2 invalid command line; 3 no head; 4 pings were missed, or no ping arrived.)";
+
+Prepare declare(CLI::App& app) {
+  const auto arguments = std::make_shared<OculusArguments>(app);
+  return [arguments] { return [options = arguments->options()] { return Viewer(options).run(); }; };
+}
+
 }  // namespace
 
-ExitStatus view_oculus(const OculusOptions& options) {
-  return Viewer(options).run();
+const Subcommand& oculus_subcommand() {
+  static constexpr Subcommand subcommand{"oculus", summary, footer, &declare};
+  return subcommand;
 }
 
 }  // namespace sonard::client

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "clients/sonarview/ping360/viewer.hpp"
-
+// `sonarview ping360`.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <boost/crc.hpp>
 #include <cstdio>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "clients/sonarview/common/line_viewer.hpp"
+#include "clients/sonarview/common/subcommand.hpp"
+#include "clients/sonarview/ping360/options.hpp"
 #include "clients/sonarview/ping360/sweeps.hpp"
-#include "common/text/printable.hpp"
 #include "protocol/ping360/client.hpp"
 #include "protocol/ping360/units.hpp"
 
@@ -163,13 +164,13 @@ std::chrono::nanoseconds Viewer::say_goodbye(TimePoint at) {
 
 void Viewer::greet_head() {
   const auto& information = client_.head().information;
-  if (greeted_ || options_.run.quiet || !information) {
+  if (greeted_ || !information) {
     return;
   }
   greeted_ = true;
-  fmt::print(stderr, "sonarview: head at {}, device type {}, firmware {}.{}.{}\n",
-             printable(options_.line.text()), information->device_type, information->firmware_major,
-             information->firmware_minor, information->firmware_patch);
+  say(fmt::format("head at {}, device type {}, firmware {}.{}.{}", options_.line.text(),
+                  information->device_type, information->firmware_major, information->firmware_minor,
+                  information->firmware_patch));
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
@@ -202,10 +203,26 @@ bool Viewer::sum_up(const RunCounters& counters) {
   return counters.pings > 0;
 }
 
+constexpr const char* summary = "Client for a Ping360: scans, reports the rate, writes pictures.";
+
+constexpr const char* footer = R"(Examples:
+  sonarview ping360 --udp 127.0.0.1:12345 --range 10 --out out     all round, ping by ping, until Ctrl-C
+  sonarview ping360 --udp 127.0.0.1:12345 --auto --turns 1         one turn, scanned by the head itself
+  sonarview ping360 --tty /dev/ttyUSB0 --sector -45 45 --step 2    back and forth over 90 degrees ahead
+
+Exit status: 0 pings arrived; 1 a file could not be written; 2 invalid command line; 3 no head;
+4 the head refuses, or no ping arrived.)";
+
+Prepare declare(CLI::App& app) {
+  const auto arguments = std::make_shared<Ping360Arguments>(app);
+  return [arguments] { return [options = arguments->options()] { return Viewer(options).run(); }; };
+}
+
 }  // namespace
 
-ExitStatus view_ping360(const Ping360Options& options) {
-  return Viewer(options).run();
+const Subcommand& ping360_subcommand() {
+  static constexpr Subcommand subcommand{"ping360", summary, footer, &declare};
+  return subcommand;
 }
 
 }  // namespace sonard::client
