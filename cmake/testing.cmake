@@ -6,10 +6,6 @@ foreach(label unit gl system deep soak logs simulators cluster)
   add_custom_target(${label}_tests)
 endforeach()
 
-# Debian's interpreter, which sees the Python packages of docker/packages.txt; the first in PATH may be another one.
-find_program(SONARD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
-find_program(SONARD_PYTHON python3 REQUIRED)
-
 # Compiles in a quarter less time than -O2, and runs hardly slower, because most time is spent in the libraries. With
 # sanitizers, -O0 would save less compile time than it costs at run time.
 set(SONARD_TEST_OPTIMISATION -O1)

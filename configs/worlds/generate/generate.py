@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the worlds, their meshes and the trajectories below configs/. Needs Python 3 and nothing else.
 
-  generate.py                 writes into this checkout's configs/
-  generate.py --out DIR       writes the same tree below DIR
-  generate.py --check         writes nothing; fails naming each committed file that differs
+  generate.py                   writes into this checkout's configs/
+  generate.py --out DIR         writes the same tree below DIR
+  generate.py --check           writes nothing; fails naming each committed file that differs
+  generate.py --trajectories    only the trajectories, as each build does; git has one of them, as an example
 """
 
 import argparse
@@ -19,12 +20,11 @@ from trajectories import trajectories  # noqa: E402
 from worlds import docking_station, grid, manifold, oil_and_gas, ssiv, tank  # noqa: E402
 
 
-def everything():
+def contents(worlds):
     """{path below configs/: bytes}."""
-    files = {}
-    for world in (docking_station, ssiv, manifold, tank, grid, oil_and_gas):
+    files = {f"trajectories/{path}": data for path, data in trajectories().items()}
+    for world in worlds:
         files |= {f"worlds/{path}": data for path, data in world().items()}
-    files |= {f"trajectories/{path}": data for path, data in trajectories().items()}
     return files
 
 
@@ -32,14 +32,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=pathlib.Path, default=HERE.parent.parent)
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--trajectories", action="store_true")
     options = parser.parse_args()
+    worlds = () if options.trajectories else (docking_station, ssiv, manifold, tank, grid, oil_and_gas)
 
     different = []
-    for path, data in sorted(everything().items()):
+    for path, data in sorted(contents(worlds).items()):
         target = options.out / path
+        if target.is_file() and target.read_bytes() == data:
+            continue
         if options.check:
-            if not target.is_file() or target.read_bytes() != data:
-                different.append(path)
+            different.append(path)
             continue
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(data)

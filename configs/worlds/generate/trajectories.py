@@ -65,12 +65,6 @@ def csv_text(rows, time_digits=1):
     return "\n".join(lines) + "\n"
 
 
-def tum_text(rows):
-    lines = ["# t x y z qx qy qz qw"]
-    lines += [f"{r[0]:.1f} " + " ".join(f"{v:.3f}" for v in r[1:4]) + " " + " ".join(f"{v:.6f}" for v in r[4:]) for r in rows]
-    return "\n".join(lines) + "\n"
-
-
 def trajectories():
     """{path below configs/trajectories: bytes}."""
     dock = arc_survey(target=(0.0, 0.2, -30.0), start_deg=-100.0, sweep_deg=115.0, radius_m=12.3, closer_m=0.8, height_m=4.4,
@@ -83,7 +77,6 @@ def trajectories():
     grid = turn_and_back(position=(0.0, 0.0, -8.0), turn_deg=20.0, rest_s=10.0, turn_s=10.0)
     oil_and_gas = out_and_back(start=(0.0, 0.0, -24.5), end=(7.0, 0.0, -24.5), rest_s=20.0, move_s=20.0)
     demo = [row for row in dock if row[0] <= 10.0]
-    return {"demo.csv": csv_text(demo).encode("ascii"), "docking_demo.csv": csv_text(dock).encode("ascii"), "ssiv_demo.csv": csv_text(valve).encode("ascii"),
-            "ssiv_demo.tum": tum_text(valve).encode("ascii"), "manifold_demo.csv": csv_text(manifold).encode("ascii"),
-            "tank.csv": csv_text(tank).encode("ascii"),
-            "grid.csv": csv_text(grid, time_digits=2).encode("ascii"), "oil_and_gas.csv": csv_text(oil_and_gas).encode("ascii")}
+    files = {"demo": csv_text(demo), "docking_demo": csv_text(dock), "ssiv_demo": csv_text(valve), "manifold_demo": csv_text(manifold),
+             "tank": csv_text(tank), "grid": csv_text(grid, time_digits=2), "oil_and_gas": csv_text(oil_and_gas)}
+    return {f"{name}.csv": text.encode("ascii") for name, text in files.items()}

@@ -39,7 +39,7 @@ PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.y
 FILES = {"harbour.sdf": ("docs/worlds.md", "xml", 0), "harbour.yaml": ("docs/worlds.md", "yaml", 0),
          "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 1)}
 # Files of the reader, and similar files of the repository.
-LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/ssiv_demo.tum",
+LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/demo.csv",
         "dive.csv": "configs/trajectories/docking_demo.csv"}
 
 TWO_HEADS = """
@@ -279,6 +279,8 @@ class Documentation(unittest.TestCase):
             (place / name).write_text(block_of(*block), encoding="utf-8")
         for name, original in LIKE.items():
             text = (ROOT / original).read_text(encoding="utf-8")
+            if name.endswith(".tum"):  # the same columns without a header, and with spaces
+                text = text.partition("\n")[2].replace(",", " ")
             (place / name).write_text(text.replace("file: worlds/", "file: configs/worlds/"), encoding="utf-8")
         (place / "clean.yaml").write_text(block_of(*FILES["harbour.yaml"]) + block_of("docs/offline.md", "yaml", 0), encoding="utf-8")
         (place / "meshes").mkdir()
