@@ -42,7 +42,11 @@ class GeminiHead final : public Head {
   Peer client() const override { return {0, {0xC0A80205, client_port}, head_address}; }
   std::vector<std::vector<std::uint8_t>> messages() const override {
     return {encode(Command{single_ping()}), encode(Command{RetryRequest{}}), encode(Command{single_ping()}),
-            encode(Command{StatusRequest{}})};
+            encode(Command{StatusRequest{}}), encode(Command{Reboot{}})};
+  }
+  bool records_broken_pings() const override { return true; }
+  bool can_read(std::span<const std::uint8_t> message) const override {
+    return decode_report(message).has_value();
   }
 
  private:

@@ -14,7 +14,11 @@
 
 namespace sonard::contract {
 
-using Mode = PingCycle::Config;
+struct Mode {
+  bool simulated_time = false;
+  bool plays_back = false;
+  unsigned options = 0;  ///< its bits choose options of the type
+};
 
 /// A head and its only client, which speaks to the head through the bench.
 class Head {
@@ -42,8 +46,15 @@ class Head {
   virtual ReplayedPing recorded() const = 0;
 
   virtual Peer client() const = 0;
-  /// Messages of clients, to be cut and corrupted. Half of them request pings.
+  /// Peers that send messages().
+  virtual std::vector<Peer> clients() const { return {client()}; }
+  /// Messages of clients, to be cut and corrupted. Half of them request pings. The last one is sent rarely: a
+  /// head may take seconds until it answers again.
   virtual std::vector<std::vector<std::uint8_t>> messages() const = 0;
+  /// Whether a ping has a record that is broken off after its first messages.
+  virtual bool records_broken_pings() const { return false; }
+  /// Whether a client can read a message that the head sent.
+  virtual bool can_read(std::span<const std::uint8_t> message) const = 0;
 };
 
 struct HeadType {

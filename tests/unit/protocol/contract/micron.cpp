@@ -2,6 +2,7 @@
 #include "protocol/micron/codec.hpp"
 #include "protocol/micron/device.hpp"
 #include "protocol/micron/recorded_form.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/protocol/contract/head.hpp"
 
 namespace sonard::contract {
@@ -44,12 +45,16 @@ class MicronHead final : public Head {
 
   Peer client() const override { return {}; }
   std::vector<std::vector<std::uint8_t>> messages() const override {
-    const Command commands[] = {SendData{}, SendVersion{}, SendData{}, all_round()};
-    std::vector<std::vector<std::uint8_t>> messages;
-    for (const Command& command : commands) {
-      messages.push_back(encode(command, default_head_node));
+    std::vector<std::vector<std::uint8_t>> messages{encode(all_round(), default_head_node)};
+    for (const char* name :
+         {"send_data", "send_data", "send_data", "send_data", "send_data", "send_version", "head_command_ros",
+          "head_command_rock", "head_command_uxv", "gain", "reverse", "send_bb_user", "reboot"}) {
+      messages.push_back(testing::message_bytes("micron", name));
     }
     return messages;
+  }
+  bool can_read(std::span<const std::uint8_t> message) const override {
+    return decode_report(message).has_value();
   }
 
  private:
@@ -57,6 +62,9 @@ class MicronHead final : public Head {
     DeviceConfig config;
     config.plays_back = mode.plays_back;
     config.simulated_time = mode.simulated_time;
+    config.half_duplex = (mode.options & 1) != 0;
+    config.requests_survive_head_command = (mode.options & 2) != 0;
+    config.nibble_order = (mode.options & 4) != 0 ? NibbleOrder::low_first : NibbleOrder::high_first;
     return config;
   }
   static HeadCommand all_round() {

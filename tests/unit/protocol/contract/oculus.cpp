@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "protocol/oculus/client.hpp"
 #include "protocol/oculus/codec.hpp"
 #include "protocol/oculus/device.hpp"
 #include "protocol/oculus/recorded_form.hpp"
@@ -38,6 +39,12 @@ class OculusHead final : public Head {
   Peer client() const override { return {oculus::Device::stream_channel, {0xC0A80205, 40000}, 0}; }
   std::vector<std::vector<std::uint8_t>> messages() const override {
     return {encode(SimpleFire{}), encode(UserConfig{}), encode(SimpleFire{}), encode(standby())};
+  }
+  bool can_read(std::span<const std::uint8_t> message) const override {
+    Client client;
+    client.receive(TimePoint{}, message);
+    const ClientStatistics& read = client.statistics();
+    return decode_status(message) || (read.messages == 1 && read.bad_messages + read.dropped_bytes == 0);
   }
 
  private:

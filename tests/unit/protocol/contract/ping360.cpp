@@ -2,12 +2,15 @@
 #include "protocol/ping360/codec.hpp"
 #include "protocol/ping360/device.hpp"
 #include "protocol/ping360/recorded_form.hpp"
+#include "tests/support/messages.hpp"
 #include "tests/unit/protocol/contract/head.hpp"
 
 namespace sonard::contract {
 namespace {
 
 using namespace ping360;
+
+constexpr int serial_channel = 1;
 
 class Ping360Head final : public Head {
  public:
@@ -33,11 +36,23 @@ class Ping360Head final : public Head {
   }
 
   Peer client() const override { return {0, {0x7F000001, 4000}, 0}; }
+  std::vector<Peer> clients() const override {
+    return {client(), {0, {0x7F000001, 4001}, 0}, {serial_channel, {}, 0}};
+  }
   std::vector<std::vector<std::uint8_t>> messages() const override {
     AutoTransmit scan;
     scan.number_of_samples = 200;
     scan.stop_angle = 399;
-    return {encode(ping_ahead()), encode(GeneralRequest{4}), encode(scan), encode(MotorOff{})};
+    std::vector<std::vector<std::uint8_t>> messages{encode(ping_ahead()), encode(scan)};
+    for (const char* name :
+         {"transducer", "transducer_brping", "transducer_pnarvor", "auto_transmit", "request_device_data",
+          "motor_off", "set_device_id", "device_data", "request_device_information", "reset"}) {
+      messages.push_back(testing::message_bytes("ping360", name));
+    }
+    return messages;
+  }
+  bool can_read(std::span<const std::uint8_t> message) const override {
+    return decode_report(message).has_value();
   }
 
  private:
@@ -45,6 +60,14 @@ class Ping360Head final : public Head {
     DeviceConfig config;
     config.plays_back = mode.plays_back;
     config.simulated_time = mode.simulated_time;
+    if (mode.options != 0) {
+      config.serial_channel = serial_channel;
+      config.fan_out = (mode.options & 1) != 0 ? FanOut::all : FanOut::requester;
+      config.signed_scan_angles = (mode.options & 2) != 0;
+      config.clamps_scan_to_stop = (mode.options & 4) != 0;
+      config.time_scale = mode.options % 3;
+      config.reset_silence = std::chrono::milliseconds(mode.options);
+    }
     return config;
   }
   static Transducer ping_ahead() {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // No bytes from a peer make the head grow, stall or send without end. No missing peer stops it.
-#include <random>
-
 #include "bench.hpp"
 
 namespace sonard::micron {
@@ -82,51 +80,6 @@ TEST(Robustness, FloodOfCommandsIsBoundedInOutput) {
   EXPECT_EQ(bench.all<HeadData>().size(), 4U) << "a head that is told anew all the time never gets ready";
   bench.run_for(2s);
   EXPECT_EQ(bench.all<HeadData>().size(), 8U);
-}
-
-TEST(Robustness, RandomBytesAtRandomTimes) {
-  const char* names[] = {"send_data",
-                         "send_data",
-                         "send_data",
-                         "send_version",
-                         "head_command_ros",
-                         "head_command_rock",
-                         "head_command_uxv",
-                         "gain",
-                         "reverse",
-                         "send_bb_user",
-                         "reboot"};
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    std::mt19937 random(seed);
-    const auto draw = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
-    DeviceConfig config;
-    config.half_duplex = draw(2) == 0;
-    config.requests_survive_head_command = draw(2) == 0;
-    config.nibble_order = draw(2) == 0 ? NibbleOrder::high_first : NibbleOrder::low_first;
-    Bench bench(config);
-    bench.render_time = std::chrono::milliseconds(draw(60));
-    for (int i = 0; i < 2000; ++i) {
-      Bytes bytes = fixture(names[draw(draw(30) == 0 ? 11 : 10)]);
-      for (unsigned flips = draw(3) == 0 ? draw(4) : 0; flips > 0; --flips) {
-        bytes[draw(static_cast<unsigned>(bytes.size()))] = static_cast<std::uint8_t>(draw(256));
-      }
-      if (draw(10) == 0) {
-        bytes.resize(draw(static_cast<unsigned>(bytes.size() + 1)));
-      }
-      bench.raw(bytes);
-      bench.renderer_fails = draw(10) == 0;
-      if (draw(100) == 0) {
-        bench.step(ClientGone{});
-      }
-      bench.run_for(std::chrono::microseconds(draw(100) == 0 ? draw(5'000'000) : draw(50'000)));
-    }
-    const DeviceCounters& counters = bench.device.counters();
-    EXPECT_GT(counters.pings_sent, 10U);
-    const std::uint64_t ended = counters.pings_sent + counters.pings_failed + counters.pings_cancelled;
-    EXPECT_LE(ended, counters.pings_started);
-    EXPECT_GE(ended + 1, counters.pings_started);
-    EXPECT_EQ(bench.all<HeadData>().size(), counters.pings_sent) << "all of it can be decoded";
-  }
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // No bytes from a peer make the head grow, stall or send without end. No missing peer stops it.
-#include <random>
-
 #include "bench.hpp"
 
 namespace sonard::ping360 {
@@ -87,54 +85,6 @@ TEST(Ping360Robustness, RefusalsAreToldOnceInTheLog) {
   }
   EXPECT_EQ(bench.all<Nack>().size(), 100U);
   EXPECT_EQ(bench.notices.size(), 2U) << "connected, refused";
-}
-
-TEST(Ping360Robustness, RandomBytesAtRandomTimes) {
-  const char* names[] = {"transducer",
-                         "transducer_brping",
-                         "transducer_pnarvor",
-                         "auto_transmit",
-                         "auto_transmit",
-                         "request_device_data",
-                         "motor_off",
-                         "set_device_id",
-                         "device_data",
-                         "request_device_information",
-                         "reset"};
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    std::mt19937 random(seed);
-    const auto draw = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
-    DeviceConfig config = with_serial_line();
-    config.fan_out = draw(2) == 0 ? FanOut::all : FanOut::requester;
-    config.signed_scan_angles = draw(2) == 0;
-    config.clamps_scan_to_stop = draw(2) == 0;
-    config.time_scale = draw(3);
-    config.reset_silence = std::chrono::milliseconds(draw(1000));
-    Bench bench(config);
-    bench.render_time = std::chrono::milliseconds(1 + draw(60));
-    const Peer peers[] = {client_a, client_b, serial_client};
-    for (int i = 0; i < 2000; ++i) {
-      Bytes bytes = fixture(names[draw(draw(30) == 0 ? 11 : 10)]);
-      for (unsigned flips = draw(3) == 0 ? draw(4) : 0; flips > 0; --flips) {
-        bytes[draw(static_cast<unsigned>(bytes.size()))] = static_cast<std::uint8_t>(draw(256));
-      }
-      if (draw(10) == 0) {
-        bytes.resize(draw(static_cast<unsigned>(bytes.size() + 1)));
-      }
-      bench.raw(bytes, peers[draw(3)]);
-      bench.renderer_fails = draw(10) == 0;
-      if (draw(100) == 0) {
-        bench.step(ClientGone{peers[draw(3)]});
-      }
-      bench.run_for(std::chrono::microseconds(draw(100) == 0 ? draw(2'000'000) : draw(100'000)));
-    }
-    const DeviceCounters& counters = bench.device.counters();
-    EXPECT_GT(counters.pings_sent, 10U);
-    const std::uint64_t ended = counters.pings_sent + counters.pings_failed + counters.pings_cancelled;
-    EXPECT_LE(ended, counters.pings_started);
-    EXPECT_GE(ended + 1, counters.pings_started);
-    EXPECT_EQ(bench.records.size(), counters.pings_sent);
-  }
 }
 
 }  // namespace
