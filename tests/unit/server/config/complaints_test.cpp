@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the loader says about configurations: the cases of complaints.txt.
+// What the loader says about configurations: the cases of complaints.txt here and in the folders of devices.
+#include <filesystem>
 #include <fstream>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -36,9 +36,12 @@ void add_line(ComplaintCase& one, const std::string& line) {
     return;
   }
   if (line[0] != '|' && one.text.empty()) {
-    one.text = minimal_config;
+    const std::size_t first_head = minimal_config.find("  - ");
+    one.text = minimal_config.substr(0, line[0] == '-' ? first_head : std::string::npos);
   }
-  if (line[0] == '~') {
+  if (line[0] == '-') {
+    one.text += "  - " + rest + "\n";
+  } else if (line[0] == '~') {
     const std::size_t arrow = rest.find(" -> ");
     one.text.replace(one.text.find(rest.substr(0, arrow)), arrow, rest.substr(arrow + 4));
   } else if (rest == "<minimal>") {
@@ -52,18 +55,18 @@ void add_line(ComplaintCase& one, const std::string& line) {
   }
 }
 
-std::vector<ComplaintCase> complaint_cases() {
-  std::ifstream file{SONARD_SOURCE_DIR "/tests/unit/server/config/complaints.txt"};
-  std::vector<ComplaintCase> cases;
+void add_cases(std::vector<ComplaintCase>& cases, const std::filesystem::path& path) {
+  std::ifstream file{path};
   std::string group;
-  std::map<std::string, int> counts;
+  int number = 0;
   bool in_case = false;
   for (std::string line; std::getline(file, line);) {
     if (line.starts_with('[')) {
       group = line.substr(1, line.size() - 2);
+      number = 0;
     } else if (!line.starts_with('#')) {
       if (!line.empty() && !in_case) {
-        cases.push_back({fmt::format("{}_{}", group, ++counts[group]), "", {}});
+        cases.push_back({fmt::format("{}_{}", group, ++number), "", {}});
       }
       in_case = !line.empty();
       if (in_case) {
@@ -71,15 +74,26 @@ std::vector<ComplaintCase> complaint_cases() {
       }
     }
   }
-  if (cases.empty()) {
-    throw std::runtime_error{"complaints.txt has no case"};
+}
+
+/// The cases of this folder and of the devices.
+std::vector<ComplaintCase> complaint_cases() {
+  const std::filesystem::path folder{SONARD_SOURCE_DIR "/tests/unit/server"};
+  std::vector<ComplaintCase> cases;
+  add_cases(cases, folder / "config/complaints.txt");
+  for (const auto& device : std::filesystem::directory_iterator(folder / "devices")) {
+    add_cases(cases, device.path() / "complaints.txt");
   }
   return cases;
 }
 
+TEST(ComplaintCases, AreFound) {
+  EXPECT_GT(complaint_cases().size(), 180U);
+}
+
 class Complaints : public ConfigFolder, public testing::WithParamInterface<ComplaintCase> {};
 
-TEST_P(Complaints, AreThoseOfTheFile) {
+TEST_P(Complaints, AreThoseOfTheTable) {
   const std::vector<std::string> lines = complaints(GetParam().text);
   const std::vector<std::string>& patterns = GetParam().complaints;
   ASSERT_EQ(lines.size(), patterns.size()) << fmt::format("{}", fmt::join(lines, "\n"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values and errors of the loader for a head of type oculus.
+// Values and warnings of the loader for a head of type oculus.
 #include "server/devices/oculus/section.hpp"
 
 #include <chrono>
@@ -15,7 +15,6 @@ namespace sonard::server {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -122,22 +121,6 @@ TEST_F(OculusSection, AnAbsorptionThatIsSetHoldsAtBothFrequencies) {
   EXPECT_NEAR(device_settings<OculusConfig>(head).modes[1].absorption_db_per_m, 0.15, 1e-12);
   const OculusConfig computed = device_settings<OculusConfig>(read(with_network()));
   EXPECT_GT(computed.modes[1].absorption_db_per_m, 1.5 * computed.modes[0].absorption_db_per_m);
-}
-
-TEST_F(OculusSection, SaysWhatIsWrong) {
-  const auto said = [this](const std::string& head) { return complaints(document(head)); };
-  EXPECT_THAT(said("model: m750d"), Contains(HasSubstr("network")));
-  EXPECT_THAT(said("network: {netmask: 255.0.0.0}"), Contains(HasSubstr("address")));
-  EXPECT_THAT(said("network: {address: 127.0.0.0, netmask: 255.0.0.0}"),
-              Contains(HasSubstr("is the first address of its network")));
-  EXPECT_THAT(said("network: {address: 127.0.0.3, netmask: 255.0.255.0}"),
-              Contains(HasSubstr("is not a netmask")));
-  EXPECT_THAT(said(with_network("model: m3000d")), Contains(HasSubstr("m3000d")));
-  EXPECT_THAT(said(with_network("device_id: 0")), Contains(HasSubstr("device_id")));
-  EXPECT_THAT(said(with_network("acoustics: {high_frequency: {aperture_deg: 171}}")),
-              Contains(HasSubstr("aperture_deg")));
-  EXPECT_THAT(said(with_network("firmware: {most_ranges: 9000}")), Contains(HasSubstr("most_ranges")));
-  EXPECT_THAT(said(with_network("firmware: {pitch: up}")), Contains(HasSubstr("nose_up")));
 }
 
 }  // namespace
