@@ -1,39 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """A daemon with heads of type oculus on a machine of its own (a network namespace), and its clients."""
 
-import argparse
 import os
 import re
 import select
 import socket
 import sys
-import tempfile
-import unittest
-import uuid
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
-sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests", "support")]
+sys.path[:0] = [os.path.join(SOURCE, "tests", "support")]
+import head_case  # noqa: E402
 import messages  # noqa: E402
 from example_messages import example  # noqa: E402
-from lab import Deadline, Namespace, Program, need  # noqa: E402
+from head_case import PATIENCE_S, WORLD, main  # noqa: E402
+from lab import Deadline  # noqa: E402
 
 DEMO = os.path.join(SOURCE, "configs", "demo-oculus.yaml")
-WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
-START_S = 60
-PATIENCE_S = 30  # for what has no time of its own
 STATUS_PORT = 52102
 TOO_SLOW = r"\d+ messages were dropped: the client reads too slowly"
 
-CONFIG = """
-engine: cpu
-world: {{file: {world}}}
-water: {{temperature_c: 18, salinity_ppt: 35, depth_m: 10}}
-poses: {{initial: {{position_m: [0, 0, 0]}}}}
-{more}
-heads:
-{heads}
-"""
+CONFIG = head_case.CONFIG + "water: {{temperature_c: 18, salinity_ppt: 35, depth_m: 10}}\n"
 
 
 def tcp_client(machine, address, port=52100, receive_buffer=None):
@@ -105,49 +92,9 @@ class Client:
         self.connection.close()
 
 
-class HeadCase(unittest.TestCase):
-    """One daemon for all cases of a class, because it starts slower than they run; each case has its own clients."""
-
-    PROGRAMS = None  # folder of the programs under test
-    HEADS = ""  # YAML
-    MORE = ""  # YAML beside the heads
+class HeadCase(head_case.HeadCase):
+    CONFIG = CONFIG
     ADDRESS = "127.0.0.3"
-
-    @classmethod
-    def setUpClass(cls):
-        need("ip")
-        folder = tempfile.TemporaryDirectory(prefix="sonard-oculus-")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = folder.name
-        cls.make_machines()
-        cls.daemon = cls.start_daemon()
-
-    @classmethod
-    def make_machines(cls):
-        cls.machine = cls.client_machine = Namespace("sonard-" + uuid.uuid4().hex[:8])
-        cls.addClassCleanup(cls.machine.remove)
-
-    @classmethod
-    def configuration(cls):
-        path = os.path.join(cls.folder, "sonard.yaml")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD, heads=cls.HEADS, more=cls.MORE))
-        return path
-
-    @classmethod
-    def start(cls, *arguments, machine=None):
-        program = Program((machine or cls.machine).command(*arguments), os.path.basename(arguments[0]))
-        cls.addClassCleanup(program.kill)
-        return program
-
-    @classmethod
-    def start_daemon(cls):
-        daemon = cls.start(os.path.join(cls.PROGRAMS, "sonard"), "run", cls.configuration())
-        daemon.wait_for_line("sonard ready", START_S)
-        return daemon
-
-    def tearDown(self):
-        self.assertNotRegex(self.daemon.output(), "Z (error|critical) ")
 
     def view(self, pings, *options):
         """Receives pings with sonarview. Returns its output. A busy machine may make it miss pings that the daemon counts as
@@ -188,12 +135,3 @@ class HeadCase(unittest.TestCase):
         made.settimeout(PATIENCE_S)
         self.addCleanup(made.close)
         return made
-
-
-def main():
-    """Runs the cases of the calling script."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
-    arguments, rest = parser.parse_known_args()
-    HeadCase.PROGRAMS = os.path.abspath(arguments.programs)
-    unittest.main(argv=[sys.argv[0], "-v", *rest])

@@ -1,36 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """A daemon with heads of type ping360 on a machine of its own (a network namespace), and its clients."""
 
-import argparse
 import os
 import select
 import sys
-import tempfile
 import tty
-import unittest
-import uuid
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
-sys.path[:0] = [os.path.join(HERE, "..", "gemini"), os.path.join(SOURCE, "tests", "support")]
+sys.path[:0] = [os.path.join(SOURCE, "tests", "support")]
+import head_case  # noqa: E402
 import messages  # noqa: E402
 from example_messages import example  # noqa: E402
-from lab import Deadline, Namespace, Program, need  # noqa: E402
+from head_case import PATIENCE_S, main  # noqa: E402
+from lab import Deadline  # noqa: E402
 
 DEMO = os.path.join(SOURCE, "configs", "demo-ping360.yaml")
-WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
-START_S = 60
-PATIENCE_S = 30  # for what has no time of its own
 QUIET_S = 0.3  # that long nothing more comes
-
-CONFIG = """
-engine: cpu
-world: {{file: {world}}}
-poses: {{initial: {{position_m: [0, 0, 0]}}}}
-{more}
-heads:
-{heads}
-"""
 
 
 class Client:
@@ -137,50 +123,8 @@ class SerialClient(Client):
         os.close(self._file)
 
 
-class HeadCase(unittest.TestCase):
-    """One daemon for all cases of a class, because it starts slower than they run; each case has its own clients and leaves
-    the heads at rest."""
-
-    PROGRAMS = None  # folder of the programs under test
-    HEADS = ""  # YAML
-    MORE = ""  # YAML beside the heads
-
-    @classmethod
-    def setUpClass(cls):
-        need("ip")
-        folder = tempfile.TemporaryDirectory(prefix="sonard-ping360-")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = folder.name
-        cls.make_machines()
-        cls.daemon = cls.start_daemon()
-
-    @classmethod
-    def make_machines(cls):
-        cls.machine = Namespace("sonard-" + uuid.uuid4().hex[:8])
-        cls.addClassCleanup(cls.machine.remove)
-
-    @classmethod
-    def configuration(cls):
-        path = os.path.join(cls.folder, "sonard.yaml")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD, heads=cls.HEADS.replace("FOLDER", cls.folder),
-                                     more=cls.MORE.replace("FOLDER", cls.folder)))
-        return path
-
-    @classmethod
-    def start(cls, *arguments, machine=None):
-        program = Program((machine or cls.machine).command(*arguments), os.path.basename(arguments[0]))
-        cls.addClassCleanup(program.kill)
-        return program
-
-    @classmethod
-    def start_daemon(cls):
-        daemon = cls.start(os.path.join(cls.PROGRAMS, "sonard"), "run", cls.configuration())
-        daemon.wait_for_line("sonard ready", START_S)
-        return daemon
-
-    def tearDown(self):
-        self.assertNotRegex(self.daemon.output(), "Z (error|critical) ")
+class HeadCase(head_case.HeadCase):
+    """Each case leaves the heads at rest."""
 
     def client(self, port=12345, address="127.0.0.1", machine=None, own="127.0.0.1", **settings):
         socket = (machine or self.machine).udp_socket(own, 0)
@@ -217,12 +161,3 @@ class HeadCase(unittest.TestCase):
         transmits = getattr(command, "transmit", 1) != 0
         self.assertEqual(len(data.data), command.samples if transmits else 0)
         return data
-
-
-def main():
-    """Runs the cases of the calling script."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--programs", required=True, help="folder with sonard and sonarview")
-    arguments, rest = parser.parse_known_args()
-    HeadCase.PROGRAMS = os.path.abspath(arguments.programs)
-    unittest.main(argv=[sys.argv[0], "-v", *rest])
