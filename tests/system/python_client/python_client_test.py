@@ -29,7 +29,7 @@ sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system",
 from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
 from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
-from sonard_client import micron  # noqa: E402
+from sonard_client import gemini, micron  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
@@ -197,6 +197,29 @@ heads:
     serial: {{tcp: [{{bind: 127.0.0.1:4001}}]}}
     device: {{duplex: {duplex}}}
 """
+
+
+class GeminiBytes(unittest.TestCase):
+    """Uses the worked examples of docs/protocols/gemini.md 10 (tests/data/gemini/messages.json)."""
+
+    def test_a_configuration_is_that_of_an_early_client(self):
+        theirs = example("gemini", "ping_config")
+        ours = gemini._ping_config(601, 4.0, 50, 1499.2, 0, 8, None)
+        self.assertEqual(ours[:24] + theirs[24:28] + ours[28:], theirs, "all but the time between pings")
+
+    def test_a_ping_has_the_fields_and_samples_of_its_datagrams(self):
+        head, line = (messages("gemini")[name] for name in ("ping_head", "ping_line"))
+        fields = head["fields"]["ping_head"]
+        ping = gemini._Arriving(head["bytes"])
+        self.assertEqual((ping.ping_id, ping.transmit_us, ping.beams, ping.rle, ping.compression, ping.count),
+                         (fields["ping_id"], fields["transmit_time_us"], fields["beams"], fields["rle_threshold"],
+                          fields["range_compression"], head["wireshark"]["ping_head.lines"]))
+        ping.add(line["bytes"])
+        self.assertEqual(ping.gaps(), [(1, ping.count - 1)])
+        self.assertEqual(ping.samples()[0].tobytes().hex(), "".join(line["fields"]["ping_line"]["data"]))
+        self.assertFalse(ping.tail)
+        ping.add(example("gemini", "ping_tail"))
+        self.assertTrue(ping.tail)
 
 
 class MicronBytes(unittest.TestCase):
