@@ -527,16 +527,6 @@ TEST_F(Loader, LetsHeadsOfTwoKindsHaveTheSameId) {
   }
 }
 
-TEST_F(Loader, LetsHeadsOfTwoLinesBeTheSameNodeButNotHaveTheSameTerminal) {
-  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
-                         micron_of("b", 2, "pty: [{link: b}, {}]")),
-              IsEmpty());
-  EXPECT_THAT(complaints(minimal_config + micron_of("a", 2, "pty: [{link: a}, {}]") +
-                         micron_of("b", 3, "pty: [{link: b}, {link: ./a}, {}]")),
-              ElementsAre(HasSubstr("config.yaml:12:43: heads[2].serial.pty: '" + (folder_ / "a").string() +
-                                    "' is already used by heads[1] (expected a unique value)")));
-}
-
 TEST_F(Loader, KnowsTheSocketsOfAllInputsAndHeadsByTheirTransport) {
   const std::string text =
       "world: {file: world.sdf}\n"
