@@ -23,7 +23,7 @@ std::string_view name_of(EngineKind engine);
 /// The GPU that engine `gpu` uses, and its limits.
 struct GpuOptions {
   /// An index in the list of `sonard selftest`, or part of a name in it, in any case; empty: the best GPU.
-  std::string device;
+  std::string device{};
   /// Limit of video memory for meshes and normal maps, MiB, > 0.
   std::uint64_t memory_mib = 4096;
   /// Seconds from the loss of the GPU to the next attempt, > 0; 0: no attempt.
@@ -32,8 +32,11 @@ struct GpuOptions {
   std::uint64_t lose_context_at_image = 0;
   /// For the benchmark: fills PingStatistics::gpu_stages_ms, of one ping at a time.
   bool time_stages = false;
-  /// For the benchmark: GpuSlices::Options::group and segments; 0: as usual.
-  int group = 0, segments = 0;
+  /// For the benchmark: invocations of a group, each with a piece of the sweep; 0: as many as suit the
+  /// device.
+  int group = 0;
+  /// For the benchmark: segments of a slice that are seen at a time; 0: as many as every OpenGL has room for.
+  int segments = 0;
 };
 
 struct RendererOptions {

@@ -170,7 +170,6 @@ std::vector<Candidate> candidates(int drawn, unsigned seed) {
     SliceAccuracy set = exact;
     const double rank = std::normal_distribution<double>(6.5 - 3.0 * along, 1.5)(random);
     set.most_divisions = divisions.at(static_cast<std::size_t>(std::clamp(rank, 0.0, 7.0)));
-    set.first_in_five = std::bernoulli_distribution(std::clamp(along, 0.0, 0.7))(random);
     set.disagreement = between(exact.disagreement, coarse.disagreement);
     set.shift_lines = between(exact.shift_lines, coarse.shift_lines);
     set.sagitta_lines = between(exact.sagitta_lines, coarse.sagitta_lines);
@@ -187,7 +186,6 @@ std::vector<Candidate> candidates(int drawn, unsigned seed) {
 ordered_json parameters(const SliceAccuracy& set) {
   return {{"most_divisions", set.most_divisions},
           {"most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes},
-          {"first_in_five", set.first_in_five},
           {"disagreement", set.disagreement},
           {"shift_lines", set.shift_lines},
           {"sagitta_lines", set.sagitta_lines},
@@ -203,7 +201,6 @@ SliceAccuracy accuracy_of(const nlohmann::json& row) {
   const auto read = [&](const char* key, auto& value) { row.at(key).get_to(value); };
   read("most_divisions", set.most_divisions);
   read("most_divisions_of_lone_echoes", set.most_divisions_of_lone_echoes);
-  read("first_in_five", set.first_in_five);
   read("disagreement", set.disagreement);
   read("shift_lines", set.shift_lines);
   read("sagitta_lines", set.sagitta_lines);

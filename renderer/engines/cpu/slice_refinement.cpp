@@ -185,9 +185,8 @@ std::vector<int> SliceSampler::choose_parts(const Setting& setting) {
   const std::vector<float> ensonified = ensonified_by_beam(setting);
   const std::vector<float> in_error = slices_in_error(setting);
   const SliceAccuracy& accuracy = setting.accuracy;
-  const slices::DivisionLimits limits{
-      accuracy.slices_per_beam, accuracy.most_divisions, accuracy.most_divisions_of_lone_echoes,
-      accuracy.first_in_five,   accuracy.disagreement,   accuracy.shift_lines};
+  const slices::DivisionLimits limits{accuracy.most_divisions, accuracy.most_divisions_of_lone_echoes,
+                                      accuracy.disagreement, accuracy.shift_lines};
   std::vector<int> parts(order_.size(), 1);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     SliceCell& cell = *cells_[order_[i]];

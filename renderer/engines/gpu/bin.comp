@@ -5,8 +5,8 @@
 // Sums are whole numbers (whole_numbers.glsl), so they depend on no order and are exactly 0 behind the last patch.
 // Additions wrap around. Only the sum of a line must fit, and it is at most the echo of a beam, 2^51 units. A single
 // number is at most 2^61: the whole echo of a beam in a thousandth of a line.
-layout(local_size_x = GROUP) in;
-
+#include "gpu/echoes.glsl"
+#include "gpu/whole_numbers.glsl"
 layout(std430, binding = 0) readonly buffer Slices { Slice slices[]; };
 layout(std430, binding = 1) readonly buffer PiecesOfSlices { SlicePieces of_slice[]; };
 layout(std430, binding = 2) buffer Counts { PingCounts counts; };
@@ -79,7 +79,7 @@ float distance_of(Place from, Place to) {
 struct Spread {
   Place a, b;
   float smear_a, smear_b;
-  float length;                  // before it is joined to the patch before
+  float extent;                  // before it is joined to the patch before
   float amount[2], gradient[2];  // echo and weight, in units
   bool is_finite;
   bool is_alone;  // shares no end: it lies beside others, or is widened
@@ -99,8 +99,8 @@ Spread spread_at(uint i, bool is_beside) {
   s.smear_b = smear_b;
   s.amount = float[2](amounts.x * echo.units_per_sr, amounts.y * echo.units_per_sr);
   s.gradient = float[2](amounts.z, amounts.w);
-  s.length = abs(distance_of(s.a, s.b));
-  s.is_alone = is_beside || !s.is_finite || s.length < 2.0 * least_spread;
+  s.extent = abs(distance_of(s.a, s.b));
+  s.is_alone = is_beside || !s.is_finite || s.extent < 2.0 * least_spread;
   return s;
 }
 
@@ -111,7 +111,7 @@ bool is_elsewhere_at(uint i) { return pieces[2u * i].x == is_elsewhere; }
 // `precise`: the invocations of both patches decide alike.
 bool is_joined(Spread before, Spread s) {
   precise float off = abs(before.smear_b - s.smear_a) * (1.0 + s.smear_a);
-  precise float most_off = min(0.02 * min(before.length, s.length), least_smear);
+  precise float most_off = min(0.02 * min(before.extent, s.extent), least_smear);
   return !before.is_alone && !s.is_alone && abs(distance_of(before.b, s.a)) < least_spread && off < most_off;
 }
 
@@ -246,26 +246,26 @@ void add_end(uint i) {
 
 void main() {
   uint number = group_number();
-  if (!has_slice(number, counts)) {
+  if (!has_slice(number, counts.needed)) {
     return;
   }
   begin = of_slice[number].first;
   end = begin + of_slice[number].count;
-  if (begin == end || counts.pieces > uint(ping.most_pieces)) {
+  if (begin == end || counts.needed.pieces > ping.room.pieces) {
     return;
   }
   beam = uint(slices[number].beam);
-  if (lane_number() == 0u) {
+  if (lane == 0u) {
     s_samples = s_invalid = s_additions = 0u;
   }
   additions = 0u;
   barrier();
-  for (uint i = begin + lane_number(); i <= end; i += GROUP) {
+  for (uint i = begin + lane; i <= end; i += GROUP) {
     add_end(i);
   }
   atomicAdd(s_additions, additions);
   barrier();
-  if (lane_number() == 0u) {
+  if (lane == 0u) {
     atomicAdd(counts.samples, s_samples);
     atomicAdd(counts.invalid, s_invalid);
     atomicAdd(counts.additions, s_additions);

@@ -4,30 +4,23 @@
 #include <fmt/format.h>
 #include <osg/State>
 
-#include "renderer/engines/gpu/gl_errors.hpp"
-#include "renderer/engines/gpu/gpu_readback.hpp"
-#include "renderer/engines/gpu/shaders.hpp"
-#include "renderer/errors.hpp"
+#include "renderer/engines/gpu/records.hpp"
 
 namespace sonard::render {
 
-Compute::Compute(EglContext& context, int group)
+Compute::Compute(EglContext& context, int group, bool time_stages)
     : context_(context),
       gl_(*osg::GLExtensions::Get(context.getState()->getContextID(), true)),
       group_(group > 0            ? group
              : context.software() ? 8
-                                  : 64) {}
+                                  : 64),
+      is_timed_(time_stages) {}
 
 osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* text,
                                           const std::string& defines) const {
-  std::string source = fmt::format("#version 430\n#define GROUP {}u\n", group_) + defines;
-  for (const char* common :
-       {shaders::language_glsl, shaders::cut_glsl, shaders::place_glsl, shaders::sweep_glsl,
-        shaders::sides_glsl, shaders::refine_glsl, shaders::ping_glsl}) {
-    source += common;
-  }
-  osg::ref_ptr<osg::Program> program = context_.build_program(
-      {new osg::Shader(osg::Shader::COMPUTE, source + text)}, name, {"Ping", "Echo", "Refinement"});
+  const std::string source = fmt::format("#version 430\n#define GROUP {}u\n", group_) + defines + text;
+  osg::ref_ptr<osg::Program> program = context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source)},
+                                                              name, {"PingBlock", "EchoBlock"});
   program->setName(name);
   return program;
 }
@@ -37,10 +30,7 @@ void Compute::use(const osg::ref_ptr<osg::Program>& program, Buffers blocks, Buf
   program->getPCP(*context_.getState())->useProgram();
   const auto bind = [this](GLenum target, Buffers all) {
     for (GLuint binding = 0; const GpuBuffer* buffer : all) {
-      if (buffer != nullptr) {
-        gl_.glBindBufferBase(target, binding, buffer->name());
-      }
-      ++binding;
+      gl_.glBindBufferBase(target, binding++, buffer->name());
     }
   };
   bind(GL_UNIFORM_BUFFER, blocks);
@@ -48,7 +38,7 @@ void Compute::use(const osg::ref_ptr<osg::Program>& program, Buffers blocks, Buf
 }
 
 void Compute::dispatch(std::size_t groups) const {
-  const std::size_t rows = (groups + most_groups - 1) / most_groups;
+  const std::size_t rows = (groups + records::most_groups - 1) / records::most_groups;
   if (groups > 0) {
     gl_.glDispatchCompute(static_cast<GLuint>((groups + rows - 1) / rows), static_cast<GLuint>(rows), 1);
   }
@@ -98,17 +88,6 @@ std::map<std::string, double> Compute::take_stages_ms() const {
   }
   stamps_.clear();
   return stages_ms;
-}
-
-void Compute::read_bytes(const GpuBuffer& buffer, std::span<std::byte> bytes) const {
-  gl_.glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  GpuReadback readback(gl_);
-  readback.ask({{buffer, bytes.size()}});
-  if (!readback.wait(
-          [&](std::span<const std::byte> got) { std::memcpy(bytes.data(), got.data(), got.size()); })) {
-    throw RendererError("the OpenGL context is lost");
-  }
-  check_gl_errors("computing slices");
 }
 
 }  // namespace sonard::render

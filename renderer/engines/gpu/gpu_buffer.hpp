@@ -2,9 +2,7 @@
 // Buffers of the GPU for compute shaders.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,9 +11,6 @@
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
-
-/// Groups of a compute shader in one row of a dispatch; every OpenGL allows as many.
-inline constexpr std::size_t most_groups = 65535;
 
 /// Its context must be current when it is made, used and deleted.
 class GpuBuffer {
@@ -35,7 +30,7 @@ class GpuBuffer {
   void hold(std::size_t bytes) {
     if (bytes_ < bytes) {
       allocate(bytes, GL_DYNAMIC_COPY);
-      clear_with(bytes, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
+      clear(bytes);
     }
   }
   /// Replaces the buffer by one of `bytes` with any contents.
@@ -58,27 +53,21 @@ class GpuBuffer {
     gl_.glBufferSubData(GL_SHADER_STORAGE_BUFFER, static_cast<GLintptr>(first_byte),
                         static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
   }
-  std::size_t bytes() const { return bytes_; }
-  void bind(unsigned binding) const { gl_.glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
-  /// Sets the first `bytes` to a pattern of two words.
-  void clear(std::size_t bytes, const std::array<std::uint32_t, 2>& words) {
-    select();
-    clear_with(bytes, GL_RG32UI, GL_RG_INTEGER, GL_UNSIGNED_INT, words.data());
-  }
-  GLuint name() const { return name_; }
-  void bind_to_copy() const { gl_.glBindBuffer(GL_COPY_READ_BUFFER, name_); }
-
- private:
-  void clear_with(std::size_t bytes, GLenum internal_format, GLenum format, GLenum type,
-                  const void* pattern) {
+  /// Sets the first `bytes` to 0.
+  void clear(std::size_t bytes) {
     // OpenSceneGraph does not load this function.
     using ClearBufferSubData =
         void(GL_APIENTRY*)(GLenum, GLenum, GLintptr, GLsizeiptr, GLenum, GLenum, const void*);
     static const auto clear =
         reinterpret_cast<ClearBufferSubData>(osg::getGLExtensionFuncPtr("glClearBufferSubData"));
-    clear(GL_SHADER_STORAGE_BUFFER, internal_format, 0, static_cast<GLsizeiptr>(bytes), format, type,
-          pattern);
+    select();
+    clear(GL_SHADER_STORAGE_BUFFER, GL_R8UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
+          GL_UNSIGNED_BYTE, nullptr);
   }
+  std::size_t bytes() const { return bytes_; }
+  GLuint name() const { return name_; }
+
+ private:
   void select() const { gl_.glBindBuffer(GL_SHADER_STORAGE_BUFFER, name_); }
 
   osg::GLExtensions& gl_;

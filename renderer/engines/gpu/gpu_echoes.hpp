@@ -4,62 +4,55 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "renderer/binning/binning.hpp"
 #include "renderer/engines/gpu/compute.hpp"
+#include "renderer/engines/gpu/gpu_ping.hpp"
+#include "renderer/engines/gpu/gpu_surfaces.hpp"
 #include "renderer/engines/gpu/ping_buffers.hpp"
+#include "renderer/engines/slices/elevation_pattern.hpp"
 #include "renderer/engines/slices/part_surface.hpp"
-#include "renderer/engines/slices/slice_accuracy.hpp"
-#include "renderer/sonar_settings.hpp"
-#include "renderer/surface/surface_model.hpp"
 
 namespace sonard::render {
-
-class GpuSurfaces;
 
 /// The surfaces of a world on the GPU, and the shaders for their echoes. The context must be current in every
 /// call. All state of a ping is in its PingBuffers, so that several pings can be in flight.
 class GpuEchoes {
  public:
   /// @param compute must outlive it
-  explicit GpuEchoes(const Compute& compute);
-  ~GpuEchoes();
-  GpuEchoes(const GpuEchoes&) = delete;
-  GpuEchoes& operator=(const GpuEchoes&) = delete;
+  explicit GpuEchoes(const Compute& compute) : compute_(compute), surfaces_(compute.gl()) {}
 
-  /// Uploads what shades the parts that a fan may see: materials, vertex normals, normal maps.
-  /// @param version changes with the surfaces
-  void hold_surfaces(const std::vector<PartSurface>& surfaces, std::size_t version,
-                     const std::vector<bool>& may_be_seen);
-  const GpuSurfaces& surfaces() const;
+  /// What shades the parts that a fan may see; hold them before make().
+  GpuSurfaces& surfaces() { return surfaces_; }
 
-  struct Setting {
-    const Aperture& aperture;
-    const RangeBins& range;
-    const SurfaceModel& surface;
-    const SliceAccuracy& accuracy;  ///< without within_facets: masks are made by engine `cpu`
-    const BinningOptions& options;  ///< footprints and beams by azimuth only
-  };
   /// Lets the GPU make the image of a ping and read it back. Does not wait.
-  /// @param ping with the visible segments of its slices; slices that are divided have no echo
-  /// @param placed the surfaces of hold_surfaces(), with their poses in this ping
+  /// @param in has the visible segments of its slices; slices that are divided have no echo
+  /// @param placed the surfaces of GpuSurfaces::hold(), with their poses in this ping
   /// @throws RendererError if a shader does not build
-  void make(PingBuffers& ping, const std::vector<PartSurface>& placed, const Setting& setting);
+  /// @param ping with footprints and beams by azimuth only
+  void make(PingBuffers& in, const std::vector<PartSurface>& placed, const GpuPing& ping);
 
   /// Waits for the result of make().
-  /// @param setting of make()
+  /// @param ping of make()
   /// @param memory reused for BinningResult::echo, with any contents
   /// @return nullopt if a buffer was too small: repeat the ping, which has more room now
   /// @throws RendererError if the context is lost
-  std::optional<BinningResult> take(PingBuffers& ping, const Setting& setting,
-                                    std::vector<float> memory) const;
+  static std::optional<BinningResult> take(PingBuffers& in, const GpuPing& ping, std::vector<float> memory);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  const osg::ref_ptr<osg::Program>& program(const std::string& name, const char* text,
+                                            const std::string& defines);
+  const ElevationPattern& pattern_of(const GpuPing& ping);
+
+  const Compute& compute_;
+  std::map<std::string, osg::ref_ptr<osg::Program>> programs_;  ///< by name and macros, built when first used
+  GpuSurfaces surfaces_;
+  // The pattern of the last ping; it takes as long as a narrow ping.
+  Aperture patterned_;  ///< the aperture without beams
+  std::optional<ElevationPattern> pattern_;
 };
 
 }  // namespace sonard::render

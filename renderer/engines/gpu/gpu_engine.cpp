@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "renderer/engines/gpu/gpu_meshes.hpp"
-#include "renderer/engines/gpu/gpu_surfaces.hpp"
 #include "renderer/engines/slices/first_slices.hpp"
 #include "renderer/errors.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
@@ -17,16 +15,10 @@ namespace sonard::render {
 
 namespace {
 
-GpuSlices::Options slice_options(const GpuOptions& options) {
-  GpuSlices::Options of_slices{.memory_mib = options.memory_mib, .time_stages = options.time_stages};
-  of_slices.group = options.group > 0 ? options.group : of_slices.group;
-  of_slices.segments = options.segments > 0 ? options.segments : of_slices.segments;
-  return of_slices;
-}
-
 GpuWork work_of(const PingCounts& counts, std::uint64_t dispatches) {
-  return {dispatches,    counts.triangles, counts.entries, counts.rounds,
-          counts.slices, counts.segments,  counts.visible, counts.additions};
+  const records::Room& needed = counts.needed;
+  return {dispatches,    needed.triangles, needed.entries, counts.rounds,
+          needed.slices, counts.segments,  needed.visible, counts.additions};
 }
 
 World drawn_world(const World& world, const RendererOptions& options) {
@@ -45,7 +37,7 @@ GpuEngine::GpuEngine(const World& world, WorkerPool& workers, const RendererOpti
       context_(EglContext::made_current(options.gpu.device)),
       description_("gpu, " + context_->describe()),
       world_(drawn_, slice_switches(options)),
-      slices_(*context_, slice_options(options.gpu)),
+      slices_(*context_, options.gpu),
       echoes_(slices_.compute()) {}
 
 GpuEngine::~GpuEngine() {
@@ -92,36 +84,7 @@ void GpuEngine::images(std::span<const EchoJob> jobs) {
 struct GpuEngine::Ping {
   const EchoJob& job;
   PingBuffers& buffers;
-  BinningOptions options;
-  SurfaceModel surface;
-  SliceAccuracy accuracy;
-  Fan fan;
-  ProbeWeights weights;
-
-  Ping(const EchoJob& of, PingBuffers& in, const SkipSwitches& skip, float largest_response)
-      : job(of),
-        buffers(in),
-        options(binning_options(of.request, skip, largest_response)),
-        surface(surface_model(of.request.settings, skip)),
-        accuracy(slice_accuracy(of.request.settings.sampling, of.request.settings.model)),
-        fan(of.request.settings.aperture, of.request.settings.range.sampled_range_m()),
-        weights(probe_weights(of.request.settings.aperture, fan.tan_limit())) {}
-
-  GpuSlices::PingSetting seen(const Refraction& bend) const {
-    const RangeBins& range = job.request.settings.range;
-    return {.fan = fan,
-            .weights = weights,
-            .line_m = static_cast<float>(range.step_m),
-            .max_range_m = static_cast<float>(range.max_range_m()),
-            .accuracy = accuracy,
-            .bend = bend,
-            .two_sided = surface.two_sided,
-            .skip = options.skip};
-  }
-  GpuEchoes::Setting echoed() const {
-    const SonarSettings& settings = job.request.settings;
-    return {settings.aperture, settings.range, surface, accuracy, options};
-  }
+  GpuPing setting;
 };
 
 void GpuEngine::images_by_slices(std::span<const EchoJob> jobs) {
@@ -135,7 +98,7 @@ void GpuEngine::images_by_slices(std::span<const EchoJob> jobs) {
   std::vector<Ping> pings;
   pings.reserve(jobs.size());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    pings.emplace_back(jobs[i], *buffers_[i], skip_, largest_response_);
+    pings.push_back({jobs[i], *buffers_[i], {jobs[i].request, skip_, largest_response_}});
   }
   std::ranges::for_each(pings, [&](Ping& ping) { begin(ping); });
   std::ranges::for_each(pings, [&](Ping& ping) { finish(ping); });
@@ -150,14 +113,15 @@ void GpuEngine::begin(Ping& ping) {
   const std::uint64_t dispatched_before = slices_.compute().dispatches();
   slices_.compute().begin_stages();
   world_.place(ping.job.request.T_world_sonar);
-  GpuSlices::PingSetting setting = ping.seen(world_.bend());
+  GpuPing& setting = ping.setting;
+  setting.bend = world_.bend();
   setting.may_be_seen = GpuSlices::may_be_seen(world_.parts(), setting);
-  echoes_.hold_surfaces(world_.surfaces(), world_.version(), setting.may_be_seen);
+  echoes_.surfaces().hold(world_.surfaces(), world_.version(), setting.may_be_seen);
   setting.surface_bytes = echoes_.surfaces().bytes();
   slices_.find(ping.buffers, world_.parts(), setting);
   slices_.see(ping.buffers, setting);
   statistics.visibility_s += watch.lap();
-  echoes_.make(ping.buffers, world_.surfaces(), ping.echoed());
+  echoes_.make(ping.buffers, world_.surfaces(), setting);
   statistics.binning_s += watch.lap();
   statistics.gpu_work.dispatches += slices_.compute().dispatches() - dispatched_before;
   statistics.bytes_uploaded += slices_.meshes().bytes_uploaded() - uploaded_before;
@@ -175,7 +139,7 @@ void GpuEngine::finish(Ping& ping) {
     if (tries > 0) {
       begin(ping);
     }
-    result = echoes_.take(ping.buffers, ping.echoed(), std::move(echo.image.intensity));
+    result = GpuEchoes::take(ping.buffers, ping.setting, std::move(echo.image.intensity));
     ++statistics.synchronisations;
     ++statistics.passes;
   }

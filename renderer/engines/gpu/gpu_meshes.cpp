@@ -4,28 +4,21 @@
 #include <set>
 
 #include "renderer/engines/gpu/gl_errors.hpp"
+#include "renderer/engines/gpu/records.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-// Records of place.comp.
-
-struct TriangleRecord {
-  std::uint32_t corners, mesh_triangle, shell;
-};
-
-struct ClusterRecord {
-  float x, y, z, radius_m;
-  std::uint32_t first_vertex, vertex_count, first_triangle, triangle_count;
-};
+using records::Cluster;
+using records::ClusterTriangle;
 
 constexpr std::size_t vertex_bytes = 3 * sizeof(float);
 
 }  // namespace
 
 std::uint64_t GpuMeshes::Sizes::bytes() const {
-  return vertices * vertex_bytes + triangles * sizeof(TriangleRecord) + clusters * sizeof(ClusterRecord);
+  return vertices * vertex_bytes + triangles * sizeof(ClusterTriangle) + clusters * sizeof(Cluster);
 }
 
 bool GpuMeshes::Sizes::within(const Sizes& room) const {
@@ -68,8 +61,8 @@ void GpuMeshes::start_again(const Sizes& needed, std::uint64_t beside_bytes) {
   used_ = {};
   held_.clear();
   vertices_.allocate(room_.vertices * vertex_bytes);
-  triangles_.allocate(room_.triangles * sizeof(TriangleRecord));
-  clusters_.allocate(room_.clusters * sizeof(ClusterRecord));
+  triangles_.allocate(room_.triangles * sizeof(ClusterTriangle));
+  clusters_.allocate(room_.clusters * sizeof(Cluster));
 }
 
 std::uint32_t GpuMeshes::upload(const MeshClusters& mesh) {
@@ -77,13 +70,13 @@ std::uint32_t GpuMeshes::upload(const MeshClusters& mesh) {
   for (std::size_t v = 0; v < mesh.x.size(); ++v) {
     vertices.insert(vertices.end(), {mesh.x[v], mesh.y[v], mesh.z[v]});
   }
-  std::vector<TriangleRecord> triangles;
+  std::vector<ClusterTriangle> triangles;
   for (std::size_t t = 0; t < mesh.mesh_triangle.size(); ++t) {
     const std::uint32_t corners = mesh.corners[0][t] | std::uint32_t{mesh.corners[1][t]} << 8U |
                                   std::uint32_t{mesh.corners[2][t]} << 16U;
     triangles.push_back({corners, mesh.mesh_triangle[t], mesh.shell[t]});
   }
-  std::vector<ClusterRecord> clusters;
+  std::vector<Cluster> clusters;
   const auto vertex = static_cast<std::uint32_t>(used_.vertices),
              triangle = static_cast<std::uint32_t>(used_.triangles);
   for (const MeshClusters::Cluster& c : mesh.clusters) {
@@ -91,8 +84,8 @@ std::uint32_t GpuMeshes::upload(const MeshClusters& mesh) {
                         c.vertex_count, triangle + c.first_triangle, c.triangle_count});
   }
   vertices_.write(vertices, used_.vertices * vertex_bytes);
-  triangles_.write(triangles, used_.triangles * sizeof(TriangleRecord));
-  clusters_.write(clusters, used_.clusters * sizeof(ClusterRecord));
+  triangles_.write(triangles, used_.triangles * sizeof(ClusterTriangle));
+  clusters_.write(clusters, used_.clusters * sizeof(Cluster));
   const auto first = static_cast<std::uint32_t>(used_.clusters);
   used_ = used_ + sizes_of(mesh);
   bytes_uploaded_ += sizes_of(mesh).bytes();

@@ -38,7 +38,7 @@ void GpuReadback::ask(const std::vector<Part>& parts) {
   }
   std::size_t at = 0;
   for (const Part& part : parts) {
-    part.buffer.bind_to_copy();
+    gl_.glBindBuffer(GL_COPY_READ_BUFFER, part.buffer.name());
     copy(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, static_cast<GLintptr>(at),
          static_cast<GLsizeiptr>(part.bytes));
     at += part.bytes;

@@ -3,345 +3,243 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include <fmt/format.h>
-#include <osg/Program>
 
-#include "renderer/engines/gpu/egl_context.hpp"
-#include "renderer/engines/gpu/gpu_meshes.hpp"
 #include "renderer/engines/gpu/shaders.hpp"
-#include "renderer/engines/slices/slice_math.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
 
 namespace {
 
-// Records of the shaders. In the layouts std140 and std430, numbers of four bytes lie one behind the other.
-
-struct PingRecord {
-  float tan_limit, sin_limit, cos_limit, max_range_m;
-  float port_x, port_y, starboard_x, starboard_y;
-  float port_rad, starboard_rad, upright_rad, widest_slice_rad;
-  float up_x, up_y, up_z, bend_per_m;
-  std::int32_t beams, clusters, parts;
-  std::int32_t is_convex;
-  std::int32_t two_sided, cull;
-  std::int32_t most_triangles, most_entries, most_visible, most_scratch, most_slices, most_pieces,
-      most_things, most_edges, padding[2];  // std140: blocks are padded to 16 bytes
-};
-
-struct PartRecord {
-  slices::Placement placement;
-  std::uint32_t first_hiding, is_tall, first_cluster, first_group;
-};
-
-struct BeamRecord {
-  float port_rad = 0.0F;
-  std::uint32_t count = 0, begin = 0, filled = 0;
-  float middle_rad = 0.0F, width_rad = 0.0F;
-  float cosine = 1.0F, sine = 0.0F;
-  std::uint32_t first_thing = 0, things = 0, ends = 0, first_edge = 0, edges = 0;
-  std::uint32_t first_slice = 0, slices = 0;
-  float port_mismatch = 0.0F, port_curvature = 0.0F, port_shift_lines = 0.0F;
-};
-
-struct ThingRecord {
-  float low_azimuth, high_azimuth, low_t, high_t;
-  std::uint32_t key;
-};
-
-struct EndRecord {
-  float azimuth;
-  std::uint32_t key, is_high;
-};
-
-struct EdgeRecord {
-  float offset_rad;
-  std::uint32_t count;
-  std::uint32_t probes[slices::side_probes / 32];
-};
-
-struct RoundRecord {
-  std::uint32_t groups = 0, one = 1, also_one = 1;
-  std::uint32_t first_slice = 0, slices = 0;
-};
-constexpr std::size_t most_slices_of_beam = 1023;
+using records::most_slices_of_beam;
+using records::side_probes;
 
 struct CountsRecord {
   PingCounts counts{};
-  RoundRecord rounds[GpuSlices::most_rounds];
+  records::Round rounds[records::most_rounds]{};
 };
 
-struct RefinementRecord {
-  std::int32_t slices_per_beam, most_divisions, most_divisions_of_lone_echoes, first_in_five;
-  float disagreement, shift_lines, padding[2];  // std140: structures are padded to 16 bytes
-  float line_m, max_range_m, sagitta_lines, more_padding;
-  ProbeWeights weights;
-};
-
-// What see.comp keeps of a visible segment until the segments are in order.
-constexpr std::size_t bytes_of_scratch = 16;
-
+constexpr int segments_at_a_time = 960;  // of a slice; they fit in 32 KiB, which every OpenGL has
 constexpr int room_for_waiting = 64;
 
 constexpr std::size_t groups_to_fill = 1024;  // of lists.comp, enough to occupy any GPU
 
 constexpr GLenum written_by_gpu = GL_DYNAMIC_COPY;  // so that drivers keep it in video memory
 
-std::int32_t as_int(std::size_t number) {
-  return static_cast<std::int32_t>(number);
+float narrow(double number) {
+  return static_cast<float>(number);
+}
+
+records::Ping record_of(const GpuPing& of) {
+  const Fan& fan = of.fan;
+  const double port = fan.edge_rad(0), starboard = fan.edge_rad(fan.beam_count());
+  const double limit = std::atan(static_cast<double>(fan.tan_limit()));
+  const SliceAccuracy& accuracy = of.accuracy;
+  records::Ping ping{};
+  ping.tan_limit = fan.tan_limit();
+  ping.sin_limit = narrow(std::sin(limit));
+  ping.cos_limit = narrow(std::cos(limit));
+  ping.max_range_m = fan.max_range_m();
+  ping.port_x = narrow(-std::sin(port));
+  ping.port_y = narrow(std::cos(port));
+  ping.starboard_x = narrow(std::sin(starboard));
+  ping.starboard_y = narrow(-std::cos(starboard));
+  ping.port_rad = narrow(port);
+  ping.starboard_rad = narrow(starboard);
+  ping.upright_rad = fan.upright_rad();
+  ping.widest_slice_rad = fan.widest_slice_rad();
+  ping.up_x = of.bend.up.x;
+  ping.up_y = of.bend.up.y;
+  ping.up_z = of.bend.up.z;
+  ping.bend_per_m = of.bend.per_m;
+  ping.division = {accuracy.most_divisions, accuracy.most_divisions_of_lone_echoes, accuracy.disagreement,
+                   accuracy.shift_lines};
+  ping.line_m = narrow(of.settings.range.step_m);
+  ping.bins_end_m = narrow(of.settings.range.max_range_m());
+  ping.sagitta_lines = accuracy.sagitta_lines;
+  ping.beams = fan.beam_count();
+  ping.is_convex = narrow(port - starboard) < slices::half_turn ? 1 : 0;
+  ping.two_sided = of.surface.two_sided ? 1 : 0;
+  ping.cull = of.options.skip.on(SkipRule::culled_clusters) ? 1 : 0;
+  std::ranges::copy(of.weights, ping.weights);
+  return ping;
+}
+
+std::vector<records::Beam> beams_of(const Fan& fan) {
+  std::vector<records::Beam> beams(static_cast<std::size_t>(fan.beam_count()) + 1);
+  for (int number = 0; number <= fan.beam_count(); ++number) {
+    records::Beam& beam = beams[static_cast<std::size_t>(number)];
+    const double port = fan.edge_rad(number);
+    beam.port_rad = narrow(port);
+    if (number < fan.beam_count()) {
+      const double width = port - fan.edge_rad(number + 1), middle = port - width / 2;
+      beam.middle_rad = narrow(middle);
+      beam.width_rad = narrow(width);
+      beam.cosine = narrow(std::cos(middle));
+      beam.sine = narrow(std::sin(middle));
+    }
+  }
+  return beams;
+}
+
+/// The first slices of a ping, and counts them in its beams.
+/// @throws RequestError if there are more than the shaders can count
+std::vector<GpuSlice> slices_of(const GpuPing& ping, std::vector<records::Beam>& beams) {
+  const Fan& fan = ping.fan;
+  const auto line_m = static_cast<double>(narrow(ping.settings.range.step_m));
+  std::vector<GpuSlice> all;
+  for (const FirstSlice& first : first_slices(fan, line_m, ping.accuracy)) {
+    records::Beam& beam = beams[static_cast<std::size_t>(first.beam)];
+    beam.first_slice = beam.slices == 0 ? static_cast<std::uint32_t>(all.size()) : beam.first_slice;
+    if (++beam.slices > most_slices_of_beam || all.size() == records::most_groups) {
+      throw RequestError(
+          fmt::format("this fan needs more than {} slices in beam {}, or {} in all: choose engine: cpu",
+                      most_slices_of_beam, first.beam + 1, records::most_groups));
+    }
+    const double middle = (fan.edge_rad(first.beam) + fan.edge_rad(first.beam + 1)) / 2;
+    GpuSlice& slice = all.emplace_back();
+    slice.cosine = narrow(std::cos(first.azimuth_rad));
+    slice.sine = narrow(std::sin(first.azimuth_rad));
+    slice.width_rad = narrow(first.width_rad);
+    slice.beam = first.beam;
+    slice.offset_rad = narrow(first.azimuth_rad - middle);
+  }
+  return all;
+}
+
+CountsRecord counts_of(const std::vector<GpuSlice>& slices) {
+  CountsRecord record;
+  record.counts.needed.slices = static_cast<std::uint32_t>(slices.size());
+  record.counts.rounds = 1;
+  for (records::Round& round : record.rounds) {
+    round.one = round.also_one = 1;
+  }
+  record.rounds[0].slices = record.counts.needed.slices;
+  record.rounds[0].groups = std::min(record.counts.needed.slices, records::most_groups);
+  return record;
+}
+
+void hold(PingBuffers& ping) {
+  const records::Room& room = ping.room;
+  ping.fan.hold(room.triangles * sizeof(GpuTriangle));
+  ping.lists.hold(room.entries * sizeof(std::uint32_t));
+  ping.visible.hold(room.visible * sizeof(GpuVisible));
+  ping.scratch.hold(room.scratch * sizeof(records::Seen));
+  ping.slices.hold(room.slices * sizeof(GpuSlice));
+  ping.sides.hold(room.slices * (2 * side_probes * sizeof(float)));
+  ping.things.hold(room.things * sizeof(records::Thing));
+  ping.ends.hold(room.things * (2 * sizeof(records::ThingEnd)));
+  ping.edges.hold(room.edges * sizeof(records::Edge));
+}
+
+std::string see_defines(int segments) {
+  return fmt::format("#define ROOM {}\n#define WAITING {}\n", segments > 0 ? segments : segments_at_a_time,
+                     room_for_waiting);
 }
 
 }  // namespace
 
-struct GpuSlices::Impl {
-  Compute compute;
-  osg::ref_ptr<osg::Program> place, scan, fill, list_things, look, compare;
-  GpuMeshes meshes;
+GpuSlices::GpuSlices(EglContext& context, const GpuOptions& options)
+    : compute_(context, options.group, options.time_stages),
+      meshes_(compute_.gl(), options.memory_mib << 20U),
+      place_(compute_.build("place.comp", shaders::place_comp)),
+      scan_(compute_.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n")),
+      fill_(compute_.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n")),
+      list_things_(compute_.build("things.comp", shaders::things_comp)),
+      see_(compute_.build("see.comp", shaders::see_comp, see_defines(options.segments))),
+      refine_(compute_.build("refine.comp", shaders::refine_comp)) {}
 
-  Impl(EglContext& context, const Options& options)
-      : compute(context, options.group), meshes(compute.gl(), options.memory_mib << 20U) {
-    if (options.time_stages) {
-      compute.time_stages();
-    }
-    place = compute.build("place.comp", shaders::place_comp);
-    scan = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n");
-    fill = compute.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n");
-    list_things = compute.build("things.comp", shaders::things_comp);
-    compare = compute.build("refine.comp", shaders::refine_comp);
-    look = compute.build(
-        "see.comp", shaders::see_comp,
-        fmt::format("#define ROOM {}\n#define WAITING {}\n", options.segments, room_for_waiting));
-  }
-
-  static PingRecord record_of(const PingBuffers& of_ping, const PingSetting& setting, std::size_t clusters,
-                              std::size_t parts) {
-    const Fan& fan_of_ping = setting.fan;
-    const double port = fan_of_ping.edge_rad(0), starboard = fan_of_ping.edge_rad(fan_of_ping.beam_count());
-    const double limit = std::atan(static_cast<double>(fan_of_ping.tan_limit()));
-    const auto narrow = [](double number) { return static_cast<float>(number); };
-    return {fan_of_ping.tan_limit(),
-            narrow(std::sin(limit)),
-            narrow(std::cos(limit)),
-            fan_of_ping.max_range_m(),
-            narrow(-std::sin(port)),
-            narrow(std::cos(port)),
-            narrow(std::sin(starboard)),
-            narrow(-std::cos(starboard)),
-            narrow(port),
-            narrow(starboard),
-            fan_of_ping.upright_rad(),
-            fan_of_ping.widest_slice_rad(),
-            setting.bend.up.x,
-            setting.bend.up.y,
-            setting.bend.up.z,
-            setting.bend.per_m,
-            fan_of_ping.beam_count(),
-            as_int(clusters),
-            as_int(parts),
-            narrow(port - starboard) < slices::half_turn ? 1 : 0,
-            setting.two_sided ? 1 : 0,
-            setting.skip.on(SkipRule::culled_clusters) ? 1 : 0,
-            as_int(of_ping.room.triangles),
-            as_int(of_ping.room.entries),
-            as_int(of_ping.room.visible),
-            as_int(of_ping.room.scratch),
-            as_int(of_ping.room.slices),
-            as_int(of_ping.room.pieces),
-            as_int(of_ping.room.things),
-            as_int(of_ping.room.edges),
-            {}};
-  }
-
-  static void hold(PingBuffers& of_ping) {
-    const PingBuffers::Room& room = of_ping.room;
-    of_ping.fan.hold(room.triangles * sizeof(GpuTriangle));
-    of_ping.lists.hold(room.entries * sizeof(std::uint32_t));
-    of_ping.visible.hold(room.visible * sizeof(GpuVisible));
-    of_ping.scratch.hold(room.scratch * bytes_of_scratch);
-    of_ping.slices.hold(room.slices * sizeof(GpuSlice));
-    of_ping.sides.hold(room.slices * 2 * slices::side_probes * sizeof(float));
-    of_ping.things.hold(room.things * sizeof(ThingRecord));
-    of_ping.ends.hold(2 * room.things * sizeof(EndRecord));
-    of_ping.edges.hold(room.edges * sizeof(EdgeRecord));
-  }
-
-  /// Uploads the parts that the fan may see.
-  /// @return number of their clusters
-  std::size_t upload_parts(PingBuffers& of_ping, const std::vector<PlacedPart>& placed,
-                           const PingSetting& setting) {
-    const std::vector<bool> seen =
-        setting.may_be_seen.empty() ? std::vector<bool>(placed.size(), true) : setting.may_be_seen;
-    std::vector<std::shared_ptr<const MeshClusters>> needed;
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      if (seen[i]) {
-        needed.push_back(placed[i].clusters);
-      }
-    }
-    meshes.hold(needed, setting.surface_bytes);
-    const bool may_hide = setting.bend.straight() && setting.skip.on(SkipRule::hidden_faces);
-    std::vector<PartRecord> records;
-    std::vector<float> hides;
-    std::size_t clusters = 0;
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      const PlacedPart& part = placed[i];
-      PartRecord record{part.placement(), static_cast<std::uint32_t>(hides.size()), 0, 0,
-                        static_cast<std::uint32_t>(clusters)};
-      if (seen[i]) {
-        record.first_cluster = meshes.first_cluster(part.clusters);
-        clusters += part.clusters->clusters.size();
-      }
-      records.push_back(record);
-      part.append_hiding(may_hide, hides);
-    }
-    hides.push_back(0.0F);  // a buffer must not be empty
-    of_ping.parts.fill(records, written_by_gpu);
-    of_ping.hiding.fill(hides, GL_STREAM_DRAW);
-    return clusters;
-  }
-
-  /// @return the first slices of the ping
-  /// @throws RequestError if there are more than the shaders can count
-  static std::vector<GpuSlice> upload_beams(PingBuffers& of_ping, const PingSetting& setting) {
-    const Fan& fan = setting.fan;
-    std::vector<BeamRecord> records(static_cast<std::size_t>(fan.beam_count()) + 1);
-    for (int beam = 0; beam <= fan.beam_count(); ++beam) {
-      BeamRecord& record = records[static_cast<std::size_t>(beam)];
-      const double port = fan.edge_rad(beam);
-      record.port_rad = static_cast<float>(port);
-      if (beam < fan.beam_count()) {
-        const double width = port - fan.edge_rad(beam + 1), middle = port - width / 2;
-        record.middle_rad = static_cast<float>(middle);
-        record.width_rad = static_cast<float>(width);
-        record.cosine = static_cast<float>(std::cos(middle));
-        record.sine = static_cast<float>(std::sin(middle));
-      }
-    }
-    std::vector<GpuSlice> first;
-    for (const FirstSlice& slice : first_slices(fan, static_cast<double>(setting.line_m), setting.accuracy)) {
-      BeamRecord& record = records[static_cast<std::size_t>(slice.beam)];
-      record.first_slice = record.slices == 0 ? static_cast<std::uint32_t>(first.size()) : record.first_slice;
-      if (++record.slices > most_slices_of_beam || first.size() == most_groups) {
-        throw RequestError(
-            fmt::format("this fan needs more than {} slices in beam {}, or {} in all: choose engine: cpu",
-                        most_slices_of_beam, slice.beam + 1, most_groups));
-      }
-      const double middle = (fan.edge_rad(slice.beam) + fan.edge_rad(slice.beam + 1)) / 2;
-      GpuSlice made;
-      made.cosine = static_cast<float>(std::cos(slice.azimuth_rad));
-      made.sine = static_cast<float>(std::sin(slice.azimuth_rad));
-      made.width_rad = static_cast<float>(slice.width_rad);
-      made.beam = slice.beam;
-      made.offset_rad = static_cast<float>(slice.azimuth_rad - middle);
-      first.push_back(made);
-    }
-    of_ping.beams.fill(records, written_by_gpu);
-    of_ping.order.hold(2 * records.size() * (most_slices_of_beam + 1) * sizeof(std::uint32_t));
-    return first;
-  }
-
-  static RefinementRecord refinement_of(const PingSetting& setting) {
-    const SliceAccuracy& accuracy = setting.accuracy;
-    return {accuracy.slices_per_beam,
-            accuracy.most_divisions,
-            accuracy.most_divisions_of_lone_echoes,
-            accuracy.first_in_five ? 1 : 0,
-            accuracy.disagreement,
-            accuracy.shift_lines,
-            {},
-            setting.line_m,
-            setting.max_range_m,
-            accuracy.sagitta_lines,
-            0.0F,
-            setting.weights};
-  }
-
-  void run_list_things(const PingBuffers& p, const PingSetting& setting) const {
-    compute.use(list_things, {&p.ping},
-                {&p.parts, &p.things, &p.edges, &p.lists, &p.fan, &p.counts, &p.beams, &p.ends});
-    compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
-  }
-
-  static void upload_slices(PingBuffers& of_ping, const std::vector<GpuSlice>& slices) {
-    CountsRecord record;
-    record.counts.slices = static_cast<std::uint32_t>(slices.size());
-    record.counts.rounds = 1;
-    record.rounds[0].slices = record.counts.slices;
-    record.rounds[0].groups = std::min(record.counts.slices, static_cast<std::uint32_t>(most_groups));
-    of_ping.counts.fill(std::vector<CountsRecord>{record}, written_by_gpu);
-    of_ping.room.slices = std::max(of_ping.room.slices, slices.size());
-    hold(of_ping);
-    of_ping.slices.write(slices);
-  }
-
-  void run_see(const PingBuffers& p, int round) const {
-    compute.use(look, {&p.ping, nullptr, &p.refinement},
-                {&p.slices, &p.visible, &p.scratch, &p.lists, &p.fan, &p.counts, &p.beams, &p.sides});
-    compute.gl().glUniform1i(0, round);
-    compute.dispatch_indirect(p.counts,
-                              sizeof(PingCounts) + static_cast<std::size_t>(round) * sizeof(RoundRecord));
-  }
-
-  void run_refine(const PingBuffers& p, int round, const PingSetting& setting) const {
-    compute.use(compare, {&p.ping, nullptr, &p.refinement},
-                {&p.slices, &p.order, &p.sides, &p.things, &p.edges, &p.counts, &p.beams, &p.ends});
-    compute.gl().glUniform1i(0, round);
-    compute.dispatch(static_cast<std::size_t>(setting.fan.beam_count()));
-  }
-};
-
-GpuSlices::GpuSlices(EglContext& context) : GpuSlices(context, Options()) {}
-GpuSlices::GpuSlices(EglContext& context, const Options& options)
-    : impl_(std::make_unique<Impl>(context, options)) {}
-GpuSlices::~GpuSlices() = default;
-
-std::vector<bool> GpuSlices::may_be_seen(const std::vector<PlacedPart>& parts, const PingSetting& setting) {
+std::vector<bool> GpuSlices::may_be_seen(const std::vector<PlacedPart>& parts, const GpuPing& ping) {
   std::vector<bool> may;
   for (const PlacedPart& part : parts) {
-    may.push_back(!setting.skip.on(SkipRule::culled_clusters) || !part.misses(setting.fan, setting.bend));
+    may.push_back(!ping.options.skip.on(SkipRule::culled_clusters) || !part.misses(ping.fan, ping.bend));
   }
   return may;
 }
 
-void GpuSlices::find(PingBuffers& ping, const std::vector<PlacedPart>& parts, const PingSetting& setting,
-                     const std::vector<GpuSlice>& slices) {
-  Impl& on = *impl_;
-  const std::size_t clusters = on.upload_parts(ping, parts, setting);
-  const std::vector<GpuSlice> first = Impl::upload_beams(ping, setting);
-  Impl::upload_slices(ping, slices.empty() ? first : slices);
-  ping.ping.fill(std::vector<PingRecord>{Impl::record_of(ping, setting, clusters, parts.size())},
-                 GL_STREAM_DRAW);
-  ping.refinement.fill(std::vector<RefinementRecord>{Impl::refinement_of(setting)}, GL_STREAM_DRAW);
-  on.compute.use(on.place, {&ping.ping},
-                 {&on.meshes.vertices(), &on.meshes.triangles(), &on.meshes.clusters(), &ping.parts,
-                  &ping.fan, &ping.counts, &ping.beams, &ping.hiding});
-  on.compute.dispatch(clusters);
-  const Compute::Buffers of_lists = {&ping.lists, &ping.fan, &ping.counts, &ping.beams};
-  on.compute.use(on.scan, {&ping.ping}, of_lists);
-  on.compute.dispatch(1);
-  on.compute.use(on.fill, {&ping.ping}, of_lists);
-  on.compute.dispatch(groups_to_fill);
-  on.run_list_things(ping, setting);
-}
-
-void GpuSlices::see(PingBuffers& ping, const PingSetting& setting, int rounds) const {
-  const int most = setting.accuracy.most_divisions > 1 ? rounds : 1;
-  for (int round = 0; round < most; ++round) {
-    impl_->run_see(ping, round);
-    if (round + 1 < most) {
-      impl_->run_refine(ping, round, setting);
+/// Uploads the parts that the fan may see.
+/// @return number of their clusters
+std::size_t GpuSlices::upload_parts(PingBuffers& in, const std::vector<PlacedPart>& placed,
+                                    const GpuPing& ping) {
+  const std::vector<bool> seen =
+      ping.may_be_seen.empty() ? std::vector<bool>(placed.size(), true) : ping.may_be_seen;
+  std::vector<std::shared_ptr<const MeshClusters>> needed;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (seen[i]) {
+      needed.push_back(placed[i].clusters);
     }
   }
+  meshes_.hold(needed, ping.surface_bytes);
+  const bool may_hide = ping.bend.straight() && ping.options.skip.on(SkipRule::hidden_faces);
+  std::vector<records::Part> parts;
+  std::vector<float> hides;
+  std::size_t clusters = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const PlacedPart& from = placed[i];
+    records::Part& part = parts.emplace_back();
+    part.placement = from.placement();
+    part.first_hiding = static_cast<std::uint32_t>(hides.size());
+    part.first_group = static_cast<std::uint32_t>(clusters);
+    if (seen[i]) {
+      part.first_cluster = meshes_.first_cluster(from.clusters);
+      clusters += from.clusters->clusters.size();
+    }
+    from.append_hiding(may_hide, hides);
+  }
+  hides.push_back(0.0F);  // a buffer must not be empty
+  in.parts.fill(parts, written_by_gpu);
+  in.hiding.fill(hides, GL_STREAM_DRAW);
+  return clusters;
 }
 
-const GpuMeshes& GpuSlices::meshes() const {
-  return impl_->meshes;
+void GpuSlices::find(PingBuffers& in, const std::vector<PlacedPart>& parts, const GpuPing& ping,
+                     const std::vector<GpuSlice>& slices) {
+  const std::size_t clusters = upload_parts(in, parts, ping);
+  std::vector<records::Beam> beams = beams_of(ping.fan);
+  const std::vector<GpuSlice> chosen = slices_of(ping, beams), &first = slices.empty() ? chosen : slices;
+  in.room.slices = std::max(in.room.slices, static_cast<std::uint32_t>(first.size()));
+  hold(in);
+  in.beams.fill(beams, written_by_gpu);
+  in.order.hold(2 * beams.size() * (most_slices_of_beam + 1) * sizeof(std::uint32_t));
+  in.counts.fill(std::vector{counts_of(first)}, written_by_gpu);
+  in.slices.write(first);
+  records::Ping record = record_of(ping);
+  record.room = in.room;
+  record.clusters = static_cast<std::int32_t>(clusters);
+  record.parts = static_cast<std::int32_t>(parts.size());
+  in.ping.fill(std::vector{record}, GL_STREAM_DRAW);
+  compute_.run(place_, {&in.ping},
+               {&meshes_.vertices(), &meshes_.triangles(), &meshes_.clusters(), &in.parts, &in.fan,
+                &in.counts, &in.beams, &in.hiding},
+               clusters);
+  compute_.run(scan_, {&in.ping}, {&in.lists, &in.fan, &in.counts, &in.beams}, 1);
+  compute_.run(fill_, {&in.ping}, {&in.lists, &in.fan, &in.counts, &in.beams}, groups_to_fill);
+  compute_.run(list_things_, {&in.ping},
+               {&in.parts, &in.things, &in.edges, &in.lists, &in.fan, &in.counts, &in.beams, &in.ends},
+               beams.size() - 1);
 }
 
-const Compute& GpuSlices::compute() const {
-  return impl_->compute;
+void GpuSlices::see(PingBuffers& in, const GpuPing& ping, int rounds) const {
+  const int most = ping.accuracy.most_divisions > 1 ? rounds : 1;
+  for (int round = 0; round < most; ++round) {
+    compute_.use(
+        see_, {&in.ping},
+        {&in.slices, &in.visible, &in.scratch, &in.lists, &in.fan, &in.counts, &in.beams, &in.sides});
+    compute_.gl().glUniform1i(0, round);
+    compute_.dispatch_indirect(in.counts,
+                               sizeof(PingCounts) + static_cast<std::size_t>(round) * sizeof(records::Round));
+    if (round + 1 < most) {
+      compute_.use(
+          refine_, {&in.ping},
+          {&in.slices, &in.order, &in.sides, &in.things, &in.edges, &in.counts, &in.beams, &in.ends});
+      compute_.gl().glUniform1i(0, round);
+      compute_.dispatch(static_cast<std::size_t>(ping.fan.beam_count()));
+    }
+  }
 }
 
 }  // namespace sonard::render

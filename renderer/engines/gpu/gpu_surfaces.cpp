@@ -11,8 +11,6 @@ namespace sonard::render {
 
 namespace {
 
-constexpr std::uint32_t has_vertex_normals = 1, has_map = 2;  // as in pieces.glsl
-
 std::uint32_t word(float number) {
   return std::bit_cast<std::uint32_t>(number);
 }
@@ -29,7 +27,7 @@ class GpuSurfaces::Words {
   std::vector<std::uint32_t> words;
 
   /// @param mapped with texture coordinates and tangents
-  void add_mesh(const TriangleMesh& mesh, bool mapped, Record& record) {
+  void add_mesh(const TriangleMesh& mesh, bool mapped, records::Surface& record) {
     const auto [known, is_new] = meshes_.try_emplace({&mesh, mapped}, words.size());
     record.indices = word(known->second);
     record.vertices = word(known->second + mesh.indices.size());
@@ -49,7 +47,7 @@ class GpuSurfaces::Words {
     }
   }
 
-  void add_map(const NormalPyramid& map, Record& record) {
+  void add_map(const NormalPyramid& map, records::Surface& record) {
     const auto [known, is_new] = maps_.try_emplace(&map, words.size());
     record.levels = word(known->second);
     record.level_count = word(map.levels.size());
@@ -85,13 +83,13 @@ void GpuSurfaces::hold(const std::vector<PartSurface>& surfaces, std::size_t ver
     const Backscatter& backscatter = part.backscatter;
     const bool is_mapped = part.normal_map != nullptr;
     const bool is_shaded = part.vertex_normals && !part.mesh->normals.empty();
-    Record record{};
+    records::Surface record{};
     record.lambert_mu = backscatter.lambert_mu;
     record.reflectance = part.reflectance;
     record.facet_strength = backscatter.facet_strength;
     record.slope_variance = std::min(backscatter.slope_variance, Backscatter::widest_variance);
     record.least_cosine = backscatter.least_cosine;
-    record.flags = (is_shaded ? has_vertex_normals : 0) | (is_mapped ? has_map : 0);
+    record.flags = (is_shaded ? records::has_vertex_normals : 0) | (is_mapped ? records::has_map : 0);
     if (may_be_seen[i] && (is_shaded || is_mapped)) {
       world.add_mesh(*part.mesh, is_mapped, record);
     }
@@ -108,15 +106,15 @@ void GpuSurfaces::hold(const std::vector<PartSurface>& surfaces, std::size_t ver
 }
 
 void GpuSurfaces::upload(const std::vector<PartSurface>& surfaces, GpuBuffer& to) const {
-  std::vector<Record> records = records_;
-  for (std::size_t i = 0; i < records.size(); ++i) {
+  std::vector<records::Surface> placed = records_;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
     for (int k = 0; k < 9; ++k) {
-      records[i].rotation[k] =
+      placed[i].rotation[k] =
           surfaces[i].R_part_sonar[k / 3][k % 3];  // its columns are the rows of the inverse
     }
   }
-  records.emplace_back();  // a buffer must not be empty
-  to.fill(records, GL_STREAM_DRAW);
+  placed.emplace_back();  // a buffer must not be empty
+  to.fill(placed, GL_STREAM_DRAW);
 }
 
 }  // namespace sonard::render

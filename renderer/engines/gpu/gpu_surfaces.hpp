@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderer/engines/gpu/gpu_buffer.hpp"
+#include "renderer/engines/gpu/records.hpp"
 #include "renderer/engines/slices/part_surface.hpp"
 
 namespace sonard::render {
@@ -32,14 +33,9 @@ class GpuSurfaces {
   bool any_facets() const { return any_facets_; }
 
  private:
-  struct Record {  // Surface in pieces.glsl
-    float rotation[9];
-    float lambert_mu, reflectance, facet_strength, slope_variance, least_cosine;
-    std::uint32_t flags, indices, vertices, floats_per_vertex, levels, level_count;
-  };
   class Words;
 
-  std::vector<Record> records_;  ///< without rotations
+  std::vector<records::Surface> records_;  ///< without rotations
   std::size_t version_ = 0;
   std::vector<bool> held_;
   GpuBuffer world_;

@@ -96,7 +96,7 @@ vec3 mean_normal(vec3 p, vec2 uv) {
 // Incidence in the middle of the piece: the cosine, and the mean length of the normals.
 // @param geometric cosine of the plane; returned if there is no direction
 vec2 mapped_incidence(float geometric) {
-  float t = 0.5 * (piece.low + piece.high), h = 1.0 / (seen.w_at_0 + seen.w_slope * t);
+  float t = t_at(1), h = 1.0 / (seen.w_at_0 + seen.w_slope * t);
   vec3 p = vec3(h * slice.cosine, h * slice.sine, t * h);
   first_corner = corner_of(0u);
   edge_b = corner_of(1u) - first_corner;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // One group for each slice: turns its pieces into patches. As SlicePatcher::shade() and add_patches().
-layout(local_size_x = GROUP) in;
+#include "gpu/pieces.glsl"
+#if MAPPED
+#include "gpu/normal_maps.glsl"
+#endif
 
 shared uint s_without_facets;
 
@@ -45,8 +48,8 @@ FacetResponse wide_facets(FacetMaterial material, float part, float parts) {
     float side = points == 1 ? 0.0 : points == 2 ? float(2 * point - 1) : float(point - 1);
     float place = (stride + 0.5) / strides - 0.5 + side * off / strides;
     float share = (side == 0.0 ? share_at_middle : share_beside) / strides;
-    float t = along == 0 ? piece.low : along == 1 ? 0.5 * (piece.low + piece.high) : piece.high;
-    float response = share * facets_at(normal, material, (middle_of_part + place / parts) * slice.width_rad, t);
+    float x = (middle_of_part + place / parts) * slice.width_rad;
+    float response = share * facets_at(normal, material, x, t_at(along));
     float mean_share = along == 1 ? 4.0 / 6.0 : 1.0 / 6.0;
     sum.mean += mean_share * response;
     sum.moment += mean_share / parts * response * place;
@@ -113,7 +116,7 @@ void weigh_by_pattern() {
   if (echo.has_pattern != 0) {
     float weights[3];
     for (int k = 0; k < 3; ++k) {
-      weights[k] = pattern_at(k == 0 ? piece.low : k == 1 ? 0.5 * (piece.low + piece.high) : piece.high);
+      weights[k] = pattern_at(t_at(k));
     }
     float weight = mean_weight(piece.low, piece.high, weights[0], weights[1], weights[2], echo_gradient);
     solid_angle *= weight;
@@ -140,10 +143,9 @@ int patches_beside(out float moved_m) {
   if (abs(moved_m) < 0.25 * echo.facet_m && turn_across_rad * ranges.range_mid * slice.width_rad < echo.facet_m) {
     return 1;
   }
-  float t = 0.5 * (piece.low + piece.high), wedge_m = ranges.range_mid * slice.width_rad;
-  float slopes[3];
+  float wedge_m = ranges.range_mid * slice.width_rad, slopes[3];
   for (int k = 0; k < 3; ++k) {
-    slopes[k] = range_slope(normal, 0.5 * float(k - 1) * slice.width_rad, t);
+    slopes[k] = range_slope(normal, 0.5 * float(k - 1) * slice.width_rad, t_at(1));
   }
   moved_m = wedge_m * slopes[1] * centroid_offset;
   float sagitta_m = 0.125 * wedge_m * (1.0 - plain_response / response) * (slopes[2] - slopes[0]);
@@ -179,8 +181,8 @@ Patch patch_beside(Patch whole, FacetResponse facets, float place, float count) 
 
 // Puts patches side by side in the place of piece i.
 void add_beside(uint i, Patch whole, int count) {
-  uint begin = atomicAdd(counts.pieces, uint(count));
-  if (begin + uint(count) > uint(ping.most_pieces)) {
+  uint begin = atomicAdd(counts.needed.pieces, uint(count));
+  if (begin + uint(count) > ping.room.pieces) {
     return;
   }
   for (int k = 0; k < count; ++k) {
@@ -211,17 +213,17 @@ void make_patches(uint i) {
 
 void main() {
   uint number = group_number();
-  if (!has_slice(number, counts)) {
+  if (!has_slice(number, counts.needed)) {
     return;
   }
   slice = slices[number];
-  if (lane_number() == 0u) {
+  if (lane == 0u) {
     s_without_facets = 0u;
   }
   barrier();
   uint without_facets = 0u;
   SlicePieces mine = of_slice[number];
-  for (uint i = lane_number(); i < mine.count; i += GROUP) {
+  for (uint i = lane; i < mine.count; i += GROUP) {
     measure(mine.first + i);
     solid_angle = ranges.solid_angle;
     range_gradient = gradient.gradient;
@@ -231,7 +233,7 @@ void main() {
   }
   atomicAdd(s_without_facets, without_facets);
   barrier();
-  if (lane_number() == 0u) {
+  if (lane == 0u) {
     atomicAdd(counts.without_facets, s_without_facets);
   }
 }

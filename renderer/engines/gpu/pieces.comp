@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // One group for each slice: divides its visible segments into pieces whose echo over range a patch can
 // represent. As SlicePatcher::make() and VisibleEnds.
-layout(local_size_x = GROUP) in;
+#include "gpu/pieces.glsl"
 
-shared uint s_count[GROUP];
 shared uint s_first;
-
-uint lane, first, count;  // pieces of the slice
-
-uint begin_of_mine() { return min(lane * ((count + GROUP - 1u) / GROUP), count); }
-uint end_of_mine() { return min((lane + 1u) * ((count + GROUP - 1u) / GROUP), count); }
+uint first, count;  // pieces of the slice
 
 void wait_for_all() {
   memoryBarrierBuffer();
@@ -24,26 +19,12 @@ void set_piece(uint i, Piece p) {
 // All invocations must call it. @return first of `wanted` pieces, or false if there is no room
 bool make_room(uint wanted, out uint begin) {
   if (lane == 0u) {
-    s_first = atomicAdd(counts.pieces, wanted);
+    s_first = atomicAdd(counts.needed.pieces, wanted);
   }
   barrier();
   begin = s_first;
   barrier();
-  return begin + wanted <= uint(ping.most_pieces);
-}
-
-// Sums of s_count before this invocation, and of all. All invocations must call it.
-uint sum_before(uint own, out uint total) {
-  s_count[lane] = own;
-  barrier();
-  uint before = 0u;
-  total = 0u;
-  for (uint k = 0u; k < GROUP; ++k) {
-    before += k < lane ? s_count[k] : 0u;
-    total += s_count[k];
-  }
-  barrier();
-  return before;
+  return begin + wanted <= ping.room.pieces;
 }
 
 // ---- ends across the wedge ----
@@ -61,7 +42,7 @@ bool continues(uint i, Piece p, Visible of_p) {
 }
 
 void limit_slopes() {
-  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+  for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     Piece p = piece_at(first + i);
     Visible v = visible[p.segment];
     bool is_low = (p.flags & low_end) != 0u, is_high = (p.flags & high_end) != 0u;
@@ -115,7 +96,7 @@ bool goes_on_after(uint i) { return (pieces[2u * (first + i) + 1u].y & goes_on) 
 
 // One invocation for each surface.
 void straighten_ends() {
-  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+  for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     if (i > 0u && goes_on_after(i - 1u)) {
       continue;
     }
@@ -165,16 +146,16 @@ int parts_of_piece(uint i) {
 // Notes for each of my pieces how many parts it must have. @return their number
 uint find_parts() {
   uint made = 0u;
-  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+  for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     int parts = parts_of_piece(first + i);
-    made += parts == 1 ? 1u : divide(piece, parts, 0u, false);
+    made += divide(piece, parts, 0u, false);
     pieces[2u * (first + i) + 1u].y = (piece.flags & (low_end | high_end)) | uint(parts) << parts_shift;
   }
   return made;
 }
 
 void write_parts(uint to) {
-  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+  for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     Piece whole = piece_at(first + i);
     int parts = int(whole.flags >> parts_shift);
     whole.flags &= low_end | high_end;
@@ -188,7 +169,7 @@ bool begin_pieces() {
   if (!make_room(count, first)) {
     return false;
   }
-  for (uint i = begin_of_mine(); i < end_of_mine(); ++i) {
+  for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     uint segment = slice.first_visible + i;
     set_piece(first + i, Piece(visible[segment].low, visible[segment].high, 0.0, 0.0, segment, low_end | high_end));
   }
@@ -220,9 +201,8 @@ bool divide_pieces() {
 }
 
 void main() {
-  lane = lane_number();
   uint number = group_number();
-  if (!has_slice(number, counts)) {
+  if (!has_slice(number, counts.needed)) {
     return;
   }
   slice = slices[number];

@@ -2,40 +2,20 @@
 // What a slice sees of a piece: ranges, incidence, the turn of facets. As SlicePatcher. The macros SHADED
 // (some part is shaded by vertex normals), MAPPED (some part has a normal map) and FACETS are 0 or 1.
 
-struct Surface {                             // see PartSurface
-  float xx, xy, xz, yx, yy, yz, zx, zy, zz;  // rotation from the part to the sonar, row after row
-  float lambert_mu, reflectance, facet_strength, slope_variance, least_cosine;
-  uint flags;
-  uint indices, vertices, floats_per_vertex;  // of its mesh, in `world`
-  uint levels, level_count;                   // of its normal map, in `world`
-};
-const uint has_vertex_normals = 1u, has_map = 2u;
-
-layout(std430, binding = 0) readonly buffer Slices {
-  Slice slices[];
-};
-layout(std430, binding = 1) readonly buffer VisibleSegments {
-  Visible visible[];
-};
-layout(std430, binding = 2) buffer PiecesOfSlices {
-  SlicePieces of_slice[];
-};
-layout(std430, binding = 3) readonly buffer Surfaces {
-  Surface surfaces[];
-};
-layout(std430, binding = 4) readonly buffer Fan {
-  FanTriangle fan[];
-};
-layout(std430, binding = 5) buffer Counts {
-  PingCounts counts;
-};
-layout(std430, binding = 6) coherent buffer Pieces {
-  uvec4 pieces[];
-};
+// clang-format off
+#include "gpu/echoes.glsl"
+#include "slices/patches.glsl"
+#include "slices/facets.glsl"
+layout(std430, binding = 0) readonly buffer Slices { Slice slices[]; };
+layout(std430, binding = 1) readonly buffer VisibleSegments { Visible visible[]; };
+layout(std430, binding = 2) buffer PiecesOfSlices { SlicePieces of_slice[]; };
+layout(std430, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(std430, binding = 4) readonly buffer Fan { FanTriangle fan[]; };
+layout(std430, binding = 5) buffer Counts { PingCounts counts; };
+layout(std430, binding = 6) coherent buffer Pieces { uvec4 pieces[]; };
 // Indices of triangles; normals of vertices, and texture coordinates and tangents if mapped; normal maps.
-layout(std430, binding = 7) readonly buffer World {
-  uint world[];
-};
+layout(std430, binding = 7) readonly buffer World { uint world[]; };
+// clang-format on
 
 Slice slice;
 
@@ -59,6 +39,11 @@ RangeGradient gradient;
 float slopes_per_t, slopes_across;  // turn of the facets' direction, in rms slopes
 bool may_respond;                   // its facets
 
+// Tangent of the elevation: 0 at the low end, 1 in the middle, 2 at the high end.
+float t_at(int k) {
+  return k == 0 ? piece.low : k == 1 ? 0.5 * (piece.low + piece.high) : piece.high;
+}
+
 bool is_mapped() {
   return MAPPED == 1 && (surface.flags & has_map) != 0u && surface.level_count > 1u;
 }
@@ -68,15 +53,14 @@ vec3 in_slice(vec3 v) {
 }
 
 vec3 corner_of(uint k) {
-  return k == 0u   ? vec3(triangle.x0, triangle.y0, triangle.z0)
-         : k == 1u ? vec3(triangle.x1, triangle.y1, triangle.z1)
-                   : vec3(triangle.x2, triangle.y2, triangle.z2);
+  Corner corner = triangle.corners[k];
+  return vec3(corner.x, corner.y, corner.z);
 }
 
 vec3 in_sonar_frame(vec3 v) {
-  return vec3(surface.xx * v.x + surface.xy * v.y + surface.xz * v.z,
-              surface.yx * v.x + surface.yy * v.y + surface.yz * v.z,
-              surface.zx * v.x + surface.zy * v.y + surface.zz * v.z);
+  float r[9] = surface.rotation;
+  return vec3(r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+              r[6] * v.x + r[7] * v.y + r[8] * v.z);
 }
 
 // Word of `world` where the k-th vertex of the triangle begins.
@@ -127,7 +111,7 @@ bool is_finite(NormalField n) {
 void shade_smoothly() {
   float cosines[3];
   for (int k = 0; k < 3; ++k) {
-    float t = k == 0 ? piece.low : k == 1 ? 0.5 * (piece.low + piece.high) : piece.high;
+    float t = t_at(k);
     cosines[k] = cosine_of_normal(normal.at_h + normal.h_per_t * t, normal.at_s + normal.s_per_t * t,
                                   normal.at_z + normal.z_per_t * t, t);
   }
@@ -159,7 +143,7 @@ void find_facet_turn() {
   bool has_none =
       (MAPPED == 1 && (surface.flags & has_map) != 0u) || (!anywhere && !(surface.facet_strength > 0.0));
   float least_cosine = has_none ? 1e9 : anywhere ? -1.0 : surface.least_cosine;
-  FacetTurn turn = turn_of_facets(normal, 0.5 * (piece.low + piece.high), slice.width_rad);
+  FacetTurn turn = turn_of_facets(normal, t_at(1), slice.width_rad);
   float slope = sqrt(surface.slope_variance);
   slopes_per_t = turn.along_per_t / slope;
   slopes_across = turn.across_rad / slope;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One group for each beam: from the sums of bin.comp to its lines of the image. As RangeProfile::read() and
 // BeamSums::read(). The macro WEIGHED is 1 if the weights are summed too.
-layout(local_size_x = GROUP) in;
+#include "gpu/echoes.glsl"
+#include "gpu/whole_numbers.glsl"
 layout(std430, binding = 0) readonly buffer SolidAngles { float solid_angles[]; };  // of the beams, steradians
 layout(std430, binding = 1) buffer Counts { PingCounts counts; };
 layout(std430, binding = 2) coherent buffer Image { float image[]; };  // [beam][line]; then weights, later open water
@@ -15,8 +16,8 @@ shared float s_weight[GROUP];
 shared uint s_negative[GROUP];  // 1: there is a negative line
 shared uint s_used;             // 1: something was added to the beam
 
-uint lane, begin, end;  // lines of this invocation
-uint beam, lines;
+uint begin, end;  // lines of this invocation
+uint beam, lines = uint(echo.lines);
 
 uvec2 difference(int profile, int order, uint line) {
   uint at = 2u * ((uint(2 * profile + order) * uint(ping.beams) + beam) * lines + line);
@@ -47,9 +48,9 @@ void write_sums(int profile, uint at) {
       }
       barrier();
       slope = sum = uvec2(0u);
-      uint each = (lines + GROUP - 1u) / GROUP;
       for (uint k = 0u; k < lane; ++k) {
-        sum = plus(sum, plus(s_sum[k], times(slope, int(min(each, lines - min(k * each, lines))))));
+        int lines_of_k = int(begin_of_share(lines, k + 1u) - begin_of_share(lines, k));
+        sum = plus(sum, plus(s_sum[k], times(slope, lines_of_k)));
         slope = plus(slope, s_slope[k]);
       }
     }
@@ -65,11 +66,10 @@ void write_sums(int profile, uint at) {
 void pay_for_negative_lines(uint at) {
   float missing = 0.0;
   uint paying = 0u;  // end of the earlier lines that can pay
-  uint each = (lines + GROUP - 1u) / GROUP;
+  uint each = begin_of_share(lines, 1u);
   for (uint k = 0u; k < lines;) {
     if (missing == 0.0 && s_negative[k / each] == 0u) {
-      k = (k / each + 1u) * each;
-      paying = min(k, lines);
+      k = paying = begin_of_share(lines, k / each + 1u);
       continue;
     }
     float sum = image[at + k], left = sum - missing;
@@ -112,15 +112,12 @@ void write_open(uint at, float solid_angle) {
 }
 
 void main() {
-  lane = lane_number();
   beam = group_number();
   if (beam >= uint(ping.beams)) {
     return;
   }
-  lines = uint(echo.lines);
-  uint each = (lines + GROUP - 1u) / GROUP;
-  begin = min(lane * each, lines);
-  end = min(begin + each, lines);
+  begin = begin_of_share(lines, lane);
+  end = begin_of_share(lines, lane + 1u);
   uint echo_at = beam * lines, weights_at = (uint(ping.beams) + beam) * lines;
   if (lane == 0u) {
     s_used = 0u;

@@ -23,7 +23,7 @@ struct PlaneLine {
 // A point of the segment. On the plane n . p = D the ray (1, 0, t) has 1 / h = (n_h + n_z t) / D and the
 // range sqrt(1 + t^2) h.
 struct PlanePoint {
-  float length;      // of (1, 0, t)
+  float secant;      // of the elevation: length of (1, 0, t)
   float range_m;     // mean over the wedge
   float by_azimuth;  // change of the range with the azimuth, at the same t, m / rad
   float by_t;        // change of the range with t, m
@@ -37,7 +37,7 @@ SHARED PlanePoint point_of_plane(PlaneLine plane, float t, float width) {
   float n = plane.normal_h + plane.normal_z * t;
   float r = g / w * (1.0F + sagitta_of_plane(plane.normal_h / n, plane.normal_s / n, width));
   PlanePoint point;
-  point.length = g;
+  point.secant = g;
   point.range_m = r;
   point.by_azimuth = -r * plane.normal_s / n;
   point.by_t = r * (t / q - plane.w_slope / w);
@@ -69,7 +69,7 @@ SHARED PlaneSegment segment_of_plane(PlaneLine plane, float t1, float t2, float 
   segment.cosine_low = p1.cosine;
   segment.cosine_mid = pm.cosine;
   segment.cosine_high = p2.cosine;
-  segment.solid_angle = (t2 / p2.length - t1 / p1.length) * width;
+  segment.solid_angle = (t2 / p2.secant - t1 / p1.secant) * width;
   return segment;
 }
 

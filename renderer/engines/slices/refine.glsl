@@ -65,10 +65,8 @@ CONSTANT float least_ensonified = 0.5F / float(side_probes);
 
 // Constants of a ping, from its preset.
 struct DivisionLimits {
-  int slices_per_beam;                // at the start
   int most_divisions;                 // of a beam
   int most_divisions_of_lone_echoes;  // of a beam, if the slice disagrees over most of its elevations
-  bool first_in_five;                 // first slices are divided in five, even if three would do
   float disagreement;                 // allowed share of elevations
   float shift_lines;                  // allowed move of the centroid, lines
 };
@@ -103,9 +101,8 @@ SHARED int parts_of_slice(SliceErrors slice, DivisionLimits limits) {
   bool shifted = slice.shift_lines * slice.share_of_beam > limits.shift_lines;
   float ending = slice.one_sided * slice.one_sided / max(slice.ensonified, least_ensonified);
   if (misses_something || slice.mismatch > most_mismatch || shifted) {
-    bool is_first = slice.share_of_beam * float(limits.slices_per_beam) > 0.9F;
     bool three_will_do = !misses_something && slice.mismatch < three_helps_by * most_mismatch;
-    return three_will_do && !(is_first && limits.first_in_five) ? parts_of_curves : parts_at_edges;
+    return three_will_do ? parts_of_curves : parts_at_edges;
   }
   return slice.curvature > curves_per_edge * most || ending > ends_per_edge * most ? parts_of_curves : 1;
 }

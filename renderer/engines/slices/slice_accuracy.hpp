@@ -15,9 +15,6 @@ struct SliceAccuracy {
   /// Replaces most_divisions for slices whose sides disagree over most of the beam's elevations with an echo,
   /// as at the limb of a ball in open water: there a narrow slice may hold the whole echo.
   int most_divisions_of_lone_echoes = 125;
-  /// First slices that disagree with their neighbours are divided in five, even if three would do: with
-  /// coarse targets the ends of shadows then still fall on their lines.
-  bool first_in_five = false;
   /// Slices are divided until their range mismatch, (share of elevations at which neighbours disagree) *
   /// (width / beam width), is at most this share of the elevations at which the beam receives an echo. Both
   /// shares are weighted by the elevation pattern. The sum over the beam is computed as for independent

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -21,6 +21,7 @@
 #include "renderer/engines/slices/slice_world.hpp"
 #include "renderer/scene/refracted_world.hpp"
 #include "tests/scenes/scenes.hpp"
+#include "tests/support/gl_context_test.hpp"
 
 namespace sonard::test {
 
@@ -41,15 +42,10 @@ struct Ping {
 /// The GPU sees the slices that the CPU engine has chosen.
 class BothSides {
  public:
-  explicit BothSides(EglContext& context, const Ping& ping, const GpuSlices::Options& gpu = {})
+  explicit BothSides(EglContext& context, const Ping& ping, const GpuOptions& gpu = {})
       : ping_(ping),
         world_(ping.bend_per_m == 0.0 ? ping.world : refractable(ping.world, 2 * ping.bend_per_m)),
-        surface_(surface_model(ping.settings, ping.skip)),
-        accuracy_(slice_accuracy(ping.settings.sampling, ping.settings.model)),
-        options_(binning_options({ping.T_world_sonar, ping.settings, ping.open_water}, ping.skip,
-                                 largest_response(world_))),
-        fan_(ping.settings.aperture, ping.settings.range.sampled_range_m()),
-        weights_(probe_weights(ping.settings.aperture, fan_.tan_limit())),
+        of_ping_({ping.T_world_sonar, ping.settings, ping.open_water}, ping.skip, largest_response(world_)),
         sampler_(world_, workers_, ping.skip),
         parts_(world_, ping.skip),
         slices_(context, gpu),
@@ -57,18 +53,23 @@ class BothSides {
     sampler_.set_refraction(ping.bend_per_m);
     parts_.set_refraction(ping.bend_per_m);
     parts_.place(ping.T_world_sonar);
+    of_ping_.bend = parts_.bend();
     cells_ = sampler_.sample(ping.T_world_sonar, ping.settings.aperture, ping.settings.range,
-                             ping.settings.range.sampled_range_m(), surface_, accuracy_);
+                             ping.settings.range.sampled_range_m(), of_ping_.surface, of_ping_.accuracy);
     for (const SliceCell* cell : cells_) {
-      gpu_cells.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
+      GpuSlice& slice = gpu_cells.emplace_back();
+      slice.cosine = cell->slice.cosine;
+      slice.sine = cell->slice.sine;
+      slice.width_rad = cell->slice.width_rad;
+      slice.beam = cell->beam;
     }
-    echoes_.hold_surfaces(parts_.surfaces(), 1, std::vector<bool>(parts_.surfaces().size(), true));
-    buffers.room = {1U << 16U, 1U << 18U, 1U << 20U, 1U << 21U, 1U << 13U, 1U << 20U, 1U << 14U, 1U << 12U};
+    echoes_.surfaces().hold(parts_.surfaces(), 1, std::vector<bool>(parts_.surfaces().size(), true));
+    buffers.room = {1U << 16U, 1U << 18U, 1U << 20U, 1U << 21U, 1U << 13U, 1U << 20U, 1U << 14U, 1U << 14U};
   }
 
   BinningResult of_cpu() {
-    return bin_echoes(sampler_, cells_, ping_.settings.aperture, ping_.settings.range, options_, workers_,
-                      {});
+    return bin_echoes(sampler_, cells_, ping_.settings.aperture, ping_.settings.range, of_ping_.options,
+                      workers_, {});
   }
 
   /// The echo of the CPU engine's patches, each binned by itself. bin_echoes() gives ends that are joined one
@@ -87,7 +88,7 @@ class BothSides {
           (edges[beam] - edges[beam + 1]) * 2 * std::sin(ping_.settings.aperture.elevation_limit_rad());
       float* const echo = &image[beam * lines];
       bin(patches, &EchoPatch::echo, &EchoPatch::echo_gradient, solid_angle, echo);
-      if (options_.mean) {
+      if (of_ping_.options.mean) {
         bin(patches, &EchoPatch::weight, &EchoPatch::weight_gradient, solid_angle, weight.data());
         for (std::size_t k = 0; k < lines; ++k) {
           const float least_weight = full_share * static_cast<float>(solid_angle);
@@ -101,19 +102,11 @@ class BothSides {
   /// Gives the ping to the GPU, without waiting.
   /// @param chosen_by_cpu false: the GPU chooses the slices
   void begin(PingBuffers& in, bool chosen_by_cpu = true) {
-    const GpuSlices::PingSetting seeing{.fan = fan_,
-                                        .weights = weights_,
-                                        .line_m = static_cast<float>(ping_.settings.range.step_m),
-                                        .max_range_m = static_cast<float>(ping_.settings.range.max_range_m()),
-                                        .accuracy = accuracy_,
-                                        .bend = parts_.bend(),
-                                        .two_sided = surface_.two_sided,
-                                        .skip = ping_.skip};
-    slices_.find(in, parts_.parts(), seeing, chosen_by_cpu ? gpu_cells : std::vector<GpuSlice>{});
-    slices_.see(in, seeing, chosen_by_cpu ? 1 : GpuSlices::most_rounds);
-    echoes_.make(in, parts_.surfaces(), making_);
+    slices_.find(in, parts_.parts(), of_ping_, chosen_by_cpu ? gpu_cells : std::vector<GpuSlice>{});
+    slices_.see(in, of_ping_, chosen_by_cpu ? 1 : GpuSlices::most_rounds);
+    echoes_.make(in, parts_.surfaces(), of_ping_);
   }
-  std::optional<BinningResult> finish(PingBuffers& in) const { return echoes_.take(in, making_, {}); }
+  std::optional<BinningResult> finish(PingBuffers& in) const { return GpuEchoes::take(in, of_ping_, {}); }
 
   /// Repeats the ping until all buffers are large enough.
   BinningResult of_gpu(bool chosen_by_cpu = true) {
@@ -130,10 +123,10 @@ class BothSides {
 
   /// Number of pieces in the place of which several patches lie side by side.
   std::size_t count_beside() const {
-    const auto counts = slices_.compute().read<PingCounts>(buffers.counts, 1)[0];
-    const auto pieces = slices_.compute().read<std::array<std::uint32_t, 8>>(buffers.pieces, counts.pieces);
-    return static_cast<std::size_t>(
-        std::ranges::count(pieces, ~0U, [](const auto& piece) { return piece[0]; }));
+    const auto patches = read_back<records::Patch>(buffers.gl, buffers.pieces, buffers.counted.needed.pieces);
+    return static_cast<std::size_t>(std::ranges::count(
+        patches, records::is_elsewhere,
+        [](const records::Patch& patch) { return std::bit_cast<std::uint32_t>(patch.range_a); }));
   }
 
  private:
@@ -154,18 +147,12 @@ class BothSides {
 
   const Ping& ping_;
   const World world_;
-  const SurfaceModel surface_;
-  const SliceAccuracy accuracy_;
-  const BinningOptions options_;
-  const Fan fan_;
-  const ProbeWeights weights_;
+  GpuPing of_ping_;
   WorkerPool workers_{2};
   SliceSampler sampler_;
   SliceWorld parts_;
   GpuSlices slices_;
   GpuEchoes echoes_;
-  const GpuEchoes::Setting making_{ping_.settings.aperture, ping_.settings.range, surface_, accuracy_,
-                                   options_};
   std::vector<const SliceCell*> cells_;
 
  public:

@@ -231,7 +231,7 @@ TEST_F(GpuPatchesTest, DividedSlicesHaveNoEcho) {
   const BinningResult once = sides.of_gpu();
   std::vector<GpuSlice> wholes(sides.gpu_cells.begin(), sides.gpu_cells.begin() + 20);
   for (GpuSlice& whole : wholes) {
-    whole.state = GpuSlice::is_divided;
+    whole.state = records::is_divided;
   }
   sides.gpu_cells.insert(sides.gpu_cells.begin() + 7, wholes.begin(), wholes.end());
   EXPECT_EQ(once.echo, sides.of_gpu().echo);

@@ -68,7 +68,7 @@ double differing_share(const std::vector<VisibleSegment>& cpu, const std::vector
     }
     if (b < gpu.size() && gpu[b].low <= from) {
       const GpuTriangle& t = triangles[gpu[b].triangle];
-      on_gpu = {t.flags >> 5U, t.mesh_triangle};
+      on_gpu = {t.flags >> records::part_shift, t.mesh_triangle};
     }
     differing += on_cpu != on_gpu ? static_cast<double>(to - from) : 0.0;
   }
@@ -89,24 +89,12 @@ struct PingOnCpu {
   SkipSwitches skip = SkipSwitches().turn_off(SkipRule::coplanar_facets);  // the same triangles on both
   WorkerPool workers{2};
   SliceSampler sampler{scene.world, workers, skip};
-  SliceAccuracy accuracy = slice_accuracy(scene.settings.sampling, scene.settings.model);
-  Fan fan{scene.settings.aperture, scene.settings.range.sampled_range_m()};
-  ProbeWeights weights = probe_weights(scene.settings.aperture, fan.tan_limit());
+  GpuPing of_gpu{{scene.T_world_sonar, scene.settings}, skip, largest_response(scene.world)};
   std::vector<const SliceCell*> cells =
       sampler.sample(scene.T_world_sonar, scene.settings.aperture, scene.settings.range,
-                     scene.settings.range.sampled_range_m(), surface_model(scene.settings, skip), accuracy);
+                     scene.settings.range.sampled_range_m(), of_gpu.surface, of_gpu.accuracy);
 
   explicit PingOnCpu(const std::string& scene_name) : scene(test::make_scene(scene_name)) {}
-
-  GpuSlices::PingSetting setting() const {
-    const RangeBins& range = scene.settings.range;
-    return {.fan = fan,
-            .weights = weights,
-            .line_m = static_cast<float>(range.step_m),
-            .max_range_m = static_cast<float>(range.max_range_m()),
-            .accuracy = accuracy,
-            .skip = skip};
-  }
 };
 
 /// The same ping on the GPU.
@@ -114,34 +102,37 @@ class PingOnGpu {
  public:
   /// @param rounds see GpuSlices::see()
   /// @param slices with which the ping begins; empty: the GPU chooses them
-  PingOnGpu(EglContext& context, const GpuSlices::Options& options, const PingOnCpu& cpu, int rounds,
+  PingOnGpu(EglContext& context, const GpuOptions& options, const PingOnCpu& cpu, int rounds,
             const std::vector<GpuSlice>& slices = {})
       : gpu_(context, options) {
     const std::vector<PlacedPart> parts = placed(cpu.scene.world, cpu.scene.T_world_sonar);
     bool has_room = false;
     for (int tries = 0; tries < 8 && !has_room; ++tries) {
-      gpu_.find(buffers_, parts, cpu.setting(), slices);
-      gpu_.see(buffers_, cpu.setting(), rounds);
+      gpu_.find(buffers_, parts, cpu.of_gpu, slices);
+      gpu_.see(buffers_, cpu.of_gpu, rounds);
       counts = read<PingCounts>(buffers_.counts, 1)[0];
-      has_room = buffers_.room.fits(counts);
-      buffers_.room.grow(counts);
+      has_room = !buffers_.grow(counts.needed);
     }
     EXPECT_TRUE(has_room);
   }
 
   PingCounts counts{};
-  std::vector<GpuSlice> slices() const { return read<GpuSlice>(buffers_.slices, counts.slices); }
-  std::vector<GpuTriangle> triangles() const { return read<GpuTriangle>(buffers_.fan, counts.triangles); }
-  std::vector<GpuVisible> visible() const { return read<GpuVisible>(buffers_.visible, counts.visible); }
+  std::vector<GpuSlice> slices() const { return read<GpuSlice>(buffers_.slices, counts.needed.slices); }
+  std::vector<GpuTriangle> triangles() const {
+    return read<GpuTriangle>(buffers_.fan, counts.needed.triangles);
+  }
+  std::vector<GpuVisible> visible() const {
+    return read<GpuVisible>(buffers_.visible, counts.needed.visible);
+  }
   /// [slice][port, starboard][probe]
   std::vector<float> sides() const {
-    return read<float>(buffers_.sides, std::size_t{counts.slices} * 2 * slices::side_probes);
+    return read<float>(buffers_.sides, std::size_t{counts.needed.slices} * 2 * slices::side_probes);
   }
 
  private:
   template <class T>
   std::vector<T> read(const GpuBuffer& buffer, std::size_t count) const {
-    return gpu_.compute().read<T>(buffer, count);
+    return test::read_back<T>(buffers_.gl, buffer, count);
   }
 
   GpuSlices gpu_;
@@ -152,7 +143,7 @@ class GpuSlicesTest : public test::GlContextTest {
  protected:
   static constexpr std::size_t every = 2;
   /// Sees every second slice of a ping of the CPU engine, preset `default`, with both.
-  Comparison compare(const std::string& scene_name, const GpuSlices::Options& options);
+  Comparison compare(const std::string& scene_name, const GpuOptions& options);
 };
 
 bool has_same_bits(const VisibleSegment& cpu, const GpuVisible& gpu) {
@@ -171,13 +162,17 @@ std::size_t count_off(const SideProfile& cpu, const float* gpu) {
   return off;
 }
 
-Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices::Options& options) {
+Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuOptions& options) {
   const PingOnCpu ping(scene_name);
   std::vector<const SliceCell*> cells;
   std::vector<GpuSlice> slices;
   for (std::size_t i = 0; i < ping.cells.size(); i += every) {
     const SliceCell* const cell = cells.emplace_back(ping.cells[i]);
-    slices.push_back({cell->slice.cosine, cell->slice.sine, cell->slice.width_rad, cell->beam});
+    GpuSlice& slice = slices.emplace_back();
+    slice.cosine = cell->slice.cosine;
+    slice.sine = cell->slice.sine;
+    slice.width_rad = cell->slice.width_rad;
+    slice.beam = cell->beam;
   }
   const PingOnGpu gpu(*context_, options, ping, 1, slices);
   const std::vector<GpuSlice> seen = gpu.slices();
@@ -193,7 +188,7 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
     const auto first = visible.begin() + seen[i].first_visible;
     const std::vector<GpuVisible> of_gpu(first, first + seen[i].visible_count);
     result.same_bits += std::ranges::equal(of_cpu, of_gpu, has_same_bits) ? 1 : 0;
-    result.differing += differing_share(of_cpu, of_gpu, triangles, ping.fan.tan_limit());
+    result.differing += differing_share(of_cpu, of_gpu, triangles, ping.of_gpu.fan.tan_limit());
     const float* const of_sides = &sides[2 * i * slices::side_probes];
     result.off_sides +=
         static_cast<double>(count_off(cells[i]->sides.port, of_sides) +
@@ -211,17 +206,13 @@ Comparison GpuSlicesTest::compare(const std::string& scene_name, const GpuSlices
 TEST_F(GpuSlicesTest, TooManyFirstSlicesAreARequestError) {
   for (const auto& [beams, slices_per_beam] : {std::pair{4, 1024}, {4096, 16}}) {
     SCOPED_TRACE(beams);
-    Aperture aperture = test::make_scene("plane").settings.aperture;
-    aperture.beam_edges_rad = equal_angle_edges(beams, 1.0);
-    const Fan fan(aperture, 10.0F);
-    const ProbeWeights weights = probe_weights(aperture, fan.tan_limit());
-    GpuSlices gpu(*context_);
+    test::Scene scene = test::make_scene("plane");
+    scene.settings.aperture.beam_edges_rad = equal_angle_edges(beams, 1.0);
+    GpuPing ping({scene.T_world_sonar, scene.settings}, {}, 1.0F);
+    ping.accuracy.slices_per_beam = slices_per_beam;
+    GpuSlices gpu(*context_, {});
     PingBuffers buffers(gpu.compute().gl());
-    SliceAccuracy accuracy;
-    accuracy.slices_per_beam = slices_per_beam;
-    const GpuSlices::PingSetting setting{
-        .fan = fan, .weights = weights, .line_m = 0.01F, .max_range_m = 10.0F, .accuracy = accuracy};
-    EXPECT_THROW(gpu.find(buffers, {}, setting), RequestError);
+    EXPECT_THROW(gpu.find(buffers, {}, ping), RequestError);
   }
 }
 
@@ -263,15 +254,16 @@ TEST_F(GpuSlicesTest, SlicesWithTooManySegmentsAreSeenInBands) {
 
 /// Share of the fan that both engines see in the same slices.
 double same_slices(const PingOnCpu& ping, const std::vector<GpuSlice>& on_gpu) {
-  std::vector<std::vector<const GpuSlice*>> of_beam(static_cast<std::size_t>(ping.fan.beam_count()));
+  std::vector<std::vector<const GpuSlice*>> of_beam(static_cast<std::size_t>(ping.of_gpu.fan.beam_count()));
   for (const GpuSlice& slice : on_gpu) {
-    if ((slice.state & GpuSlice::is_divided) == 0) {
+    if ((slice.state & records::is_divided) == 0) {
       of_beam[static_cast<std::size_t>(slice.beam)].push_back(&slice);
     }
   }
   double same_rad = 0;
   for (const SliceCell* cell : ping.cells) {
-    const double middle_rad = (ping.fan.edge_rad(cell->beam) + ping.fan.edge_rad(cell->beam + 1)) / 2;
+    const double middle_rad =
+        (ping.of_gpu.fan.edge_rad(cell->beam) + ping.of_gpu.fan.edge_rad(cell->beam + 1)) / 2;
     for (const GpuSlice* slice : of_beam[static_cast<std::size_t>(cell->beam)]) {
       const double off_rad =
           std::abs(middle_rad + static_cast<double>(slice->offset_rad) - cell->slice.azimuth_rad);
@@ -281,7 +273,7 @@ double same_slices(const PingOnCpu& ping, const std::vector<GpuSlice>& on_gpu) {
       same_rad += off_rad < 1e-2 * width_rad && same_width ? width_rad : 0.0;
     }
   }
-  return same_rad / (ping.fan.edge_rad(0) - ping.fan.edge_rad(ping.fan.beam_count()));
+  return same_rad / (ping.of_gpu.fan.edge_rad(0) - ping.of_gpu.fan.edge_rad(ping.of_gpu.fan.beam_count()));
 }
 
 /// Largest difference between the width of a beam and its slices, as a share.
@@ -290,7 +282,7 @@ double worst_gap(const Fan& fan, const std::vector<GpuSlice>& slices) {
   for (const GpuSlice& slice : slices) {
     const double width_rad = fan.edge_rad(slice.beam) - fan.edge_rad(slice.beam + 1);
     left[static_cast<std::size_t>(slice.beam)] -=
-        (slice.state & GpuSlice::is_divided) == 0 ? static_cast<double>(slice.width_rad) / width_rad : 0.0;
+        (slice.state & records::is_divided) == 0 ? static_cast<double>(slice.width_rad) / width_rad : 0.0;
   }
   double worst = 0;
   for (const double gap : left) {
@@ -313,12 +305,12 @@ TEST_F(GpuSlicesTest, DividesTheSlicesThatTheCpuDivides) {
     const std::vector<GpuSlice> slices = gpu.slices();
     const double same = same_slices(ping, slices);
     const auto kept = std::ranges::count_if(
-        slices, [](const GpuSlice& slice) { return (slice.state & GpuSlice::is_divided) == 0; });
+        slices, [](const GpuSlice& slice) { return (slice.state & records::is_divided) == 0; });
     std::cout << scene << ": " << kept << " slices for " << ping.cells.size() << ", " << same
-              << " of the fan in the same ones, gap " << worst_gap(ping.fan, slices) << "\n";
+              << " of the fan in the same ones, gap " << worst_gap(ping.of_gpu.fan, slices) << "\n";
     EXPECT_EQ(gpu.counts.overflows, 0U);
     EXPECT_GT(same, 0.95);
-    EXPECT_LT(worst_gap(ping.fan, slices), 1e-5);
+    EXPECT_LT(worst_gap(ping.of_gpu.fan, slices), 1e-5);
   }
 }
 
