@@ -4,6 +4,7 @@
 #if MAPPED
 #include "gpu/normal_maps.glsl"
 #endif
+layout(std430, binding = 6) buffer Pieces { uvec4 pieces[]; };  // as Piece; later as Patch
 
 shared uint s_without_facets;
 
@@ -128,6 +129,12 @@ void weigh_by_pattern() {
   range_gradient = within_one(range_gradient);
 }
 
+Piece piece_at(uint i) {
+  vec4 ends = uintBitsToFloat(pieces[2u * i]);
+  uvec4 rest = pieces[2u * i + 1u];
+  return Piece(ends.x, ends.y, ends.z, ends.w, rest.x, rest.y, rest.z, rest.w);
+}
+
 void set_patch(uint i, Patch p) {
   pieces[2u * i] = floatBitsToUint(vec4(p.range_a, p.range_b, p.smear_a, p.smear_b));
   pieces[2u * i + 1u] = floatBitsToUint(vec4(p.echo, p.weight, p.echo_gradient, p.weight_gradient));
@@ -224,7 +231,7 @@ void main() {
   uint without_facets = 0u;
   SlicePieces mine = of_slice[number];
   for (uint i = lane; i < mine.count; i += GROUP) {
-    measure(mine.first + i);
+    measure(piece_at(mine.first + i));
     solid_angle = ranges.solid_angle;
     range_gradient = gradient.gradient;
     without_facets += shade() ? 0u : 1u;

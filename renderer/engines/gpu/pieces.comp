@@ -2,6 +2,7 @@
 // One group for each slice: divides its visible segments into pieces whose echo over range a patch can
 // represent. As SlicePatcher::make() and VisibleEnds.
 #include "gpu/pieces.glsl"
+layout(std430, binding = 6) coherent buffer Pieces { Piece pieces[]; };
 
 shared uint s_first;
 uint first, count;  // pieces of the slice
@@ -9,11 +10,6 @@ uint first, count;  // pieces of the slice
 void wait_for_all() {
   memoryBarrierBuffer();
   barrier();
-}
-
-void set_piece(uint i, Piece p) {
-  pieces[2u * i] = floatBitsToUint(vec4(p.low, p.high, p.low_slope, p.high_slope));
-  pieces[2u * i + 1u] = uvec4(p.segment, p.flags, 0u, 0u);
 }
 
 // All invocations must call it. @return first of `wanted` pieces, or false if there is no room
@@ -34,7 +30,7 @@ bool continues(uint i, Piece p, Visible of_p) {
   if (i + 1u == count) {
     return false;
   }
-  Piece next = piece_at(first + i + 1u);
+  Piece next = pieces[first + i + 1u];
   Visible of_next = visible[next.segment];
   float t = p.high;
   return t == next.low && fan[of_p.triangle].flags >> part_shift == fan[of_next.triangle].flags >> part_shift &&
@@ -43,76 +39,69 @@ bool continues(uint i, Piece p, Visible of_p) {
 
 void limit_slopes() {
   for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
-    Piece p = piece_at(first + i);
+    Piece p = pieces[first + i];
     Visible v = visible[p.segment];
     bool is_low = (p.flags & low_end) != 0u, is_high = (p.flags & high_end) != 0u;
     p.low_slope = is_low ? slope_within(v.low_slope, v.low_reach, p.low, slice.width_rad, ping.tan_limit) : 0.0;
     p.high_slope = is_high ? slope_within(v.high_slope, v.high_reach, p.high, slice.width_rad, ping.tan_limit) : 0.0;
     p.flags |= continues(i, p, v) ? goes_on : 0u;
-    set_piece(first + i, p);
+    pieces[first + i] = p;
   }
 }
 
-// The slopes of both ends of piece i.
-vec2 slopes_of(uint i) { return uintBitsToFloat(pieces[2u * (first + i)].zw); }
-void set_low_slope(uint i, float slope) { pieces[2u * (first + i)].z = floatBitsToUint(slope); }
-void set_high_slope(uint i, float slope) { pieces[2u * (first + i)].w = floatBitsToUint(slope); }
-float excess_of(uint i) {
-  vec4 ends = uintBitsToFloat(pieces[2u * (first + i)]);
-  return crossing_excess(ends.z, ends.w, ends.y - ends.x, slice.width_rad);
+float excess_of(Piece p) {
+  return crossing_excess(p.low_slope, p.high_slope, p.high - p.low, slice.width_rad);
 }
 
 // As VisibleEnds::keep_from_crossing().
 void keep_from_crossing(uint begin, uint last) {
-  float low = slopes_of(begin).x, high = slopes_of(last).y;
-  float most = 2.0 * (piece_at(first + last).high - piece_at(first + begin).low) / slice.width_rad;
-  float whole = high - low;
+  float most = 2.0 * (pieces[last].high - pieces[begin].low) / slice.width_rad;
+  float whole = pieces[last].high_slope - pieces[begin].low_slope;
   if (abs(whole) > most) {  // the whole surface ends within the wedge
     float excess = 0.5 * (whole - with_sign_of(most, whole));
-    set_low_slope(begin, low + excess);
-    set_high_slope(last, high - excess);
+    pieces[begin].low_slope += excess;
+    pieces[last].high_slope -= excess;
   }
   for (uint i = begin; i < last; ++i) {
-    float excess = excess_of(i);
+    float excess = excess_of(pieces[i]);
     if (excess == 0.0) {
       break;
     }
-    float slope = slopes_of(i).y - excess;
-    set_high_slope(i, slope);
-    set_low_slope(i + 1u, slope);
+    pieces[i].high_slope -= excess;
+    pieces[i + 1u].low_slope = pieces[i].high_slope;
   }
   for (uint i = last; i > begin; --i) {
-    float excess = excess_of(i);
+    float excess = excess_of(pieces[i]);
     if (excess == 0.0) {
       break;
     }
-    float slope = slopes_of(i).x + excess;
-    set_low_slope(i, slope);
-    set_high_slope(i - 1u, slope);
+    pieces[i].low_slope += excess;
+    pieces[i - 1u].high_slope = pieces[i].low_slope;
   }
 }
 
-bool goes_on_after(uint i) { return (pieces[2u * (first + i) + 1u].y & goes_on) != 0u; }
+bool goes_on_after(uint i) { return (pieces[i].flags & goes_on) != 0u; }
 
 // One invocation for each surface.
 void straighten_ends() {
   for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
-    if (i > 0u && goes_on_after(i - 1u)) {
+    if (i > 0u && goes_on_after(first + i - 1u)) {
       continue;
     }
-    uint last = i;
-    while (last + 1u < count && goes_on_after(last)) {
+    uint last = first + i;
+    while (last + 1u < first + count && goes_on_after(last)) {
       ++last;
     }
-    keep_from_crossing(i, last);
+    keep_from_crossing(first + i, last);
   }
 }
 
 // ---- division ----
 
 // Writes the parts of a piece from `to` on. @param writing false: only counts them @return their number
-uint divide(Piece whole, int parts, uint to, bool writing) {
+uint divide(Piece whole, uint to, bool writing) {
   precise float turn = turn_of_range(visible[whole.segment].w_at_0, visible[whole.segment].w_slope);
+  int parts = int(whole.parts);
   uint made = 0u;
   Piece part = whole;
   part.flags = whole.flags & low_end;
@@ -121,7 +110,7 @@ uint divide(Piece whole, int parts, uint to, bool writing) {
     part.flags |= k == parts ? whole.flags & high_end : 0u;
     if (part.high > part.low) {
       if (writing) {
-        set_piece(to + made, part);
+        pieces[to + made] = part;
       }
       ++made;
       part.low = part.high;
@@ -131,8 +120,8 @@ uint divide(Piece whole, int parts, uint to, bool writing) {
   return made;
 }
 
-int parts_of_piece(uint i) {
-  measure(i);
+// Of the piece at hand.
+int count_parts() {
   float height = piece.high - piece.low;
   UnevenSegment uneven = UnevenSegment(
       height, ranges.range_low, ranges.range_mid, ranges.range_high, 0.5 * (gradient.smear_low + gradient.smear_high),
@@ -147,19 +136,16 @@ int parts_of_piece(uint i) {
 uint find_parts() {
   uint made = 0u;
   for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
-    int parts = parts_of_piece(first + i);
-    made += divide(piece, parts, 0u, false);
-    pieces[2u * (first + i) + 1u].y = (piece.flags & (low_end | high_end)) | uint(parts) << parts_shift;
+    measure(pieces[first + i]);
+    pieces[first + i].parts = piece.parts = uint(count_parts());
+    made += divide(piece, 0u, false);
   }
   return made;
 }
 
 void write_parts(uint to) {
   for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
-    Piece whole = piece_at(first + i);
-    int parts = int(whole.flags >> parts_shift);
-    whole.flags &= low_end | high_end;
-    to += divide(whole, parts, to, true);
+    to += divide(pieces[first + i], to, true);
   }
 }
 
@@ -171,7 +157,8 @@ bool begin_pieces() {
   }
   for (uint i = begin_of_share(count, lane); i < begin_of_share(count, lane + 1u); ++i) {
     uint segment = slice.first_visible + i;
-    set_piece(first + i, Piece(visible[segment].low, visible[segment].high, 0.0, 0.0, segment, low_end | high_end));
+    pieces[first + i] =
+        Piece(visible[segment].low, visible[segment].high, 0.0, 0.0, segment, low_end | high_end, 1u, 0u);
   }
   return true;
 }

@@ -12,18 +12,11 @@ layout(std430, binding = 2) buffer PiecesOfSlices { SlicePieces of_slice[]; };
 layout(std430, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
 layout(std430, binding = 4) readonly buffer Fan { FanTriangle fan[]; };
 layout(std430, binding = 5) buffer Counts { PingCounts counts; };
-layout(std430, binding = 6) coherent buffer Pieces { uvec4 pieces[]; };
 // Indices of triangles; normals of vertices, and texture coordinates and tangents if mapped; normal maps.
 layout(std430, binding = 7) readonly buffer World { uint world[]; };
 // clang-format on
 
 Slice slice;
-
-Piece piece_at(uint i) {
-  vec4 ends = uintBitsToFloat(pieces[2u * i]);
-  uvec4 rest = pieces[2u * i + 1u];
-  return Piece(ends.x, ends.y, ends.z, ends.w, rest.x, rest.y);
-}
 
 // The piece at hand:
 Piece piece;
@@ -150,9 +143,9 @@ void find_facet_turn() {
   may_respond = facets_may_respond(turn, piece.high - piece.low, least_cosine);
 }
 
-// Makes piece i the piece at hand. Its ends must have been straightened.
-void measure(uint i) {
-  piece = piece_at(i);
+// Makes a piece the piece at hand. Its ends must have been straightened.
+void measure(Piece at_hand) {
+  piece = at_hand;
   seen = visible[piece.segment];
   triangle = fan[seen.triangle];
   surface = surfaces[triangle.flags >> part_shift];

@@ -179,15 +179,16 @@ struct SlicePieces {
   uint first, count;
 };
 
-// A visible segment or a part of one, with two words to spare.
+// A visible segment or a part of one.
 struct Piece {
   float low, high, low_slope, high_slope;  // ends, and how they move as straight lines across the wedge
   uint segment;                            // in `visible`
   uint flags;                              // low_end and ... below
+  uint parts;                              // into which it must be divided
+  uint unused;                             // a Patch is as long
 };
 CONSTANT uint low_end = 1U, high_end = 2U;  // the end is the segment's
 CONSTANT uint goes_on = 4U;                 // the next piece continues its surface
-CONSTANT uint parts_shift = 8U;             // above: number of parts into which it must be divided
 
 // A patch (EchoPatch) takes the place of its piece. For patches side by side, the place refers to them.
 struct Patch {
