@@ -18,8 +18,9 @@ namespace {
 
 struct ComplaintCase {
   std::string name;
-  std::string text;                     ///< the configuration
-  std::vector<std::string> complaints;  ///< patterns
+  std::string text;                   ///< the configuration
+  std::vector<std::string> patterns;  ///< of its complaints or warnings
+  bool is_valid = false;
 };
 
 void PrintTo(const ComplaintCase& one, std::ostream* out) {
@@ -29,9 +30,10 @@ void PrintTo(const ComplaintCase& one, std::ostream* out) {
 /// Adds one line of complaints.txt, whose head explains it.
 void add_line(ComplaintCase& one, const std::string& line) {
   const std::string rest = line.size() > 2 ? line.substr(2) : "";
-  if (line[0] == '!') {
+  if (line[0] == '!' || line[0] == '?') {
+    one.is_valid = line[0] == '?';
     if (rest != "nothing") {
-      one.complaints.push_back(rest);
+      one.patterns.push_back(rest);
     }
     return;
   }
@@ -66,7 +68,7 @@ void add_cases(std::vector<ComplaintCase>& cases, const std::filesystem::path& p
       number = 0;
     } else if (!line.starts_with('#')) {
       if (!line.empty() && !in_case) {
-        cases.push_back({fmt::format("{}_{}", group, ++number), "", {}});
+        cases.push_back({fmt::format("{}_{}", group, ++number), "", {}, false});
       }
       in_case = !line.empty();
       if (in_case) {
@@ -94,8 +96,8 @@ TEST(ComplaintCases, AreFound) {
 class Complaints : public ConfigFolder, public testing::WithParamInterface<ComplaintCase> {};
 
 TEST_P(Complaints, AreThoseOfTheTable) {
-  const std::vector<std::string> lines = complaints(GetParam().text);
-  const std::vector<std::string>& patterns = GetParam().complaints;
+  const auto& [name, text, patterns, is_valid] = GetParam();
+  const std::vector<std::string> lines = is_valid ? warnings(text) : complaints(text);
   ASSERT_EQ(lines.size(), patterns.size()) << fmt::format("{}", fmt::join(lines, "\n"));
   for (std::size_t i = 0; i < lines.size(); ++i) {
     std::string pattern = patterns[i];

@@ -6,10 +6,24 @@
 #include "server/devices/types/types.hpp"
 
 namespace sonard::server {
+namespace {
+
+std::vector<std::string> without_folder(std::vector<std::string> lines) {
+  for (std::string& line : lines) {
+    line = line.substr(line.find("config.yaml"));
+  }
+  return lines;
+}
+
+}  // namespace
 
 LoadedConfig ConfigFolder::load(const std::string& text) const {
   std::ofstream(folder_ / "config.yaml", std::ios::binary) << text;
   return load_config(folder_ / "config.yaml", head_types());
+}
+
+std::vector<std::string> ConfigFolder::warnings(const std::string& text) const {
+  return without_folder(load(text).warning_lines());
 }
 
 std::vector<std::string> ConfigFolder::complaints(const std::string& text) const {
@@ -17,11 +31,7 @@ std::vector<std::string> ConfigFolder::complaints(const std::string& text) const
     load(text);
     return {};
   } catch (const ConfigError& error) {
-    std::vector<std::string> lines = error.lines();
-    for (std::string& line : lines) {
-      line = line.substr(line.find("config.yaml"));
-    }
-    return lines;
+    return without_folder(error.lines());
   }
 }
 

@@ -32,6 +32,8 @@ class ConfigFolder : public testing::Test {
  protected:
   /// Writes `text` to "config.yaml" and loads it.
   LoadedConfig load(const std::string& text) const;
+  /// The warnings of load(), one line each, without the folder.
+  std::vector<std::string> warnings(const std::string& text) const;
   /// The errors of load(), one line each, without the folder; empty if it succeeds.
   std::vector<std::string> complaints(const std::string& text) const;
 

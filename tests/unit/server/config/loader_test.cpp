@@ -324,102 +324,12 @@ TEST_F(Loader, NamesTheInterfaceThatAHeadIsNamedBy) {
   EXPECT_EQ(gemini_of(load(minimal_config).config).interface, "");
 }
 
-TEST_F(Loader, WarnsOfRadiansThatAreGivenForDegrees) {
-  const auto warnings = [&](const std::string& rpy) {
-    return load(minimal_config + "    mount: {rpy_deg: " + rpy + "}\n").warning_lines();
-  };
-  EXPECT_THAT(warnings("[0, 1.57, 0]"),
-              ElementsAre(HasSubstr("heads[0].mount.rpy_deg: 0, 1.57, 0 look like radians (sonard expects "
-                                    "degrees; 0, 89.95, 0 degrees are the same rotation)")));
-  for (const char* rpy :
-       {"[0, 0.349, 0]", "[3.1416, 0, 0]", "[0, 0, -0.7854]", "[0, 0.5236, 3.14159]", "[0, 0, 4.712]",
-        "[0, 0.35, 0]", "[0, 0.17, 0]", "[0, 0.52, 0]", "[0, 0.79, 0]", "[0.1, 0.35, -0.2]"}) {
-    EXPECT_THAT(warnings(rpy), ElementsAre(HasSubstr("look like radians"))) << rpy;
-  }
-  for (const char* rpy :
-       {"[0, 20, 0]", "[0, 1, 0]", "[0, 1.5, 0]", "[0, 2, 180]", "[0, 3.5, 0]", "[0, 5, 0]", "[0.5, 6, 0]",
-        "[0, 1.2, 0]", "[0, 1.4, 0]", "[0, 0.25, 0]", "[0, 1.57, 90]", "[0, 0, 0]"}) {
-    EXPECT_THAT(warnings(rpy), IsEmpty()) << rpy;
-  }
-  std::string text = minimal_config;
-  text.replace(text.find("[1, 2, 3]"), 9, "[1, 2, 3], rpy_deg: [0, 0, 1.5708]");
-  EXPECT_THAT(load(text).warning_lines(),
-              ElementsAre(HasSubstr("poses.initial.rpy_deg: 0, 0, 1.571 look like radians")));
-}
-
-TEST_F(Loader, WarnsOfMountsInCentimetres) {
-  const auto warnings = [&](const std::string& position) {
-    return load(minimal_config + "    mount: {position_m: " + position + "}\n").warning_lines();
-  };
-  EXPECT_THAT(warnings("[150, 0, -30]"),
-              ElementsAre(HasSubstr("heads[0].mount.position_m: puts the sonar 153 m from the origin of the "
-                                    "vehicle (is it in centimetres or millimetres? sonard expects metres)")));
-  EXPECT_THAT(warnings("[20, 0, -10]"), ElementsAre(HasSubstr("puts the sonar 22.36 m from")));
-  EXPECT_THAT(warnings("[1.5, 0, -0.3]"), IsEmpty());
-}
-
-TEST_F(Loader, SaysWhichBoundOfTheAbsorptionFormulaIsLeft) {
-  const auto warnings = [&](const std::string& type, const std::string& water) {
-    return load("world: {file: world.sdf}\nposes: {initial: {position_m: [0, 0, 0]}}\nwater: " + water +
-                "\nheads:\n  - name: a\n    type: oculus\n    model: " + type +
-                "\n    network: {address: 127.0.0.2, netmask: 255.0.0.0}\n")
-        .warning_lines();
-  };
-  // The limit of Francois and Garrison is 1 MHz. An m750d uses 750 kHz and 1.2 MHz, an m1200d 1.2 and 2.1
-  // MHz.
-  const auto high = [](const char* what) {
-    return AllOf(HasSubstr(fmt::format("not valid here: {}. Its error", what)),
-                 HasSubstr("use heads[].acoustics.high_frequency.absorption_db_per_km)"));
-  };
-  const auto of_1200_khz = high("1200 kHz is not within 0.2 to 1000 kHz");
-  EXPECT_THAT(warnings("m1200d", "{}"),
-              ElementsAre(AllOf(HasSubstr("water: the formula of the absorption is not valid here: 1200 kHz "
-                                          "is not within 0.2 to 1000 kHz. Its error may"),
-                                HasSubstr("(to set the absorption, use water.absorption_db_per_km)")),
-                          high("2099 kHz is not within 0.2 to 1000 kHz")));
-  EXPECT_THAT(warnings("m750d", "{}"), ElementsAre(of_1200_khz));
-  EXPECT_THAT(warnings("m750d", "{absorption_db_per_km: 300}"), IsEmpty());
-  EXPECT_THAT(warnings("m750d", "{salinity_ppt: 0}"),
-              ElementsAre(HasSubstr("not valid here: 0 ppt are not within 30 to 35 ppt."),
-                          high("1200 kHz is not within 0.2 to 1000 kHz, 0 ppt are not within 30 to 35 ppt")));
-  EXPECT_THAT(
-      warnings("m1200d", "{temperature_c: 35}"),
-      ElementsAre(
-          HasSubstr("here: 1200 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 "
-                    "degrees."),
-          high("2099 kHz is not within 0.2 to 1000 kHz, 35 degrees are not within -2 to 30 degrees")));
-}
-
 TEST_F(Loader, ReadsWhereStatusPacketsGo) {
   const auto status = [&](const std::string& text) {
     return gemini_of(load(minimal_config + "      status: " + text + "\n").config).status;
   };
   EXPECT_THAT(status("[127.0.0.1, 127.0.0.9]").hosts, ElementsAre(0x7F000001U, 0x7F000009U));
   EXPECT_EQ(status("directed_broadcast").mode, StatusDestination::Mode::directed_broadcast);
-}
-
-TEST_F(Loader, WarnsOfWhatCannotWorkButMayBeMeant) {
-  EXPECT_THAT(load(minimal_config + "      bind: 127.0.0.7\n").warning_lines(),
-              ElementsAre(HasSubstr("config.yaml:11:13: heads[0].network.bind: clients send to the alternate "
-                                    "address 127.0.0.2, but the head listens only on 127.0.0.7")));
-  EXPECT_THAT(load(minimal_config + "      status: [10.0.0.1]\n").warning_lines(),
-              ElementsAre(HasSubstr("10.0.0.1 receives status packets but is not in `allow`")));
-}
-
-TEST_F(Loader, WarnsOfKeysThatHaveNoEffectHere) {
-  const auto warnings = [&](const std::string& text) { return load(minimal_config + text).warning_lines(); };
-  EXPECT_THAT(warnings("engine: cpu\ngpu: {device: 0}\n"),
-              ElementsAre(HasSubstr("gpu: has no effect: the engine is `cpu`")));
-  EXPECT_THAT(warnings("engine: gpu\ngpu: {device: 0}\n"), IsEmpty());
-  const auto acoustics = [&](const std::string& text) { return warnings("    acoustics: " + text + "\n"); };
-  EXPECT_THAT(acoustics("{mode: paper, physical: {noise: false}}"),
-              ElementsAre(HasSubstr("heads[0].acoustics.physical: has no effect: this is mode `paper`")));
-  EXPECT_THAT(acoustics("{paper: {gain: 0.5}}"), ElementsAre(HasSubstr("this is mode `physical`")));
-  EXPECT_THAT(acoustics("{physical: {noise: false, noise_level_db: -60}}"),
-              ElementsAre(HasSubstr("noise_level_db: has no effect: `noise` is false")));
-  EXPECT_THAT(acoustics("{physical: {bearing_jitter_deg: 1}}"),
-              ElementsAre(HasSubstr("bearing_jitter_deg: has no effect: this head does not scan")));
-  EXPECT_THAT(acoustics("{physical: {volume_scattering_db: -80}}"), IsEmpty());
 }
 
 TEST_F(Loader, ReadsMavlink) {

@@ -90,21 +90,5 @@ TEST_F(Ping360Section, ATransducerBandHasTwoEndsOrNone) {
             (render::TransducerBand{650e3, 850e3}));
 }
 
-// docs/protocols/ping360.md 5: the answer names no port.
-TEST_F(Ping360Section, WarnsOfAHeadThatIsFoundWhereItIsNot) {
-  const auto warnings = [this](const std::string& udp) {
-    return load(document("name: m, udp: [" + udp +
-                         "], discovery: {address: 192.168.2.4, allow: [192.168.2.0/24]}"))
-        .warning_lines();
-  };
-  EXPECT_THAT(warnings("{bind: 192.168.2.4:12345, allow: [192.168.2.0/24]}"), IsEmpty());
-  EXPECT_THAT(warnings("{bind: 127.0.0.1:1}, {bind: 0.0.0.0:12345, allow: [192.168.2.0/24]}"), IsEmpty());
-  for (const std::string udp : {"{bind: 127.0.0.1:12345}", "{bind: 0.0.0.0:9092, allow: [192.168.2.0/24]}"}) {
-    const auto found = warnings(udp);
-    ASSERT_EQ(found.size(), 1U) << udp;
-    EXPECT_THAT(found[0], HasSubstr("send to 192.168.2.4:12345, but no socket of udp is bound there"));
-  }
-}
-
 }  // namespace
 }  // namespace sonard::server
