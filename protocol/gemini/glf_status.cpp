@@ -8,7 +8,7 @@
 namespace sonard::gemini {
 namespace {
 
-// Bits of glf::StatusRecord::link_type (docs/logs.md 1.5).
+// Bits of glf::StatusRecord::link_type (protocol/glf/README.md 1.5).
 constexpr std::uint16_t link_vdsl = 0x0001;
 constexpr std::uint16_t link_100_mbps = 0x0100;
 constexpr std::uint16_t link_negotiated = 0x1000;

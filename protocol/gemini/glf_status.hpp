@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts a status packet to the fields of a .glf log (docs/logs.md 1.5).
+// Converts a status packet to the fields of a .glf log (protocol/glf/README.md 1.5).
 #pragma once
 
 #include "protocol/gemini/messages.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of a log <-> values. Source: docs/logs.md 1.3 to 1.5. No state; any thread.
+// Records of a log <-> values. Source: protocol/glf/README.md 1.3 to 1.5. No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the records of a .dat. Source: docs/logs.md 1.3, 1.7. No state; any thread.
+// Finds the records of a .dat. Source: protocol/glf/README.md 1.3, 1.7. No state; any thread.
 #pragma once
 
 #include <cstdint>

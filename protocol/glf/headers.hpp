@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Headers of records, from which their size follows without unpacking.
-// Source: docs/logs.md 1.3, 1.4. No state; any thread.
+// Source: protocol/glf/README.md 1.3, 1.4. No state; any thread.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout tables of all records, used for reading and writing. Source: docs/logs.md 1.3 to 1.5. codec.cpp and
-// headers.cpp handle the parts that depend on the record itself (pixels, bearings, the field that other
-// versions of images lack).
+// Layout tables of all records, used for reading and writing. Source: protocol/glf/README.md 1.3 to 1.5.
+// codec.cpp and headers.cpp handle the parts that depend on the record itself (pixels, bearings, the field
+// that other versions of images lack).
 #pragma once
 
 #include <tuple>

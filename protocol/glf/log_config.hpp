@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The .cfg entry of a .glf: XML with the writer, the times and the sonars of the log.
-// Source: docs/logs.md 1.2. No state; any thread.
+// Source: protocol/glf/README.md 1.2. No state; any thread.
 #pragma once
 
 #include <cstdint>

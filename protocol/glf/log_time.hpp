@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of logs, and file names made from it. Source: docs/logs.md 1.1, 1.6.
+// The clock of logs, and file names made from it. Source: protocol/glf/README.md 1.1, 1.6.
 // A log counts seconds since 1980-01-01 00:00:00 local time and does not contain the zone, so the zone's
 // offset from UTC is an argument. Keep it constant from the opening of a log on, because local time jumps.
 #pragma once

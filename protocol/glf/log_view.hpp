@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a log: a whole .glf or its .dat. Source: docs/logs.md 1.2, 1.3, 1.7.
+// Reads a log: a whole .glf or its .dat. Source: protocol/glf/README.md 1.2, 1.3, 1.7.
 #pragma once
 
 #include <cstdint>

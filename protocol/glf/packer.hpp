@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packs a closed .dat into a .glf with at most one block in memory. Source: docs/logs.md 1.2. It uses no
-// files: it returns the bytes to write around the blocks of the .dat.
+// Packs a closed .dat into a .glf with at most one block in memory. Source: protocol/glf/README.md 1.2. It
+// uses no files: it returns the bytes to write around the blocks of the .dat.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two records of a .glf or .dat log that this library writes: images and statuses, as values.
-// Source: docs/logs.md 1.3 to 1.5. Members hold the values of the file in its units, so that decode and
-// encode lose nothing. The packing of pixels is not part of a value.
+// Source: protocol/glf/README.md 1.3 to 1.5. Members hold the values of the file in its units, so that decode
+// and encode lose nothing. The packing of pixels is not part of a value.
 #pragma once
 
 #include <array>
@@ -66,7 +66,7 @@ struct ImageRecord {
 
 /// Converts a bearing of the wire to a bearing in a log's table. Tables in logs descend from about +60
 /// degrees (port), on the wire bearings ascend from -60 degrees (port). Pixels keep the wire's order of beams
-/// (docs/logs.md 1.4). It is its own inverse.
+/// (protocol/glf/README.md 1.4). It is its own inverse.
 constexpr double bearing_for_log(double wire_bearing_rad) {
   return -wire_bearing_rad;
 }
@@ -88,7 +88,7 @@ struct StatusRecord {
   double die_c = 0.0;
   double tx_c = 0.0;
   std::array<double, 8> afe_c{};  ///< top and bottom of AFE 0, of AFE 1, ...
-  std::uint16_t link_type = 0;    ///< bits: docs/logs.md 1.5
+  std::uint16_t link_type = 0;    ///< bits: protocol/glf/README.md 1.5
   double uplink_mbps = 0.0;
   double downlink_mbps = 0.0;
   std::uint16_t link_quality_percent = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ZIP records of a .glf, as tables for its writer and its reader. Source: docs/logs.md 1.2. Only the
-// parts that a .glf needs: no ZIP64, no encryption, one archive per file.
+// The ZIP records of a .glf, as tables for its writer and its reader. Source: protocol/glf/README.md 1.2.
+// Only the parts that a .glf needs: no ZIP64, no encryption, one archive per file.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the entries of a .glf, which is a ZIP archive. Source: docs/logs.md 1.2, 1.7. Any thread.
+// Reads the entries of a .glf, which is a ZIP archive. Source: protocol/glf/README.md 1.2, 1.7. Any thread.
 #pragma once
 
 #include <cstddef>

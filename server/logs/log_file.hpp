@@ -13,7 +13,7 @@
 namespace sonard::server {
 
 enum class LogKind {
-  glf,     ///< packed (docs/logs.md 1)
+  glf,     ///< packed (protocol/glf/README.md)
   dat,     ///< the records of a .glf without its archive
   mcap,    ///< sonard's own
   pcapng,  ///< packets

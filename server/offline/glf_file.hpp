@@ -18,7 +18,7 @@ namespace sonard::server {
 /// their names at the end, the first log last: if it exists, all exist.
 class GlfFile {
  public:
-  /// Bytes of a .dat at which the next log begins; readers use 31-bit sizes (docs/logs.md 1.1).
+  /// Bytes of a .dat at which the next log begins; readers use 31-bit sizes (protocol/glf/README.md 1.1).
   static constexpr std::uint64_t usual_most_dat_size = 1'000'000'000;
 
   /// @param app_name of the writer, including its version

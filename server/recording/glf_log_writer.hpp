@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the .dat of one head (docs/logs.md 1 and "Recording").
+// Writes the .dat of one head (protocol/glf/README.md and "Recording").
 #pragma once
 
 #include "server/recording/glf_records.hpp"

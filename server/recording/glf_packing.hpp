@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes a .glf from a .dat, one slice at a time (docs/logs.md 1.1 and "Recording").
+// Makes a .glf from a .dat, one slice at a time (protocol/glf/README.md 1.1 and "Recording").
 #pragma once
 
 #include <cstdint>

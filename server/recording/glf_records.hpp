@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes records of a .glf log (docs/logs.md 1.4, 1.5) from pings of any multibeam head. Pure: serving,
-// rendering a trajectory and replaying a log give the same record.
+// Makes records of a .glf log (protocol/glf/README.md 1.4, 1.5) from pings of any multibeam head. Pure:
+// serving, rendering a trajectory and replaying a log give the same record.
 #pragma once
 
 #include <cstdint>

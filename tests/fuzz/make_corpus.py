@@ -311,7 +311,7 @@ def glf_record(kind, body):
 
 
 def glf_image(lines, beams, raw=False, version=3):
-    """docs/logs.md 1.4"""
+    """protocol/glf/README.md 1.4"""
     pixels = bytes((3 * line + 5 * beam) % 256 for line in range(lines) for beam in range(beams))
     data = pixels if raw else zlib.compress(pixels, 9)
     compression = struct.pack("<H", raw) if version == 3 else b""

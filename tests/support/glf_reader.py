@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads Tritech .glf and .dat logs. Written from docs/logs.md without our C++ code, so that it checks each byte.
+"""Reads Tritech .glf and .dat logs. Written from protocol/glf/README.md without our C++ code, so that it checks each byte.
 
     log = glf_reader.read(path)    # a .glf, or the .dat of one
     log.images[0].pixels           # bytes, line after line

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes Tritech .glf and .dat logs for tests that read or play logs. Written from docs/logs.md without our C++ code.
+"""Writes Tritech .glf and .dat logs for tests that read or play logs. Written from protocol/glf/README.md without our C++ code.
 
     images = glf_writer.noise(count=20, lines=482, device_id=513)
     glf_writer.write_glf(path, images)

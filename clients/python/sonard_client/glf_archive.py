@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the .dat in the ZIP archive of a .glf, also if the archive is damaged or truncated (docs/logs.md 1.2)."""
+"""Finds the .dat in the ZIP archive of a .glf, also if the archive is damaged or truncated (protocol/glf/README.md 1.2)."""
 
 from __future__ import annotations
 

@@ -191,7 +191,7 @@ def scan_line(turn, bearing, step, bins):
 
 
 def dat_image(pixels):
-    """Two lines of three beams, laid out by docs/logs.md 1.3 and 1.4, with raw pixels and zeros in unused fields."""
+    """Two lines of three beams, laid out by protocol/glf/README.md 1.3 and 1.4, with raw pixels and zeros in unused fields."""
     body = struct.pack("<HHHIIHIIHI", 1, 0xEFEF, 3, 0, 2, 0, 0, 3, 1, 6) + pixels + struct.pack(
         "<3dIIfdHfHIH", 1.0, 0.0, -1.0, 0, 18750, 120.0, 1.5, 0, 1500.0, 50, 0, 0xDEDE)
     return b"*" + struct.pack("<BIdBHHH", 2, 21 + len(body), 1.5, 0, 1194, 100, 0) + body

@@ -104,7 +104,7 @@ def archive_of(content, packed):
 
 
 def sonard_archive(content, block_size):
-    """An archive as sonard writes it (docs/logs.md 1.2), but without a .cfg: stored blocks, then an empty one."""
+    """An archive as sonard writes it (protocol/glf/README.md 1.2), but without a .cfg: stored blocks, then an empty one."""
     blocks = b"".join(struct.pack("<BHH", 0, len(block), len(block) ^ 0xFFFF) + block
                       for block in (content[at: at + block_size] for at in range(0, len(content), block_size)))
     return archive_of(content, blocks + b"\x01\0\0\xff\xff")

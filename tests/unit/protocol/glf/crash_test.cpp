@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs whose writer stopped at any byte, and the records that can still be read (docs/logs.md 1.7).
+// Logs whose writer stopped at any byte, and the records that can still be read (protocol/glf/README.md 1.7).
 #include <algorithm>
 
 #include <gtest/gtest.h>

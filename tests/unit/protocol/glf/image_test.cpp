@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images: every byte at its place in the tables of docs/logs.md 1.3 and 1.4, written out by hand; when images
-// are packed; which images are refused.
+// Images: every byte at its place in the tables of protocol/glf/README.md 1.3 and 1.4, written out by hand;
+// when images are packed; which images are refused.
 #include <random>
 #include <stdexcept>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The .cfg of a log (docs/logs.md 1.2).
+// The .cfg of a log (protocol/glf/README.md 1.2).
 #include <gtest/gtest.h>
 
 #include "protocol/glf/log_config.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of logs against dates from `date -u -d @...` (docs/logs.md 1.6).
+// The clock of logs against dates from `date -u -d @...` (protocol/glf/README.md 1.6).
 #include <cmath>
 #include <limits>
 

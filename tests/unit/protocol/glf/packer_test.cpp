@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The archive around a .dat: its bytes written out by hand, its sizes by the formulas of docs/logs.md 1.2.
+// The archive around a .dat: its bytes written out by hand, its sizes by the formulas of
+// protocol/glf/README.md 1.2.
 #include <random>
 #include <stdexcept>
 

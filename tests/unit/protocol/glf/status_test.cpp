@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Statuses: each field at its offset of docs/logs.md 1.5, after the 21 bytes of the header. A status has 218
-// bytes and no end tag.
+// Statuses: each field at its offset of protocol/glf/README.md 1.5, after the 21 bytes of the header. A
+// status has 218 bytes and no end tag.
 #include <gtest/gtest.h>
 
 #include "protocol/glf/codec.hpp"
