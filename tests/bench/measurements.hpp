@@ -20,7 +20,7 @@ struct Subject {
 
 struct Measurement {
   Subject subject;
-  std::string metric;  ///< listed in docs/benchmark.md
+  std::string metric;  ///< listed in tests/bench/README.md
   double value;
   std::string unit;  ///< "ms", "1" for ratios, "bins", "count", "MiB"
 };

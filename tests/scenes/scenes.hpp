@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes for measurements of run time and error (docs/benchmark.md).
+// Scenes for measurements of run time and error (tests/bench/README.md).
 //
 // Seabed scenes: a bed of 0.18 m facets with a box, a sphere, a pipeline and a pole on it (`plane` has the
 // bed only). The sonar is 4 m above z = 0, pitched 20 degrees down, with 256 x 1000 bins over 120 x 20

@@ -217,8 +217,9 @@ TEST_P(Geometry, S14SoupOfAMillionSubpixelTrianglesFadesLikeFog) {
   }
 }
 
-// A strip s samples wide is found with probability min(1, s) (docs/stability.md, S14). Slices miss nothing
-// along the elevation. Across it they are a degree wide at most, and thin upright objects divide them.
+// A strip s samples wide is found with probability min(1, s) (tests/gl/stability/README.md, S14). Slices miss
+// nothing along the elevation. Across it they are a degree wide at most, and thin upright objects divide
+// them.
 TEST_P(Geometry, S14ThinStripsAreFoundAsOftenAsTheirWidthSays) {
   const bool slices = GetParam() == Way::cpu_slices;
   PingRequest request = level_request();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixture for the stress list of docs/stability.md: each test of an image runs on each way to render one.
+// Fixture for the stress list of tests/gl/stability/README.md: each test of an image runs on each way to
+// render one.
 #pragma once
 
 #include <algorithm>

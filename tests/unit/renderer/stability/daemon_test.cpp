@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// S11, S15, S18 and S20 of docs/stability.md: counters, times, warnings, a lost context and a slow renderer
-// in a daemon that serves for months.
+// S11, S15, S18 and S20 of tests/gl/stability/README.md: counters, times, warnings, a lost context and a slow
+// renderer in a daemon that serves for months.
 #include <unistd.h>
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The benchmark's worlds match docs/benchmark.md, by hand computation and plain ray casting.
+// The benchmark's worlds match tests/bench/README.md, by hand computation and plain ray casting.
 #include "tests/scenes/scenes.hpp"
 
 #include <algorithm>
