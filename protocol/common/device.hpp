@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -114,15 +115,23 @@ struct Actions {
   std::optional<TimePoint> wake_at;
 };
 
-/// A counter of a device or its transport, for the log. It only grows.
+/// A counter of a device or its transport, for log, status and docs/events.md. It only grows.
 struct Counter {
+  enum class Fault : std::uint8_t {
+    none,
+    of_client,  ///< a client sent something that the head refuses, ignores or changes
+  };
   enum class Shown : std::uint8_t {
     at_end,  ///< in the totals
+    once,    ///< in the totals; a notice has warned of the first event of each kind
     often,   ///< also in the lines about rates, if it has grown
     warns,   ///< in the totals and, if it has grown, as a warning with the text of `warning`
   };
   std::string name;  ///< "lines_resent"; empty: not in the totals
   std::uint64_t value = 0;
+  std::string_view meaning =
+      {};  ///< the events, and the reaction of the head: "commands for another node, ignored"
+  Fault fault = Fault::none;
   Shown shown = Shown::at_end;
   std::string warning = {};  ///< "{} commands were for another node"
 };

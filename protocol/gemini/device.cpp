@@ -15,6 +15,7 @@
 #include "protocol/gemini/codec.hpp"
 #include "protocol/gemini/flash_store.hpp"
 #include "protocol/gemini/messages.hpp"
+#include "protocol/gemini/ping_plan.hpp"
 #include "protocol/gemini/pinger.hpp"
 
 namespace sonard::gemini {
@@ -225,6 +226,7 @@ class Device::Impl {
   std::uint16_t last_wrong_id_ = 0;  ///< of the newest command for another head
 
   FlashStore flash_;
+  PingConfigWarnings warnings_;
   Pinger pinger_;
   std::vector<SharedBytes> ping_datagrams_;  ///< scratch of advance()
   Actions actions_;                          ///< of the step in progress
@@ -316,6 +318,9 @@ void Device::Impl::handle(TimePoint now, const StatusRequest&) {
 }
 
 void Device::Impl::handle(TimePoint now, const PingConfig& command) {
+  if (!config_.plays_back) {
+    counters_.out_of_range += warnings_.check(command, actions_.notices) ? 1 : 0;
+  }
   pinger_.resume(now);  // this configuration replaces a paused programme of another client
   pinger_.configure(now, command);
 }
@@ -504,27 +509,41 @@ PingProgress Device::progress() const {
 }
 
 std::vector<Counter> Device::counts() const {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
   const DeviceCounters& count = counters();
-  return {{"pings_sent", count.pings_sent},
-          {"pings_failed", count.pings_failed},
-          {"pings_suppressed", count.pings_suppressed, Shown::warns, "{} pings not made: out of the water"},
-          {"lines_sent", count.lines_sent},
-          {"lines_resent", count.lines_resent, Shown::often},
-          {"tails_resent", count.tails_resent, Shown::often},
-          {"heads_resent", count.heads_resent},
-          {"retries_dropped", count.retries_dropped},
-          {"commands", count.commands},
-          {"wrong_id", count.wrong_id, Shown::warns, impl_->wrong_id_warning()},
-          {"bad_datagrams", count.bad_datagrams, Shown::warns, "{} datagrams were not Gemini 720i commands"},
-          {"unknown_type", count.unknown_type},
-          {"unsupported_data", count.unsupported_data, Shown::warns,
-           "{} ping configurations requested unsupported data (I/Q, channels) or run mode 3"},
-          {"locked_out", count.locked_out, Shown::warns,
-           "{} commands were dropped: another client uses the head (lock_to_first)"},
-          {"client_changes", count.client_changes},
-          {"client_timeouts", count.client_timeouts},
-          {"reboots", count.reboots}};
+  return {
+      {"pings_sent", count.pings_sent, "pings sent to the end of their tail"},
+      {"pings_failed", count.pings_failed, "pings that could not be rendered"},
+      {"pings_suppressed", count.pings_suppressed,
+       "pings not made: out of the water, or a trigger edge during a ping", Fault::none, Shown::warns,
+       "{} pings not made: out of the water"},
+      {"lines_sent", count.lines_sent, "lines, without repetitions"},
+      {"lines_resent", count.lines_resent, "lines that a client requested again", Fault::none, Shown::often},
+      {"tails_resent", count.tails_resent, "tails that a client requested again", Fault::none, Shown::often},
+      {"heads_resent", count.heads_resent, "ping heads that a client requested again"},
+      {"retries_dropped", count.retries_dropped,
+       "requests to repeat lines that the head no longer has, or of another client"},
+      {"commands", count.commands, "commands that the head accepted"},
+      {"wrong_id", count.wrong_id, "commands with the ID of another sonar, ignored (1.4)", Fault::of_client,
+       Shown::warns, impl_->wrong_id_warning()},
+      {"bad_datagrams", count.bad_datagrams, "datagrams that are too short or have invalid contents, ignored",
+       Fault::of_client, Shown::warns, "{} datagrams were not Gemini 720i commands"},
+      {"unknown_type", count.unknown_type, "messages of unknown type, ignored (3.1)", Fault::of_client,
+       Shown::warns, "{} messages had an unknown type: the head ignores them"},
+      {"out_of_range", count.out_of_range,
+       "ping configurations with `end_range` or `sound_speed` out of range, clamped (5)", Fault::of_client,
+       Shown::once},
+      {"unsupported_data", count.unsupported_data,
+       "ping configurations for I/Q or channel data, which sonard does not have, or run mode 3: no ping",
+       Fault::none, Shown::warns,
+       "{} ping configurations requested unsupported data (I/Q, channels) or run mode 3"},
+      {"locked_out", count.locked_out, "commands of other clients, dropped (`lock_to_first`)", Fault::none,
+       Shown::warns, "{} commands were dropped: another client uses the head (lock_to_first)"},
+      {"client_changes", count.client_changes, "times that another client took the head (1.5)"},
+      {"client_timeouts", count.client_timeouts,
+       "times that a client was silent for 3 s: the pings stop (1.5)"},
+      {"reboots", count.reboots, "reboot commands"}};
 }
 
 const DeviceCounters& Device::counters() const {

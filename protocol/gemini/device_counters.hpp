@@ -25,6 +25,8 @@ struct DeviceCounters : PingCounters {
   std::uint64_t unsupported_data =
       0;  ///< configurations that request I/Q or channel data, or an unknown run mode
 
+  std::uint64_t out_of_range = 0;  ///< configurations of which a value was clamped
+
   std::uint64_t lines_sent = 0;
   std::uint64_t retries_received = 0;
   std::uint64_t retries_dropped =

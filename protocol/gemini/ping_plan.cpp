@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,10 @@ constexpr int max_native_lines_16_bit = 10'000;
 constexpr double grid_base_mps = 1400.0;
 constexpr double grid_step_mps = 3.2;
 constexpr double grid_top_mps = grid_base_mps + 59 * grid_step_mps;
+
+int most_lines(const PingConfig& config) {
+  return config.eight_bit() ? max_native_lines_8_bit : max_native_lines_16_bit;
+}
 
 double configured_speed_mps(const PingConfig& config) {
   return std::clamp(config.sound_speed_mps(), grid_base_mps, grid_top_mps);
@@ -39,8 +44,7 @@ std::vector<Setting> settings_of(const PingJob& job) {
 PingJob make_job(const PingConfig& config, const DeviceConfig& device) {
   PingJob job;
   job.sixteen_bit = !config.eight_bit();
-  const int most = job.sixteen_bit ? max_native_lines_16_bit : max_native_lines_8_bit;
-  job.native_bins = std::clamp<int>(config.end_range, min_native_lines, most);
+  job.native_bins = std::clamp<int>(config.end_range, min_native_lines, most_lines(config));
   job.compression_log2 = config.compression_log2();
   job.sound_speed_mps =
       device.water_sound_speed_mps > 0.0 ? device.water_sound_speed_mps : configured_speed_mps(config);
@@ -101,6 +105,25 @@ std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& 
   plan.head = make_head(config, plan.job, device);
   plan.line_scale = static_cast<std::uint16_t>(config.software_gain & 0xFFFF);
   return plan;
+}
+
+bool PingConfigWarnings::check(const PingConfig& config, std::vector<Notice>& notices) {
+  bool clamped = false;
+  const auto clamp = [&](std::string_view field, long value, long least, long most) {
+    if (value < least || value > most) {
+      warnings_.warn(field,
+                     fmt::format("the client's {} {} is out of range: the head uses {} to {}", field, value,
+                                 least, most),
+                     notices);
+      clamped = true;
+    }
+  };
+  clamp("end_range", config.end_range, min_native_lines, most_lines(config));
+  if (config.uses_configured_sound_speed()) {
+    clamp("sound_speed", config.sound_speed, std::lround(grid_base_mps * 10.0),
+          std::lround(grid_top_mps * 10.0));
+  }
+  return clamped;
 }
 
 }  // namespace sonard::gemini

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "protocol/common/once_warnings.hpp"
 #include "protocol/common/ping_job.hpp"
 #include "protocol/gemini/device_config.hpp"
 #include "protocol/gemini/messages.hpp"
@@ -35,6 +37,16 @@ std::chrono::nanoseconds acoustic_time(int native_lines);
 /// ping head reports the clamped number, so that the client expects the right number of lines. Clamps speeds
 /// of sound to 1400..1588.8 m/s. Settings not named in PingPlan have no effect on a 720i or on this model.
 std::optional<PingPlan> plan_ping(const PingConfig& config, const DeviceConfig& device);
+
+/// Warns once about each field of a client's ping configurations whose value the head clamps.
+class PingConfigWarnings {
+ public:
+  /// @return true if the head clamps a value of `config`
+  bool check(const PingConfig& config, std::vector<Notice>& notices);
+
+ private:
+  OnceWarnings warnings_;
+};
 
 /// A speed of sound in 0.1 m/s, as in the ping head.
 /// @param speed_mps 1400 to 1588.8

@@ -235,7 +235,7 @@ void Device::Impl::handle(TimePoint now, const HeadCommand& command) {
   scanner_.configure(now, command);
   sent_config_ = true;
   if (!config_.plays_back) {
-    warnings_.check(command, notices_);
+    counters_.out_of_range += warnings_.check(command, notices_) ? 1 : 0;
   }
   if (config_.alive_after_head_command && !alives_stopped_) {
     send_alive(now);
@@ -244,6 +244,9 @@ void Device::Impl::handle(TimePoint now, const HeadCommand& command) {
 
 void Device::Impl::handle(TimePoint, const GainCommand& command) {
   if (has_parameters()) {
+    if (!config_.plays_back) {
+      counters_.out_of_range += warnings_.check_gain(command.values.gain[0], notices_) ? 1 : 0;
+    }
     scanner_.set_gain(command.values);
   }
 }
@@ -381,21 +384,32 @@ PingProgress Device::progress() const {
 }
 
 std::vector<Counter> Device::counts() const {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
   const DeviceCounters& count = counters();
   return {
-      {"lines_sent", count.pings_sent},
-      {"pings_failed", count.pings_failed},
-      {"pings_cancelled", count.pings_cancelled},
-      {"commands", count.commands},
-      {"dropped_bytes", count.dropped_bytes, Shown::warns, "{} bytes from clients belonged to no command"},
-      {"bad_frames", count.bad_frames, Shown::warns, "{} commands could not be decoded"},
-      {"cut_frames", count.cut_frames},
-      {"wrong_node", count.wrong_node, Shown::warns, "{} commands were for another node"},
-      {"unknown_type", count.unknown_type},
-      {"not_ready", count.not_ready, Shown::warns, "{} requests came before the parameters"},
-      {"requests_beyond_cap", count.requests_beyond_cap},
-      {"boots", count.boots}};
+      {"lines_sent", count.pings_sent, "lines sent"},
+      {"pings_failed", count.pings_failed, "lines that could not be rendered"},
+      {"pings_cancelled", count.pings_cancelled, "lines that new parameters or a reboot ended"},
+      {"commands", count.commands, "commands that the head accepted"},
+      {"dropped_bytes", count.dropped_bytes, "bytes outside frames (2.3), also noise on the line, ignored",
+       Fault::of_client, Shown::warns, "{} bytes from clients belonged to no command"},
+      {"bad_frames", count.bad_frames, "commands with a wrong length or form (5), ignored", Fault::of_client,
+       Shown::warns, "{} commands could not be decoded"},
+      {"cut_frames", count.cut_frames, "commands shorter than they state, obeyed (2.4)"},
+      {"wrong_node", count.wrong_node, "commands for another node (`device.node`), ignored", Fault::of_client,
+       Shown::warns, "{} commands were for another node"},
+      {"unknown_type", count.unknown_type, "messages of unknown type, ignored (3)", Fault::of_client,
+       Shown::warns, "{} messages had an unknown type: the head ignores them"},
+      {"out_of_range", count.out_of_range,
+       "head commands with a gain above 210, `ad_interval` 0, no bins or more than 1500, clamped (4)",
+       Fault::of_client, Shown::once},
+      {"not_ready", count.not_ready, "requests, gains and reversals without parameters, ignored (7.2)",
+       Fault::of_client, Shown::warns, "{} requests came before the parameters"},
+      {"unheard_bytes", count.unheard_bytes, "bytes that came while the head booted, lost (7.1)"},
+      {"requests_beyond_cap", count.requests_beyond_cap,
+       "requested lines beyond `device.request_cap`, not owed; usual with many drivers (8.2)"},
+      {"boots", count.boots, "reboots"}};
 }
 
 void Device::power_cycle(TimePoint now) {

@@ -16,6 +16,7 @@ struct DeviceCounters : PingCounters {
   std::uint64_t cut_frames = 0;           ///< shorter than their length field, but understood
   std::uint64_t wrong_node = 0;           ///< for another head
   std::uint64_t unknown_type = 0;         ///< for this head, of an unknown type
+  std::uint64_t out_of_range = 0;         ///< head commands of which a value was clamped
   std::uint64_t unheard_bytes = 0;        ///< arrived while the head booted
   std::uint64_t not_ready = 0;            ///< commands that need parameters, before there were any
   std::uint64_t requests_beyond_cap = 0;  ///< requested lines beyond the cap, which are not owed

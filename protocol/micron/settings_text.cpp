@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/micron/settings_text.hpp"
 
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "protocol/micron/line_timing.hpp"
 #include "protocol/micron/scan_settings.hpp"
 #include "protocol/micron/sweep.hpp"
 #include "protocol/micron/units.hpp"
@@ -71,25 +73,53 @@ std::vector<Setting> settings_of(const PingJob& job, const HeadData& line) {
   return ping_settings(job, line.ad_low, line.ad_span, line.eight_bit());
 }
 
-void SettingsWarnings::check(const HeadCommand& parameters, std::vector<Notice>& notices) {
+bool SettingsWarnings::check_gain(int gain, std::vector<Notice>& notices) {
+  if (gain <= gain_full_scale) {
+    return false;
+  }
+  warnings_.warn(
+      "gain", fmt::format("the client's gain byte {} is beyond 210, the maximum: the head uses 80 dB", gain),
+      notices);
+  return true;
+}
+
+bool SettingsWarnings::check_bins(const HeadCommand& parameters, std::vector<Notice>& notices) {
+  const int bins = effective_bins(parameters);
+  const int interval = effective_ad_interval(parameters);
+  if (bins != parameters.bins) {
+    warnings_.warn("bins",
+                   fmt::format("the client requests {} bins (expected 1 to {}): the head uses {}",
+                               parameters.bins, max_bins, bins),
+                   notices);
+  }
+  if (interval != parameters.ad_interval) {
+    warnings_.warn("ad_interval", "the client's ad_interval is 0: the head uses 1", notices);
+  }
+  return bins != parameters.bins || interval != parameters.ad_interval;
+}
+
+bool SettingsWarnings::check(const HeadCommand& parameters, std::vector<Notice>& notices) {
   namespace bits = control_bits;
-  const auto warn = [&](std::string text) { notices.push_back({Notice::Level::warning, std::move(text)}); };
-  if (parameters.gain[0] > gain_full_scale && !std::exchange(said_gain_, true)) {
-    warn(fmt::format("the client's gain byte {} is beyond 210, the maximum: the head uses 80 dB",
-                     parameters.gain[0]));
-  }
   const bool told_to = parameters.has(bits::stare) || parameters.has(bits::motor_off);
-  if (stares(parameters) && !told_to && !std::exchange(said_limits_, true)) {
-    warn(fmt::format(
-        "the client's sector has equal limits ({}): the head holds still there; a whole turn is 0 to 6400",
-        parameters.left_limit));
+  if (stares(parameters) && !told_to) {
+    warnings_.warn(
+        "limits",
+        fmt::format("the client's sector has equal limits ({}): the head holds still there; a whole "
+                    "turn is 0 to 6400",
+                    parameters.left_limit),
+        notices);
   }
-  if (parameters.has(bits::invert) != config_.mounted_inverted && !std::exchange(said_mirrored_, true)) {
-    warn(
-        fmt::format("left and right are swapped: the client's invert bit is for a head mounted boot {}, "
-                    "`device.mounted_inverted` for one mounted boot {}",
-                    parameters.has(bits::invert) ? "down" : "up", config_.mounted_inverted ? "down" : "up"));
+  if (parameters.has(bits::invert) != config_.mounted_inverted) {
+    warnings_.warn(
+        "mounting",
+        fmt::format("left and right are swapped: the client's invert bit is for a head mounted boot "
+                    "{}, `device.mounted_inverted` for one mounted boot {}",
+                    parameters.has(bits::invert) ? "down" : "up", config_.mounted_inverted ? "down" : "up"),
+        notices);
   }
+  const bool clamps_gain = check_gain(parameters.gain[0], notices);
+  const bool clamps_bins = check_bins(parameters, notices);
+  return clamps_gain || clamps_bins;
 }
 
 }  // namespace sonard::micron

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/common/device.hpp"
+#include "protocol/common/once_warnings.hpp"
 #include "protocol/micron/device_config.hpp"
 #include "protocol/micron/messages.hpp"
 
@@ -22,13 +23,16 @@ class SettingsWarnings {
  public:
   explicit SettingsWarnings(const DeviceConfig& config) : config_(config) {}
 
-  void check(const HeadCommand& parameters, std::vector<Notice>& notices);
+  /// @return true if the head clamps a value of `parameters`
+  bool check(const HeadCommand& parameters, std::vector<Notice>& notices);
+  /// @return true if the head clamps this gain byte
+  bool check_gain(int gain, std::vector<Notice>& notices);
 
  private:
+  bool check_bins(const HeadCommand& parameters, std::vector<Notice>& notices);
+
   const DeviceConfig& config_;
-  bool said_gain_ = false;
-  bool said_limits_ = false;
-  bool said_mirrored_ = false;
+  OnceWarnings warnings_;
 };
 
 }  // namespace sonard::micron

@@ -9,6 +9,7 @@
 
 #include "protocol/common/ping_cycle.hpp"
 #include "protocol/oculus/codec.hpp"
+#include "protocol/oculus/fire_warnings.hpp"
 #include "protocol/oculus/frame.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 
@@ -48,6 +49,7 @@ class Device::Impl {
         address_(octets(config.address)),
         netmask_(octets(config.netmask)),
         user_config_{address_, netmask_, 0},
+        warnings_(config_.plan.model),
         cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, boot_time,
                counters_) {}
 
@@ -93,7 +95,7 @@ class Device::Impl {
   void read_commands(TimePoint now);
   void handle(TimePoint now, const SimpleFire& fire);
   void handle(TimePoint now, const UserConfig& config);
-  void handle(TimePoint, const Unknown&) {}
+  void handle(TimePoint, const Unknown& message) { unknown_id_ += message.id == MessageId::dummy ? 0 : 1; }
 
   void send_status(TimePoint now);
   void send_dummy(TimePoint now);
@@ -115,6 +117,7 @@ class Device::Impl {
   std::optional<Peer> client_;
   TimePoint newest_command_{};  ///< time of the client's last command, or of its connection
   CommandBuffer input_;
+  FireWarnings warnings_;
   std::optional<PingPlan> plan_;  ///< of the newest fire; nullopt: no fire, or standby
   PingCounters counters_;
   PingCycle cycle_;
@@ -124,6 +127,9 @@ class Device::Impl {
 
   std::uint64_t commands_ = 0;
   std::uint64_t bad_commands_ = 0;
+  std::uint64_t unknown_id_ = 0;
+  std::uint64_t out_of_range_ = 0;
+  std::uint64_t full_results_requested_ = 0;
   std::uint64_t other_clients_ = 0;
 };
 
@@ -200,6 +206,10 @@ void Device::Impl::read_commands(TimePoint now) {
 }
 
 void Device::Impl::handle(TimePoint now, const SimpleFire& fire) {
+  if (!config_.plays_back) {
+    out_of_range_ += warnings_.check(fire.fire, actions_.notices) ? 1 : 0;
+    full_results_requested_ += requests_full_result(fire.fire) ? 1 : 0;
+  }
   const bool before = pinging();
   plan_ = period_of_rate(fire.fire.ping_rate) ? std::optional(plan_ping(fire, config_.plan)) : std::nullopt;
   if (before && !pinging()) {
@@ -355,13 +365,28 @@ Actions Device::Impl::actions() {
 }
 
 std::vector<Counter> Device::Impl::counts() const {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
-  return {{"pings_sent", counters_.pings_sent},
-          {"pings_failed", counters_.pings_failed, Shown::often},
-          {"pings_cancelled", counters_.pings_cancelled},
-          {"commands", commands_},
-          {"bad_commands", bad_commands_, Shown::warns, "{} commands were too short or too long"},
-          {"other_clients", other_clients_, Shown::warns, "{} times a second client connected"}};
+  return {
+      {"pings_sent", counters_.pings_sent, "pings sent"},
+      {"pings_failed", counters_.pings_failed, "pings that could not be rendered", Fault::none, Shown::often},
+      {"pings_cancelled", counters_.pings_cancelled, "pings that standby or the end of a client ended"},
+      {"commands", commands_, "commands that the head accepted"},
+      {"bad_commands", bad_commands_,
+       "messages shorter than a fire or user configuration, ignored; or above 4096 bytes, disconnected (3.1)",
+       Fault::of_client, Shown::warns, "{} commands were too short or too long"},
+      {"dropped_bytes", input_.dropped(), "bytes outside messages, skipped (3.1)", Fault::of_client,
+       Shown::warns, "{} bytes from clients belonged to no message"},
+      {"unknown_id", unknown_id_, "messages with an unknown msgId, ignored (2)", Fault::of_client,
+       Shown::warns, "{} messages had an unknown ID: the head ignores them"},
+      {"out_of_range", out_of_range_,
+       "fires with a range, gain, sound speed, mode or rate out of limits, changed (3.3, 8)",
+       Fault::of_client, Shown::once},
+      {"full_results_requested", full_results_requested_,
+       "fires that request the full result 0x22, which sonard does not have: it sends 0x23 (5)", Fault::none,
+       Shown::once},
+      {"other_clients", other_clients_, "connections while another client was connected, closed (7)",
+       Fault::of_client, Shown::warns, "{} times a second client connected"}};
 }
 
 // ---- Device

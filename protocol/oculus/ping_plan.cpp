@@ -35,7 +35,7 @@ double sound_speed_of(const Fire& fire, const PlanConfig& config) {
   const bool given = std::isfinite(fire.sound_speed_mps) && fire.sound_speed_mps != 0.0;
   const double speed =
       given ? fire.sound_speed_mps : sound_speed_of_water_mps(config.temperature_c, salinity);
-  return std::clamp(speed, 1400.0, 1600.0);
+  return std::clamp(speed, least_sound_speed_mps, most_sound_speed_mps);
 }
 
 nanoseconds time_on_link(const PingPlan& plan) {

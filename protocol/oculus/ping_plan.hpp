@@ -44,6 +44,10 @@ struct PingPlan {
   std::size_t image_size() const { return result.ranges * row_size(result); }
 };
 
+/// Limits to which a head clamps speeds of sound.
+inline constexpr double least_sound_speed_mps = 1400.0;
+inline constexpr double most_sound_speed_mps = 1600.0;
+
 /// Time between pings for a rate code; nullopt: standby.
 std::optional<std::chrono::nanoseconds> period_of_rate(std::uint8_t ping_rate);
 

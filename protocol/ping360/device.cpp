@@ -90,6 +90,7 @@ class Device::Impl {
   void take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame);
   void send(const Peer& to, const std::vector<std::uint8_t>& frame) { clients_.send(to, frame, outgoing_); }
   void reply(const Peer& asker, const Report& report) { send(asker, encode(report, id_)); }
+  void send_nack(const Peer& asker, std::uint16_t id, std::string_view text);
   void refuse(const Peer& asker, std::uint16_t id, std::string_view text);
   template <class Command>
   bool refused(const Peer& asker, const Command& command);
@@ -220,9 +221,15 @@ void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const 
   std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
 }
 
-void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
+void Device::Impl::send_nack(const Peer& asker, std::uint16_t id, std::string_view text) {
   ++counters_.refused;
   reply(asker, Nack{id, std::string(text)});
+}
+
+/// @param text a literal
+void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
+  warnings_.refused(id, text, notices_);
+  send_nack(asker, id, text);
 }
 
 template <class Command>
@@ -230,7 +237,7 @@ bool Device::Impl::refused(const Peer& asker, const Command& command) {
   const auto field = out_of_range(command, config_);
   if (field) {
     warnings_.refused(*field, notices_);
-    refuse(asker, id_of(command), fmt::format("{} out of range", field->field));
+    send_nack(asker, id_of(command), fmt::format("{} out of range", field->field));
   }
   return field.has_value();
 }
@@ -383,25 +390,34 @@ PingProgress Device::progress() const {
 }
 
 std::vector<Counter> Device::counts() const {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
   const DeviceCounters& count = counters();
   return {
-      {"pings_sent", count.pings_sent},
-      {"pings_failed", count.pings_failed, Shown::often},
-      {"pings_cancelled", count.pings_cancelled},
-      {"commands", count.commands},
-      {"refused", count.refused, Shown::often},
-      {"commands_joined", count.commands_joined},
-      {"commands_dropped", count.commands_dropped, Shown::often},
-      {"dropped_bytes", count.dropped_bytes, Shown::often},
-      {"bad_checksums", count.bad_checksums},
-      {"other_destinations", count.other_destinations, Shown::warns, "{} commands were for another device"},
-      {"clients_dropped", count.clients_dropped, Shown::warns,
-       "{} clients were dropped: too many at a time (device.max_clients)"},
-      {"locked_out", count.locked_out, Shown::warns,
-       "{} datagrams were dropped: another client uses the head (lock_to_first)"},
-      {"unheard_bytes", count.unheard_bytes},
-      {"resets", count.resets},
+      {"pings_sent", count.pings_sent, "pings sent"},
+      {"pings_failed", count.pings_failed, "pings that could not be rendered", Fault::none, Shown::often},
+      {"pings_cancelled", count.pings_cancelled, "pings that a command or the end of a scan ended"},
+      {"commands", count.commands, "commands that the head accepted or refused"},
+      {"refused", count.refused, "commands answered by a nack: values, length or ID (3.8)", Fault::of_client,
+       Shown::often},
+      {"commands_joined", count.commands_joined, "repeated commands that share an answer (3.2)"},
+      {"commands_dropped", count.commands_dropped,
+       "commands that came while `device.queue_length` others waited; the oldest is dropped (3.2)",
+       Fault::of_client, Shown::often},
+      {"dropped_bytes", count.dropped_bytes,
+       "bytes outside frames, ignored; `00 FF` and `U`s of known clients among them (1.1)", Fault::none,
+       Shown::often},
+      {"bad_checksums", count.bad_checksums, "frames with a wrong checksum, ignored (1.1)", Fault::of_client,
+       Shown::warns, "{} frames had a wrong checksum: the head ignores them"},
+      {"other_destinations", count.other_destinations,
+       "commands for another device ID, ignored (`device.ignores_other_destinations`)", Fault::of_client,
+       Shown::warns, "{} commands were for another device"},
+      {"clients_dropped", count.clients_dropped, "clients forgotten because of `device.max_clients`",
+       Fault::none, Shown::warns, "{} clients were dropped: too many at a time (device.max_clients)"},
+      {"locked_out", count.locked_out, "datagrams of other clients, dropped (`lock_to_first`)", Fault::none,
+       Shown::warns, "{} datagrams were dropped: another client uses the head (lock_to_first)"},
+      {"unheard_bytes", count.unheard_bytes, "bytes that came after a reset, lost (3.5)"},
+      {"resets", count.resets, "resets"},
   };
 }
 

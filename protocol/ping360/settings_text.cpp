@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/ping360/settings_text.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "protocol/ping360/units.hpp"
@@ -34,15 +36,18 @@ std::string scan_text(const AutoTransmit& scan) {
 }
 
 void SettingsWarnings::refused(const OutOfRange& field, std::vector<Notice>& notices) {
-  if (said_.insert(field.field).second) {
-    notices.push_back(
-        {Notice::Level::warning, fmt::format("the client's {} {} is refused: expected {} to {}", field.field,
-                                             field.value, field.least, field.most)});
-  }
+  warnings_.warn(field.field,
+                 fmt::format("the client's {} {} is refused: expected {} to {}", field.field, field.value,
+                             field.least, field.most),
+                 notices);
+}
+
+void SettingsWarnings::refused(std::uint16_t message_id, std::string_view why, std::vector<Notice>& notices) {
+  warnings_.warn(why, fmt::format("the client's message {} is refused: {}", message_id, why), notices);
 }
 
 void SettingsWarnings::taken(const Transducer& command, std::vector<Notice>& notices) {
-  if (command.angle == gradians_per_turn && said_.insert("angle 400").second) {
+  if (command.angle == gradians_per_turn && !std::exchange(said_angle_400_, true)) {
     notices.push_back({Notice::Level::info, "the client's angle 400 is taken as 0"});
   }
 }

@@ -2,12 +2,13 @@
 // A client's settings as text for the log.
 #pragma once
 
-#include <set>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "protocol/common/device.hpp"
+#include "protocol/common/once_warnings.hpp"
 #include "protocol/ping360/limits.hpp"
 #include "protocol/ping360/ping_form.hpp"
 
@@ -23,10 +24,13 @@ std::string scan_text(const AutoTransmit& scan);
 class SettingsWarnings {
  public:
   void refused(const OutOfRange& field, std::vector<Notice>& notices);
+  /// `why` is a literal.
+  void refused(std::uint16_t message_id, std::string_view why, std::vector<Notice>& notices);
   void taken(const Transducer& command, std::vector<Notice>& notices);
 
  private:
-  std::set<std::string_view> said_;
+  OnceWarnings warnings_;
+  bool said_angle_400_ = false;
 };
 
 }  // namespace sonard::ping360

@@ -64,6 +64,9 @@ class DeviceType : public HeadType {
   /// True if the head has attitude or depth sensors: it receives SensorsRead.
   virtual bool has_sensors() const { return false; }
 
+  /// All counters of such a device, with value 0 (docs/events.md).
+  virtual std::vector<Counter> counters() const = 0;
+
   /// Opens the sockets. @throws SocketError
   virtual std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                                    const Clock& clock) const = 0;

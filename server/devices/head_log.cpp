@@ -26,6 +26,17 @@ std::string counters_text(const std::vector<Counter>& counters) {
   return text;
 }
 
+/// " unknown_type=3 refused=1"; empty: no client caused a fault.
+std::string client_faults_text(const std::vector<Counter>& counters) {
+  std::string text;
+  for (const Counter& counter : counters) {
+    if (counter.fault == Counter::Fault::of_client && counter.value > 0) {
+      text += fmt::format(" {}={}", counter.name, counter.value);
+    }
+  }
+  return text;
+}
+
 /// Growth of the counters that are logged while the head runs.
 std::string growth_text(const std::vector<Counter>& before, const std::vector<Counter>& now) {
   std::string text;
@@ -100,6 +111,11 @@ void HeadLog::totals(const HeadCounts& total) const {
                mean_render_ms({}, total.rendering), total.rendering.pings_without_pose);
   spdlog::info("head={}: transport{}", head_, counters_text(total.transport));
   log_skipped(head_, total.rendering.skipped);
+  warn_of(reported_.device, total.device);
+  warn_of(reported_.transport, total.transport);
+  if (const std::string faults = client_faults_text(total.device); !faults.empty()) {
+    spdlog::warn("head={}: client faults{} (docs/events.md)", head_, faults);
+  }
 }
 
 }  // namespace sonard::server

@@ -28,21 +28,28 @@ void SerialTransport::send(std::vector<Outgoing> messages) {
 }
 
 std::vector<Counter> SerialTransport::counts() const {
+  return serial_counters(link_.counters());
+}
+
+std::vector<Counter> serial_counters(const SerialLinkCounters& link) {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
-  const SerialLinkCounters link = link_.counters();
   const SerialPortCounters& ports = link.ports;
-  std::vector<Counter> counts{{"connections", ports.connections},
-                              {"refused", ports.refused, Shown::warns,
-                               "{} clients or datagrams were refused: not in `allow`, too many, or too long"},
-                              {"locked_out", link.locked_out, Shown::warns,
-                               "{} reads were dropped: another client has the line (lock_to_first)"},
-                              {"bytes_in", ports.bytes_in},
-                              {"bytes_out", ports.bytes_out},
-                              {"frames_dropped", ports.frames_dropped},
-                              {"frames_lost", ports.frames_lost},
-                              {"frames_unheard", link.frames_unheard}};
+  std::vector<Counter> counts{
+      {"connections", ports.connections, "connections of clients"},
+      {"refused", ports.refused, "clients or datagrams refused: not in `allow`, too many, or too long",
+       Fault::none, Shown::warns,
+       "{} clients or datagrams were refused: not in `allow`, too many, or too long"},
+      {"locked_out", link.locked_out, "reads of other clients, dropped (`lock_to_first`)", Fault::none,
+       Shown::warns, "{} reads were dropped: another client has the line (lock_to_first)"},
+      {"bytes_in", ports.bytes_in, "bytes from clients"},
+      {"bytes_out", ports.bytes_out, "bytes to clients; to two clients, they count twice"},
+      {"frames_dropped", ports.frames_dropped,
+       "frames dropped: a client reads too slowly; a warning names the port"},
+      {"frames_lost", ports.frames_lost, "frames lost: the other end was gone"},
+      {"frames_unheard", link.frames_unheard, "frames dropped: no client was connected"}};
   for (const SerialPortReport& port : link.each) {
-    counts.push_back({"", port.counters.frames_dropped, Shown::warns,
+    counts.push_back({"", port.counters.frames_dropped, "", Fault::none, Shown::warns,
                       port.description + ": {} frames were dropped: a client reads too slowly"});
   }
   return counts;

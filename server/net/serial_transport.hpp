@@ -8,6 +8,8 @@
 namespace sonard::server {
 
 /// Every message goes to all connected clients, whatever Peer it names.
+std::vector<Counter> serial_counters(const SerialLinkCounters& link);
+
 class SerialTransport final : public Transport {
  public:
   /// @throws SocketError

@@ -294,15 +294,21 @@ std::vector<std::string> TcpTransport::descriptions() const {
 }
 
 std::vector<Counter> TcpTransport::counts() const {
+  return tcp_counters({impl_->connections, impl_->listener->refused(), impl_->bytes_in, impl_->bytes_out,
+                       impl_->dropped, impl_->lost});
+}
+
+std::vector<Counter> tcp_counters(const TcpTransportCounts& counts) {
+  using Fault = Counter::Fault;
   using Shown = Counter::Shown;
-  return {{"connections", impl_->connections},
-          {"refused", impl_->listener->refused(), Shown::warns,
-           "{} clients were refused: not in `allow`, or too many"},
-          {"bytes_in", impl_->bytes_in},
-          {"bytes_out", impl_->bytes_out},
-          {"messages_dropped", impl_->dropped, Shown::warns,
-           "{} messages were dropped: the client reads too slowly"},
-          {"messages_lost", impl_->lost}};
+  return {{"connections", counts.connections, "connections of clients"},
+          {"refused", counts.refused, "connections refused: not in `allow`, or too many", Fault::none,
+           Shown::warns, "{} clients were refused: not in `allow`, or too many"},
+          {"bytes_in", counts.bytes_in, "bytes from clients"},
+          {"bytes_out", counts.bytes_out, "bytes to clients; to two clients, they count twice"},
+          {"messages_dropped", counts.dropped, "messages dropped: the client reads too slowly", Fault::none,
+           Shown::warns, "{} messages were dropped: the client reads too slowly"},
+          {"messages_lost", counts.lost, "messages lost: the client was gone"}};
 }
 
 Endpoint TcpTransport::local_endpoint() const {

@@ -32,6 +32,17 @@ struct TcpTransportConfig {
 /// queued, and others are dropped. A started message is always sent completely. When a new client connects,
 /// clients that have not taken a message for most_stall are closed, because a device that serves one client
 /// at a time would otherwise be blocked.
+/// Counts of a TcpTransport; they only grow.
+struct TcpTransportCounts {
+  std::uint64_t connections = 0;
+  std::uint64_t refused = 0;
+  std::uint64_t bytes_in = 0;
+  std::uint64_t bytes_out = 0;
+  std::uint64_t dropped = 0;  ///< messages: the client reads too slowly
+  std::uint64_t lost = 0;     ///< messages: the client was gone
+};
+std::vector<Counter> tcp_counters(const TcpTransportCounts& counts);
+
 class TcpTransport final : public Transport {
  public:
   /// Further clients are closed at once and counted as refused.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/net/udp_transport.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <set>
 #include <span>
 #include <utility>
@@ -9,7 +11,6 @@
 #include <boost/asio/io_context.hpp>
 
 #include "server/net/deadline_timer.hpp"
-#include "server/net/udp_endpoint.hpp"
 
 namespace sonard::server {
 namespace {
@@ -209,25 +210,34 @@ std::string UdpTransport::faults() const {
 }
 
 std::vector<Counter> UdpTransport::counts() const {
-  const UdpEndpointCounters& socket = impl_->socket->counters();
-  std::vector<Counter> counts{{"sent", socket.sent},
-                              {"received", socket.received},
-                              {"not_allowed", impl_->not_allowed},
-                              {"truncated", socket.truncated},
-                              {"kernel_dropped", socket.kernel_dropped},
-                              {"blocked", socket.blocked},
-                              {"send_failed", socket.send_failed},
-                              {"overflowed", socket.overflowed}};
-  for (const auto& [name, link] : {std::pair{"to_client", &impl_->to_client.counters()},
-                                   std::pair{"from_client", &impl_->from_client.counters()}}) {
-    if (link->lost + link->duplicated + link->reordered > 0) {
-      counts.push_back({fmt::format("{}_passed", name), link->passed});
-      counts.push_back({fmt::format("{}_lost", name), link->lost});
-      counts.push_back({fmt::format("{}_duplicated", name), link->duplicated});
-      counts.push_back({fmt::format("{}_reordered", name), link->reordered});
+  std::vector<Counter> counts = udp_counters(impl_->socket->counters(), impl_->not_allowed);
+  for (const FaultyLink* link : {&impl_->to_client, &impl_->from_client}) {
+    const FaultyLinkCounters& faults = link->counters();
+    if (faults.lost + faults.duplicated + faults.reordered > 0) {
+      std::ranges::move(link_counters(faults, link == &impl_->to_client), std::back_inserter(counts));
     }
   }
   return counts;
+}
+
+std::vector<Counter> udp_counters(const UdpEndpointCounters& socket, std::uint64_t not_allowed) {
+  return {{"sent", socket.sent, "datagrams sent"},
+          {"received", socket.received, "datagrams received"},
+          {"not_allowed", not_allowed, "datagrams of addresses outside `allow`, dropped",
+           Counter::Fault::none, Counter::Shown::once},
+          {"truncated", socket.truncated, "datagrams longer than any command, dropped"},
+          {"kernel_dropped", socket.kernel_dropped, "datagrams lost because this machine is too busy"},
+          {"blocked", socket.blocked, "times that sending had to wait for the network"},
+          {"send_failed", socket.send_failed, "datagrams that the system refused to send (no route)"},
+          {"overflowed", socket.overflowed, "datagrams dropped because too many waited"}};
+}
+
+std::vector<Counter> link_counters(const FaultyLinkCounters& link, bool to_client) {
+  const std::string direction = to_client ? "to_client" : "from_client";
+  return {{direction + "_passed", link.passed, "datagrams that left the `link`, with second copies"},
+          {direction + "_lost", link.lost, "datagrams that the faults of `link` lost"},
+          {direction + "_duplicated", link.duplicated, "datagrams that `link` doubled"},
+          {direction + "_reordered", link.reordered, "datagrams that `link` let another overtake"}};
 }
 
 void UdpTransport::set_everybody(std::vector<Endpoint> hosts, Ipv4 from) {

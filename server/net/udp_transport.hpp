@@ -2,6 +2,7 @@
 // A head on one UDP socket, with the configured faults of its link.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "server/net/addresses.hpp"
 #include "server/net/faulty_link.hpp"
 #include "server/net/transport.hpp"
+#include "server/net/udp_endpoint.hpp"
 
 namespace boost::asio {
 class io_context;
@@ -26,6 +28,10 @@ struct UdpTransportConfig {
 /// Replies go to the Peer that a device names, from our address that it names. Both directions pass a
 /// FaultyLink, also on loopback. Datagrams to clients are recorded after it, datagrams from clients before
 /// it.
+std::vector<Counter> udp_counters(const UdpEndpointCounters& socket, std::uint64_t not_allowed);
+/// Counters of one direction of a link with faults.
+std::vector<Counter> link_counters(const FaultyLinkCounters& link, bool to_client);
+
 class UdpTransport final : public Transport {
  public:
   /// @throws SocketError

@@ -55,7 +55,9 @@ json counters_json(const HeadCounts& counts) {
   for (const std::vector<Counter>* group : {&counts.device, &counts.transport}) {
     for (const Counter& counter : *group) {
       if (!counter.name.empty()) {
-        counters.push_back({{"name", counter.name}, {"value", counter.value}});
+        counters.push_back({{"name", counter.name},
+                            {"value", counter.value},
+                            {"client_fault", counter.fault == Counter::Fault::of_client}});
       }
     }
   }

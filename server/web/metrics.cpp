@@ -124,6 +124,18 @@ void add_events(std::string& out, const std::vector<HeadStatus>& heads) {
   }
 }
 
+void add_client_faults(std::string& out, const std::vector<HeadStatus>& heads) {
+  Metric metric(out, "sonard_client_faults_total", "counter",
+                "Messages of clients that the head refuses, ignores or changes.");
+  for (const HeadStatus& head : heads) {
+    for (const Counter& counter : head.counts.device) {
+      if (counter.fault == Counter::Fault::of_client) {
+        metric.value({{"head", head.name}, {"event", counter.name}}, counter.value);
+      }
+    }
+  }
+}
+
 void add_skipped(std::string& out, const std::vector<HeadStatus>& heads) {
   Metric metric(out, "sonard_skipped_total", "counter",
                 "Work skipped because it would not change the image, by rule.");
@@ -185,6 +197,7 @@ std::string metrics_text(const DaemonIdentity& identity, const DaemonStatus& sta
   add_stages(out, status.heads);
   add_clients(out, status.heads);
   add_events(out, status.heads);
+  add_client_faults(out, status.heads);
   add_skipped(out, status.heads);
   add_poses(out, status.inputs);
   add_recording(out, status.recording);

@@ -10,6 +10,7 @@
 
 #include "protocol/gemini/bearings.hpp"
 #include "protocol/gemini/codec.hpp"
+#include "protocol/gemini/device.hpp"
 #include "protocol/gemini/glf_status.hpp"
 #include "protocol/gemini/ping_plan.hpp"
 #include "protocol/gemini/ping_settings.hpp"
@@ -109,6 +110,12 @@ class GeminiType final : public DeviceType, public GlfDevice, public CaptureRead
   }
 
   // ---- Serving
+
+  std::vector<Counter> counters() const override {
+    gemini::DeviceConfig any;
+    any.alternate_address = loopback_client;
+    return gemini::Device(any, {}).counts();
+  }
 
   std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                            const Clock& clock) const override {

@@ -79,6 +79,8 @@ class MicronType final : public DeviceType {
 
   // ---- Serving
 
+  std::vector<Counter> counters() const override { return micron::Device({}, {}).counts(); }
+
   std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                            const Clock& clock) const override {
     return std::make_unique<ConnectedMicron>(device_settings<MicronConfig>(head), io, clock);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/oculus/device.hpp"
 #include "protocol/oculus/recorded_form.hpp"
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"
@@ -73,6 +74,8 @@ class OculusType final : public DeviceType {
   }
 
   // ---- Serving
+
+  std::vector<Counter> counters() const override { return oculus::Device({}, {}).counts(); }
 
   std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                            const Clock& clock) const override {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/ping360/device.hpp"
 #include "protocol/ping360/make_job.hpp"
 #include "protocol/ping360/recorded_form.hpp"
 #include "protocol/ping360/usual_scan.hpp"
@@ -73,6 +74,8 @@ class Ping360Type final : public DeviceType {
   }
 
   // ---- Serving
+
+  std::vector<Counter> counters() const override { return ping360::Device({}, {}).counts(); }
 
   std::unique_ptr<ConnectedDevice> connect(const HeadConfig& head, boost::asio::io_context& io,
                                            const Clock& clock) const override {

@@ -733,6 +733,8 @@ class Micron(DaemonCase):
         daemon.wait_for_line(r"head=stern: \d bytes from clients belonged to no command", PATIENCE_S)
         for once in ("equal limits", "gain byte 232", "left and right are swapped"):
             self.assertEqual(daemon.output().count(once), 1, daemon.output())
+        self.assertEqual(daemon.terminate(PATIENCE_S)[0], 0)
+        self.assertRegex(daemon.output(), r"head=stern: client faults dropped_bytes=\d out_of_range=5 ")
 
     def test_a_client_that_leaves_is_no_slow_reader(self):
         daemon = self.start()

@@ -221,7 +221,7 @@ export class MockDaemon {
       pings: this.pings, pings_per_s: 14.3, render_ms: 47.8, latency_ms: 61, pose_age_ms: 12, pings_without_pose: 0,
       stages_ms: { visibility: 28, binning: 9.5, multipath: 3.1, azimuth_pattern: 2.2, pulse: 0.6, receiver: 4.4 },
       skipped: [{ rule: "unchanged_scene", count: 12, why: "Nothing moved since the last ping, so its mean echo is used again." }],
-      counters: [{ name: "lines_resent", value: 3 }, { name: "bad_packets", value: 0 }], link_faults: null,
+      counters: [{ name: "lines_resent", value: 3, client_fault: false }, { name: "wrong_id", value: 0, client_fault: true }], link_faults: null,
       settings: [{ name: "range", value: "20.00 m" }, { name: "sound_speed", value: "1491.2 m/s" }],
       range_m: RANGE_M, pose: MOUNT, aperture: { azimuth_rad: 120 * RADIAN, elevation_rad: 0.35 }, bearing_rad: 0, findings: [], ...more,
     };

@@ -212,7 +212,7 @@ TEST_P(Pings, TheSameEventsAtTheSameTimesGiveTheSameBytes) {
   EXPECT_EQ(run(), run());
 }
 
-TEST_P(Pings, CountersComeInOneOrderAndGrowAndThoseThatWarnHaveAText) {
+TEST_P(Pings, CountersComeInOneOrderAndGrowAndHaveAMeaningAndThoseThatWarnHaveAText) {
   HeadBench bench(GetParam());
   const std::vector<Counter> before = bench.head->device().counts();
   bench.connect();
@@ -223,6 +223,9 @@ TEST_P(Pings, CountersComeInOneOrderAndGrowAndThoseThatWarnHaveAText) {
   for (std::size_t i = 0; i < after.size(); ++i) {
     EXPECT_EQ(before[i].name, after[i].name);
     EXPECT_GE(after[i].value, before[i].value);
+    EXPECT_NE(after[i].meaning, "") << after[i].name;
+    EXPECT_TRUE(after[i].fault == Counter::Fault::none || after[i].value == 0)
+        << after[i].name << ": this client makes no fault";
     EXPECT_EQ(after[i].warning.starts_with("{} "), after[i].shown == Counter::Shown::warns) << after[i].name;
     EXPECT_EQ(std::ranges::count(after, after[i].name, &Counter::name), 1) << after[i].name;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes configs/schema/sonard.schema.json and the reference in docs/configuration.md from the loader's keys.
+// Writes configs/schema/sonard.schema.json and the reference in docs/configuration.md from the loader's keys,
+// and the tables in docs/events.md from the counters of devices and transports.
 // With --check it only reports whether these files are up to date.
 #include <algorithm>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +18,7 @@
 
 #include "server/config/loader.hpp"
 #include "server/devices/types/types.hpp"
+#include "tests/unit/server/config/events_reference.hpp"
 
 namespace sonard::server {
 namespace {
@@ -298,9 +301,26 @@ std::string text_of(const Table& table, std::size_t type_count) {
 
 // ---- The files
 
+constexpr std::string_view beginning_of_events =
+    "<!-- From here to the end written by write_configuration_reference, from counts() of devices and "
+    "transports -->\n";
+
 std::string read(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The page with `reference` in place of all that follows the line `begin`.
+std::string page_with(const std::filesystem::path& page, std::string_view begin,
+                      const std::string& reference) {
+  std::string text = read(page);
+  const std::size_t kept = text.find(begin);
+  if (kept == std::string::npos) {
+    throw std::runtime_error(
+        fmt::format("{} has no line at which the reference begins (expected {})", page.string(), begin));
+  }
+  text.resize(kept + begin.size());
+  return text + reference;
 }
 
 int write_or_check(const std::string& program, bool check) {
@@ -319,21 +339,17 @@ int write_or_check(const std::string& program, bool check) {
     return order_of(one, types) < order_of(other, types);
   });
   const std::filesystem::path source = SONARD_SOURCE_DIR;
-  const std::filesystem::path page = source / "docs/configuration.md";
-  std::string text = read(page);
-  const std::size_t kept = text.find(beginning);
-  if (kept == std::string::npos) {
-    fmt::print("{} has no line at which the reference begins (expected {})", page.string(), beginning);
-    return 1;
-  }
-  text.resize(kept + beginning.size());
+  std::string reference;
   for (const Table& table : tables) {
-    text += text_of(table, of_types.size());
+    reference += text_of(table, of_types.size());
   }
+  const std::filesystem::path keys = source / "docs/configuration.md";
+  const std::filesystem::path events = source / "docs/events.md";
   int unlike = 0;
   for (const auto& [file, wanted] :
        {std::pair(source / "configs/schema/sonard.schema.json", schema_of(of_types)),
-        std::pair(page, text)}) {
+        std::pair(keys, page_with(keys, beginning, reference)),
+        std::pair(events, page_with(events, beginning_of_events, events_reference()))}) {
     if (!check) {
       std::ofstream(file, std::ios::binary) << wanted;
     } else if (read(file) != wanted) {
@@ -348,5 +364,10 @@ int write_or_check(const std::string& program, bool check) {
 }  // namespace sonard::server
 
 int main(int argc, char** argv) {
-  return sonard::server::write_or_check(argv[0], argc > 1 && std::strcmp(argv[1], "--check") == 0);
+  try {
+    return sonard::server::write_or_check(argv[0], argc > 1 && std::strcmp(argv[1], "--check") == 0);
+  } catch (const std::runtime_error& error) {
+    fmt::print("{}", error.what());
+    return 1;
+  }
 }

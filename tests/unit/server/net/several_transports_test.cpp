@@ -20,7 +20,7 @@ class ScriptedTransport final : public Transport {
   bool blocked() const override { return full; }
   std::vector<std::string> descriptions() const override { return {"a way"}; }
   std::vector<Counter> counts() const override {
-    return {{"sent", sent.size()}, {"", 1, Counter::Shown::warns, "{} of this"}};
+    return {{"sent", sent.size()}, {"", 1, "", Counter::Fault::none, Counter::Shown::warns, "{} of this"}};
   }
 
   TransportEvents events;

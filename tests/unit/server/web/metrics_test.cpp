@@ -20,7 +20,8 @@ DaemonStatus status_of_two_heads() {
     HeadStatus head;
     head.name = name;
     head.counts.pings.sent = 42;
-    head.counts.device = {{.name = "lines_resent", .value = 7}};
+    head.counts.device = {{.name = "lines_resent", .value = 7},
+                          {.name = "unknown_type", .value = 3, .fault = Counter::Fault::of_client}};
     head.latency = std::chrono::milliseconds{20};
     head.since_last_ping = std::chrono::milliseconds{1500};
     status.heads.push_back(head);
@@ -59,6 +60,13 @@ TEST(Metrics, HaveHelpTypeAndValuesOfEachNameTogether) {
 
 TEST(Metrics, CountThePingsOfEachHead) {
   EXPECT_NE(text().find("sonard_pings_total{head=\"bow\"} 42\n"), std::string::npos);
+}
+
+TEST(Metrics, CountTheFaultsOfClientsOnly) {
+  EXPECT_NE(text().find("sonard_client_faults_total{head=\"bow\",event=\"unknown_type\"} 3\n"),
+            std::string::npos);
+  EXPECT_EQ(text().find("sonard_client_faults_total{head=\"bow\",event=\"lines_resent\"}"),
+            std::string::npos);
 }
 
 TEST(Metrics, EscapeNames) {

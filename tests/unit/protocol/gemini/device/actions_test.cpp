@@ -8,10 +8,11 @@
 namespace sonard::gemini {
 namespace {
 
-std::vector<std::string> texts(const std::vector<Notice>& notices) {
+std::vector<std::string> texts(const std::vector<Notice>& notices,
+                               Notice::Level level = Notice::Level::info) {
   std::vector<std::string> texts;
   for (const Notice& notice : notices) {
-    EXPECT_EQ(notice.level, Notice::Level::info) << notice.text;
+    EXPECT_EQ(notice.level, level) << notice.text;
     texts.push_back(notice.text);
   }
   return texts;
@@ -226,6 +227,41 @@ TEST(Counts, AreThoseOfTheHead) {
   EXPECT_EQ(counter(bench.device, "wrong_id").value().shown, Counter::Shown::warns);
   EXPECT_EQ(counter(bench.device, "wrong_id").value().warning,
             "{} commands were for another sonar ID: the last one for 0, but this head has 601 (sonar_id)");
+}
+
+TEST(Counts, OfValuesThatTheHeadClampsAreFaultsOfTheClientAndWarnedOfOnce) {
+  Bench bench;
+  const PingConfig good = ping_of(100);
+  bench.command(good);
+  EXPECT_EQ(counter(bench.device, "out_of_range").value().value, 0U);
+  PingConfig config = good;
+  config.end_range = 31;
+  bench.command(config);
+  EXPECT_EQ(texts(bench.last.notices, Notice::Level::warning),
+            Texts{"the client's end_range 31 is out of range: the head uses 32 to 20000"});
+  config.end_range = 20'001;
+  bench.command(config);
+  EXPECT_EQ(texts(bench.last.notices, Notice::Level::warning), Texts{});
+  config = good;
+  config.velocimeter_mode = 1;
+  config.sound_speed = 13'999;
+  bench.command(config);
+  EXPECT_EQ(texts(bench.last.notices, Notice::Level::warning),
+            Texts{"the client's sound_speed 13999 is out of range: the head uses 14000 to 15888"});
+  config.velocimeter_mode = 0;
+  bench.command(config);
+  EXPECT_EQ(counter(bench.device, "out_of_range").value().value, 3U) << "the last one is not used";
+  EXPECT_EQ(counter(bench.device, "out_of_range").value().fault, Counter::Fault::of_client);
+}
+
+TEST(Counts, OfUnknownTypesAreFaultsOfTheClientThatWarn) {
+  Bench bench;
+  std::vector<std::uint8_t> message = encode(Command{to_head<StatusRequest>()});
+  message[0] = 0xC0;
+  bench.receive({0, {client_address, 52901}, 0}, message);
+  EXPECT_EQ(counter(bench.device, "unknown_type").value().value, 1U);
+  EXPECT_EQ(counter(bench.device, "unknown_type").value().fault, Counter::Fault::of_client);
+  EXPECT_EQ(counter(bench.device, "unknown_type").value().shown, Counter::Shown::warns);
 }
 
 TEST(Progress, GrowsWithWhatIsSentAndWithWhatIsAskedForAgain) {

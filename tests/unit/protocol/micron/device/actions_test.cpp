@@ -122,6 +122,20 @@ TEST(Warnings, OfAGainBeyondTheMostThereIsComeOnce) {
   EXPECT_EQ(warnings(bench).size(), 1U);
 }
 
+TEST(Warnings, OfBinsAndIntervalsThatTheHeadClampsComeOnce) {
+  Bench bench;
+  HeadCommand command = all_round();
+  command.bins = 1501;
+  bench.command(command);
+  EXPECT_EQ(warnings(bench), Texts{"the client requests 1501 bins (expected 1 to 1500): the head uses 1500"});
+  command.bins = 0;
+  command.ad_interval = 0;
+  bench.command(command);
+  EXPECT_EQ(warnings(bench).size(), 2U);
+  EXPECT_EQ(warnings(bench).back(), "the client's ad_interval is 0: the head uses 1");
+  EXPECT_EQ(bench.device.counters().out_of_range, 2U) << "commands, not values";
+}
+
 TEST(Warnings, OfEqualLimitsComeOnce) {
   Bench bench;
   bench.command(sector(1600, 1600));
@@ -321,6 +335,29 @@ TEST(Counts, AreThoseOfTheHead) {
   EXPECT_EQ(counter(bench.device, "dropped_bytes").value().value, 3U);
   EXPECT_EQ(counter(bench.device, "dropped_bytes").value().shown, Counter::Shown::warns);
   EXPECT_EQ(counter(bench.device, "boots").value().shown, Counter::Shown::at_end);
+}
+
+TEST(Counts, OfWhatTheHeadRefusesIgnoresOrChangesAreFaultsOfTheClient) {
+  Bench bench;
+  HeadCommand command = all_round();
+  command.gain[0] = 211;
+  bench.make_ready(command);
+  GainCommand gain;
+  gain.values.gain[0] = 255;
+  bench.command(gain);
+  Bytes unknown = fixture("send_version");
+  unknown[10] = 99;
+  bench.raw(unknown);
+  Bytes form = fixture("head_command_ros");
+  form[13] = 0x55;
+  bench.raw(form);
+  for (const auto& [name, count] :
+       {std::pair{"out_of_range", 2U}, {"unknown_type", 1U}, {"bad_frames", 1U}}) {
+    EXPECT_EQ(counter(bench.device, name).value().value, count) << name;
+    EXPECT_EQ(counter(bench.device, name).value().fault, Counter::Fault::of_client) << name;
+  }
+  EXPECT_EQ(counter(bench.device, "unknown_type").value().shown, Counter::Shown::warns);
+  EXPECT_EQ(counter(bench.device, "requests_beyond_cap").value().fault, Counter::Fault::none);
 }
 
 TEST(Progress, GrowsWithLinesAndWithPingsThatComeToNothing) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "protocol/oculus/codec.hpp"
@@ -73,6 +75,82 @@ TEST(OculusDevice, AMoveOfTheServerIsInTheNextStatus) {
   const Status status = decode_status(bench.statuses.back()).value();
   EXPECT_EQ(status.address, (std::array<std::uint8_t, 4>{10, 61, 19, 201}));
   EXPECT_EQ(status.netmask, (std::array<std::uint8_t, 4>{255, 255, 255, 0}));
+}
+
+std::uint64_t count_of(const Device& device, std::string_view name) {
+  const std::vector<Counter> counts = device.counts();
+  return std::ranges::find(counts, name, &Counter::name)->value;
+}
+
+TEST(OculusDevice, WarnsOnceOfEachFieldOfAFireThatItChanges) {
+  Bench bench;
+  bench.connect();
+  bench.receive(encode(fire_at(0)));
+  EXPECT_EQ(count_of(bench.device, "out_of_range"), 0U);
+  const std::size_t before = bench.notices.size();
+  const auto fire_with = [&](const auto& change) {
+    SimpleFire fire = fire_at(0);
+    change(fire.fire);
+    for (int i = 0; i < 2; ++i) {
+      bench.receive(encode(fire));
+    }
+  };
+  fire_with([](Fire& fire) { fire.range = 40.5; });  // the high frequency reaches 40 m
+  fire_with([](Fire& fire) { fire.gain_percent = 101.0; });
+  fire_with([](Fire& fire) { fire.sound_speed_mps = 150.0; });
+  fire_with([](Fire& fire) { fire.master_mode = 0; });
+  fire_with([](Fire& fire) { fire.ping_rate = 6; });
+  EXPECT_EQ(count_of(bench.device, "out_of_range"), 10U);
+  std::vector<std::string> texts;
+  for (std::size_t i = before; i < bench.notices.size(); ++i) {
+    EXPECT_EQ(bench.notices[i].level, Notice::Level::warning);
+    texts.push_back(bench.notices[i].text);
+  }
+  EXPECT_EQ(texts, (std::vector<std::string>{
+                       "the client's range in metres 40.5 is out of range: the head uses 0.1 to 40",
+                       "the client's gainPercent 101 is out of range: the head uses 0 to 100",
+                       "the client's speedOfSound 150 is out of range: the head uses 1400 to 1600",
+                       "the client's masterMode 0 is unknown: the head uses 2, the high frequency",
+                       "the client's pingRate 6 is unknown: the head uses 0, 10 pings per second"}));
+}
+
+TEST(OculusDevice, LimitsOfARangeAreThoseOfTheFrequencyInMetresOrPercent) {
+  Bench bench;
+  bench.connect();
+  SimpleFire fire = fire_at(0);
+  fire.fire.range = 40.5;
+  fire.fire.master_mode = 1;  // the low frequency reaches 120 m
+  bench.receive(encode(fire));
+  fire.fire.flags &= static_cast<std::uint8_t>(~fire_flags::range_in_metres);
+  bench.receive(encode(fire));
+  EXPECT_EQ(count_of(bench.device, "out_of_range"), 0U);
+  fire.fire.range = 100.5;
+  bench.receive(encode(fire));
+  EXPECT_EQ(count_of(bench.device, "out_of_range"), 1U);
+}
+
+TEST(OculusDevice, CountsFullResultsUnknownMessagesShortFiresAndBytesOutside) {
+  Bench bench;
+  bench.connect();
+  SimpleFire fire = fire_at(0);
+  fire.fire.flags &= static_cast<std::uint8_t>(~fire_flags::simple_result);
+  bench.receive(encode(fire));
+  EXPECT_EQ(count_of(bench.device, "full_results_requested"), 1U);
+  EXPECT_EQ(bench.notices.back().text, "the client requests the full result (0x22): sonard sends 0x23");
+  Bytes message = encode(UserConfig{});
+  message[6] = 0x31;
+  bench.receive(message);
+  EXPECT_EQ(count_of(bench.device, "unknown_id"), 1U);
+  message[6] = 0xFF;  // a Dummy, which a viewer could send too
+  bench.receive(message);
+  EXPECT_EQ(count_of(bench.device, "unknown_id"), 1U);
+  Bytes short_fire = encode(fire_at(0));
+  short_fire[10] = 36;
+  short_fire.resize(16 + 36);
+  bench.receive(short_fire);
+  EXPECT_EQ(count_of(bench.device, "bad_commands"), 1U);
+  bench.receive({1, 2, 3, 4});
+  EXPECT_EQ(count_of(bench.device, "dropped_bytes"), 4U);
 }
 
 TEST(OculusDevice, StatusFollowsTheClientAtOnce) {

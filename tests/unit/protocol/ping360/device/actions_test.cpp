@@ -257,5 +257,30 @@ TEST(Ping360Actions, ProgressAndCountsAddUp) {
   EXPECT_EQ(sent->value, progress.sent);
 }
 
+TEST(Ping360Actions, RefusalsAreFaultsOfTheClientAndWarnedOfOnceForEachReason) {
+  Bench bench;
+  for (int i = 0; i < 2; ++i) {
+    bench.command(GeneralRequest{9});
+    Bytes unknown = encode(Command{MotorOff{}});
+    unknown[4] = 0x58;  // 2904
+    unknown[8] = static_cast<std::uint8_t>(unknown[8] + 1);
+    bench.raw(unknown);
+  }
+  std::vector<std::string> warnings;
+  for (const Notice& notice : bench.notices) {
+    if (notice.level == Notice::Level::warning) {
+      warnings.push_back(notice.text);
+    }
+  }
+  EXPECT_EQ(warnings,
+            (std::vector<std::string>{"the client's message 6 is refused: cannot be requested",
+                                      "the client's message 2904 is refused: command not recognised"}));
+  const auto counts = bench.device.counts();
+  const auto refused = std::ranges::find(counts, "refused", &Counter::name);
+  ASSERT_NE(refused, counts.end());
+  EXPECT_EQ(refused->value, 4U);
+  EXPECT_EQ(refused->fault, Counter::Fault::of_client);
+}
+
 }  // namespace
 }  // namespace sonard::ping360
