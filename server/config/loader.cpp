@@ -127,8 +127,8 @@ void read_world(YamlSection& section, const std::filesystem::path& folder, Daemo
   section.integer("max_triangles", config.world_max_triangles, 1, 2'000'000'000,
                   "maximum number of triangles, counting each use of a mesh");
   section.text("vehicle_model", config.vehicle_model,
-               "model that is the vehicle itself, and moves with it. Its frame is the vehicle frame. Poses "
-               "of this body in the stream have no effect");
+               "model that is the vehicle; its frame is the vehicle frame. Poses of this body in the stream "
+               "have no effect");
   section.default_is("vehicle_model",
                      "the model with the sonars of `mount.from_world`; no model if no head has `from_world`");
   section.section("origin", "position of (0, 0, 0) on Earth ([worlds.md](worlds.md#place-on-earth))",
@@ -171,20 +171,19 @@ void read_water(YamlSection& section, HeadContext& context) {
   section.number_or_word(
       "sound_speed_mps", context.water_sound_speed_mps, Range::from(1000.0, 2000.0),
       {{"ping_configuration", 0.0}, {"computed", render::sound_speed_mps(properties(water))}},
-      "true speed of sound. With `ping_configuration` it is the speed that the client assumes (1500 m/s if "
-      "the client does not send one), so the client's ranges are correct. With other values, ranges are "
-      "wrong by the ratio of the two speeds, as at sea");
+      "true speed of sound. `ping_configuration`: the speed that the client assumes (1500 m/s if it sends "
+      "none), so its ranges are correct. With other values, ranges are wrong by the ratio of the speeds, as "
+      "at sea");
   section.number("sound_speed_gradient_per_s", water.sound_speed_gradient_per_s, Range::from(-10.0, 10.0),
                  "increase of the sound speed with height (m/s per m). 0: straight rays. 0.5 to 1.8 is warm "
-                 "water above cold: rays bend down, and the bed appears nearer. "
-                 "-0.017 is water of one temperature; no sonar here shows its effect. With a gradient, "
-                 "sonard subdivides facets ([acoustics.md](acoustics.md#refraction))");
+                 "water above cold: rays bend down, and the bed appears nearer. With a gradient, sonard "
+                 "subdivides facets ([acoustics.md](acoustics.md#refraction))");
 }
 
 void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adaptive_quality) {
   section.introduce(
-      "sonard chooses the samples for this error. [accuracy.md](accuracy.md) lists measured errors, "
-      "[benchmark.md](benchmark.md) the cost.");
+      "sonard divides the fan as finely as this error requires. [accuracy.md](accuracy.md) lists measured "
+      "errors, [benchmark.md](benchmark.md) the cost.");
   using Preset = render::Sampling::Preset;
   section.choice("preset", sampling.preset,
                  {{"fast", Preset::fast},
@@ -199,10 +198,9 @@ void read_sampling(YamlSection& section, render::Sampling& sampling, bool& adapt
                   "only with `grid`: pixels of one view across the fan");
   section.integer("rows", sampling.rows, 8, 4096, "only with `grid`: pixels over the elevation of the fan");
   section.choice("adaptive_quality", adaptive_quality, {{"off", false}, {"on", true}},
-                 "`on`: while a client requests more pings than this machine can render, sonard uses the "
-                 "next faster preset. It returns to `preset` when there is time, and logs each change. "
-                 "Images then depend on the machine and its load. Invalid with `grid`; no effect if pings "
-                 "follow the stamps of the poses (`poses.clock`)");
+                 "`on`: while a client requests more pings than this machine can render, sonard uses a "
+                 "faster preset, and logs each change. Images then depend on the load of the machine. "
+                 "Invalid with `grid`; no effect in simulated time (`poses.clock`)");
   if (sampling.preset == Preset::grid && adaptive_quality) {
     section.report("adaptive_quality", "a grid has no faster preset (expected off, or another `preset`)");
   }
@@ -272,11 +270,10 @@ void read_document(YamlSection& root, std::span<const HeadType* const> types, Da
               {{"auto", render::EngineKind::automatic},
                {"gpu", render::EngineKind::gpu},
                {"cpu", render::EngineKind::cpu}},
-              "renderer: `gpu` uses OpenGL 4.5 on the graphics card; `cpu` uses the cores of the CPU and "
-              "needs no OpenGL. `auto` renders the first ping of each head with both, uses the faster one, "
-              "and logs both times. If OpenGL runs in software, `auto` selects the CPU at once. If a GPU "
-              "fails while sonard runs, the CPU continues with the same ping. The images of both agree "
-              "within the error of the preset ([accuracy.md](accuracy.md))");
+              "renderer: `gpu` uses OpenGL 4.5, `cpu` needs none. `auto` renders the first ping of each head "
+              "with both, uses the faster one, and logs both times; it selects the CPU if OpenGL runs in "
+              "software. If a GPU fails, the CPU continues with the same ping. Images of both agree within "
+              "[the error of the preset](accuracy.md)");
   root.section("gpu", "settings of engine `gpu`",
                [&](YamlSection& section) { read_gpu(section, config.gpu); });
   if (config.engine == render::EngineKind::cpu) {

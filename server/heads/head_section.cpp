@@ -120,8 +120,9 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                   {"off", Speckle::off}},
                  "`ou`: constant at rest, decorrelates as the sonar moves; `frozen`: always the same; "
                  "`per_ping`: drawn anew for each ping");
-  section.number("aperture_m", model.aperture_m, Range::above(0.0, 10.0),
-                 "length of the array; speckle changes over a motion of half this length");
+  section.number(
+      "aperture_m", model.aperture_m, Range::above(0.0, 10.0),
+      "length of the array; a motion by half of it, from one ping to the next, keeps 37 % of the speckle");
   using Backscatter = render::PhysicalModel::Backscatter;
   section.choice(
       "backscatter", model.backscatter,
@@ -347,7 +348,7 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
                  {{"physical", render::Model::physical}, {"paper", render::Model::paper}},
                  "`physical`: sonar equation with noise; `paper`: Cerqueira et al. 2017");
   section.integer("seed", head.seed, 0, max_u64,
-                  "seed of speckle and noise; equal seed, poses and pings give equal bytes");
+                  "seed of all random effects; equal seed, poses and pings give equal bytes");
   section.angle("vertical_beamwidth_deg", settings.aperture.vertical_beamwidth_rad, Range::above(0.0, 170.0),
                 "-3 dB full width");
   using Elevation = render::Aperture::Elevation;
@@ -355,8 +356,8 @@ void read_acoustics(YamlSection& section, double carrier_hz, HeadConfig& head) {
       "elevation_pattern", settings.aperture.elevation,
       {{"top_hat", Elevation::top_hat}, {"sinc", Elevation::sinc}, {"sinc_two_way", Elevation::sinc_two_way}},
       "`top_hat`: sharp vertical edges; `sinc`: pattern of a line array; `sinc_two_way`: its square, for a "
-      "head that transmits and receives with the same array height. The last two are rendered to 1.25 "
-      "beamwidths on either side");
+      "head that sends and receives with one array. The last two are rendered to 1.25 beamwidths on either "
+      "side");
   const bool scanning = settings.aperture.beam_count() == 1;
   const bool paper = settings.model == render::Model::paper;
   section.warn_if_given(paper ? "physical" : "paper",

@@ -121,10 +121,9 @@ PoseConfig read_poses(YamlSection& section, Types types, const std::filesystem::
                  {{"wall", PingClock::wall},
                   {"simulated", PingClock::simulated},
                   {"simulated_lock_step", PingClock::simulated_lock_step}},
-                 "clock for the pings: `wall` is the clock of this machine; with `simulated` and "
-                 "`simulated_lock_step`, pings follow the stamps of the poses, for a simulation that is "
-                 "slow, fast or paused. `simulated_lock_step` skips no ping, however slow "
-                 "the rendering ([poses.md](poses.md#simulated-time))");
+                 "`wall`: pings follow the clock of this machine; `simulated`: the stamps of the poses, for "
+                 "a simulation that is slow, fast or paused; `simulated_lock_step`: also skips no ping, "
+                 "however slow the rendering ([poses.md](poses.md#simulated-time))");
   check_combination(section, types, poses);
   return poses;
 }

@@ -66,9 +66,8 @@ void read_status_destination(YamlSection& section, std::string_view address_key,
                              StatusDestination& status) {
   using Mode = StatusDestination::Mode;
   const std::string meaning = fmt::format(
-      "destination of the status packets, sent once per second: `limited_broadcast` is 255.255.255.255, as "
-      "on the device; `directed_broadcast` is the broadcast address of `{}` under `netmask`; a list names "
-      "the hosts",
+      "destination of the status packets: `limited_broadcast` is 255.255.255.255, as on the device; "
+      "`directed_broadcast` is the broadcast address of `{}` under `netmask`; a list names the hosts",
       address_key);
   if (!section.is_list("status")) {
     section.choice(
