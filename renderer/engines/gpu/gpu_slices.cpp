@@ -36,22 +36,14 @@ float narrow(double number) {
 
 records::Ping record_of(const GpuPing& of) {
   const Fan& fan = of.fan;
-  const double port = fan.edge_rad(0), starboard = fan.edge_rad(fan.beam_count());
-  const double limit = std::atan(static_cast<double>(fan.tan_limit()));
   const SliceAccuracy& accuracy = of.accuracy;
   records::Ping ping{};
+  ping.fan = fan.space();
   ping.tan_limit = fan.tan_limit();
-  ping.sin_limit = narrow(std::sin(limit));
-  ping.cos_limit = narrow(std::cos(limit));
-  ping.max_range_m = fan.max_range_m();
-  ping.port_x = narrow(-std::sin(port));
-  ping.port_y = narrow(std::cos(port));
-  ping.starboard_x = narrow(std::sin(starboard));
-  ping.starboard_y = narrow(-std::cos(starboard));
-  ping.port_rad = narrow(port);
-  ping.starboard_rad = narrow(starboard);
-  ping.upright_rad = fan.upright_rad();
   ping.widest_slice_rad = fan.widest_slice_rad();
+  ping.upright_rad = fan.upright_rad();
+  ping.port_rad = narrow(fan.edge_rad(0));
+  ping.starboard_rad = narrow(fan.edge_rad(fan.beam_count()));
   ping.up_x = of.bend.up.x;
   ping.up_y = of.bend.up.y;
   ping.up_z = of.bend.up.z;
@@ -62,7 +54,6 @@ records::Ping record_of(const GpuPing& of) {
   ping.bins_end_m = narrow(of.settings.range.max_range_m());
   ping.sagitta_lines = accuracy.sagitta_lines;
   ping.beams = fan.beam_count();
-  ping.is_convex = narrow(port - starboard) < slices::half_turn ? 1 : 0;
   ping.two_sided = of.surface.two_sided ? 1 : 0;
   ping.cull = of.options.skip.on(SkipRule::culled_clusters) ? 1 : 0;
   std::ranges::copy(of.weights, ping.weights);

@@ -32,24 +32,11 @@ Corner refracted(Corner p) {
   return Corner(lifted.x, lifted.y, lifted.z);
 }
 
-// As Fan::misses().
-bool misses_fan(vec3 centre, float radius_m) {
-  const float slack = 1e-3;
-  float horizontal = length(centre.xy), distance = length(centre), reach = radius_m + slack * distance;
-  if (distance - radius_m > ping.max_range_m ||
-      abs(centre.z) * ping.cos_limit - horizontal * ping.sin_limit > reach) {
-    return true;
-  }
-  float port = centre.x * ping.port_x + centre.y * ping.port_y;
-  float starboard = centre.x * ping.starboard_x + centre.y * ping.starboard_y;
-  return (ping.is_convex != 0 ? max(port, starboard) : min(port, starboard)) > reach;
-}
-
 bool is_out(Cluster cluster, Placement placement) {
-  Corner centre = place(placement, cluster.x, cluster.y, cluster.z), apparent = refracted(centre);
+  Corner centre = place(placement, cluster.x, cluster.y, cluster.z);
   float distance = length(vec3(centre.x, centre.y, centre.z));
   float spread = 4.0 * abs(ping.bend_per_m) * cluster.radius_m * (distance + cluster.radius_m);
-  return misses_fan(vec3(apparent.x, apparent.y, apparent.z), cluster.radius_m + spread);
+  return misses_fan(ping.fan, refracted(centre), cluster.radius_m + spread);
 }
 
 // Number of the beams' edges from the `first` on, before the `end`, that lie to port of an azimuth, or at it.

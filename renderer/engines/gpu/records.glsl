@@ -7,17 +7,16 @@ struct Room {
   uint triangles, entries, visible, scratch, slices, pieces, things, edges;
 };
 
-// Constants of a ping, a uniform block.
+// Constants of a ping, a uniform block. Structures begin at multiples of 16 bytes there.
 struct Ping {
   Room room;
-  float tan_limit, sin_limit, cos_limit, max_range_m;            // of the fan's elevation, and its range
-  float port_x, port_y, starboard_x, starboard_y;                // unit normals of its sides, outwards
-  float port_rad, starboard_rad, upright_rad, widest_slice_rad;  // see Fan
-  float up_x, up_y, up_z, bend_per_m;                            // see Refraction
+  FanSpace fan;
   DivisionLimits division;
-  float line_m, bins_end_m, sagitta_lines;  // see SideView and SliceAccuracy
+  float tan_limit, widest_slice_rad, upright_rad;  // see Fan
+  float port_rad, starboard_rad;                   // edges of the fan
+  float up_x, up_y, up_z, bend_per_m;              // see Refraction
+  float line_m, bins_end_m, sagitta_lines;         // see SideView and SliceAccuracy
   int beams, clusters, parts;
-  int is_convex;                       // 1: the fan is narrower than half a turn
   int two_sided, cull;                 // 0: back faces are not seen; no cluster is culled
   INTS_BY_FOUR(weights, side_probes);  // ProbeWeights
 };

@@ -15,6 +15,7 @@ namespace sonard::render::records {
 
 using slices::Corner;
 using slices::DivisionLimits;
+using slices::FanSpace;
 using slices::Placement;
 using slices::side_probes;
 using uint = std::uint32_t;

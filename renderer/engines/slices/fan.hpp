@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "renderer/engines/slices/slice_math.hpp"
@@ -26,11 +25,13 @@ class Fan {
 
   int beam_count() const { return static_cast<int>(edges_rad_.size()) - 1; }
   double edge_rad(int i) const { return edges_rad_[static_cast<std::size_t>(i)]; }
-  float max_range_m() const { return max_range_m_; }
+  float max_range_m() const { return space_.max_range_m; }
   float tan_limit() const { return tan_limit_; }
-  /// True if a sphere is wholly outside the range, the elevation limits or the azimuths; false for some
-  /// spheres that are just outside.
-  bool misses(const glm::vec3& centre_m, float radius_m) const;
+  const slices::FanSpace& space() const { return space_; }
+  /// See slices::misses_fan().
+  bool misses(const glm::vec3& centre_m, float radius_m) const {
+    return slices::misses_fan(space_, {centre_m.x, centre_m.y, centre_m.z}, radius_m);
+  }
   /// True if a sphere lies behind both sides of a fan of less than half a turn: its nearest point of the fan
   /// is the sonar. For large spheres; misses() may be false for them.
   bool is_behind(const glm::vec3& centre_m, float radius_m) const;
@@ -54,11 +55,9 @@ class Fan {
 
  private:
   std::vector<double> edges_rad_;
-  float sin_limit_, cos_limit_;
   float tan_limit_;
-  float max_range_m_;
   float width_rad_;
-  glm::vec2 beyond_port_, beyond_starboard_;  ///< horizontal unit normals of the sides, out of the fan
+  slices::FanSpace space_;
   float buckets_per_rad_;
   std::vector<std::uint16_t> first_beam_, last_beam_;  ///< per bucket of azimuth, from port to starboard
 };

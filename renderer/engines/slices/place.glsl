@@ -64,6 +64,30 @@ SHARED float most_of(float a, float b, float c) {
   return ab > c ? ab : c;
 }
 
+// The space in which a sonar sees (Fan).
+struct FanSpace {
+  float max_range_m;
+  float sin_limit, cos_limit;                      // of the largest elevation
+  int is_convex;                                   // 1: narrower than half a turn
+  float port_x, port_y, starboard_x, starboard_y;  // horizontal unit normals of its sides, outwards
+};
+
+// Whether a sphere is wholly outside of the range, the elevation limits or the azimuths. False for some
+// spheres that are just outside.
+SHARED bool misses_fan(FanSpace fan, Corner centre, float radius_m) {
+  const float slack = 1e-3F;  // radians; more than all rounding errors here
+  float horizontal_m = sqrt(centre.x * centre.x + centre.y * centre.y);
+  float distance_m = sqrt(horizontal_m * horizontal_m + centre.z * centre.z);
+  float reach_m = radius_m + slack * distance_m;
+  float port_m = centre.x * fan.port_x + centre.y * fan.port_y;
+  float starboard_m = centre.x * fan.starboard_x + centre.y * fan.starboard_y;
+  // A sphere beyond either side is outside a fan of up to half a turn; beyond both sides, outside a wider
+  // one.
+  float beside_m = fan.is_convex != 0 ? max(port_m, starboard_m) : min(port_m, starboard_m);
+  return distance_m - radius_m > fan.max_range_m ||
+         abs(centre.z) * fan.cos_limit - horizontal_m * fan.sin_limit > reach_m || beside_m > reach_m;
+}
+
 CONSTANT float thin_ratio = 3.0F;      // angular height over width
 CONSTANT float least_upright = 0.02F;  // of the tangent of the fan's limit; lower edges have little effect
 

@@ -168,7 +168,8 @@ TEST_F(SliceMathTest, Cut) {
 }
 
 TEST_F(SliceMathTest, PlacedTriangles) {
-  expect_equal({R"(
+  expect_equal(
+      {R"(
     Corner a = Corner(get(0), get(1), get(2)), b = Corner(get(3), get(4), get(5)), c = Corner(get(6), get(7), get(8));
     Sight at_a = sight_of(a), at_b = sight_of(b), at_c = sight_of(c);
     put(at_a.azimuth); put(at_a.horizontal_squared); put(at_a.tangent);
@@ -179,38 +180,42 @@ TEST_F(SliceMathTest, PlacedTriangles) {
     Corner moved = place(Placement(get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7), get(8), get(0), get(1),
                                    get(2)), a.x, a.y, a.z);
     put(moved.x); put(moved.y); put(moved.z);
+    put(misses_fan(FanSpace(5.0, 0.2, 0.98, get(9) < 0.0 ? 0 : 1, -0.5, 0.87, -0.5, -0.87), a, 0.1) ? 1.0 : 0.0);
 )",
-                12, false,
-                [](std::mt19937& random) {
-                  Numbers numbers = corners(random);
-                  if (uniform(random, 0, 1) < 0.3F) {  // an upright edge
-                    numbers[3] = numbers[0] * (1 + uniform(random, -1e-3, 1e-3));
-                    numbers[4] = numbers[1] * (1 + uniform(random, -1e-3, 1e-3));
-                  }
-                  numbers.push_back(std::floor(uniform(random, -1, 2)));
-                  return numbers;
-                },
-                [](const Numbers& x) {
-                  const slices::Corner a{x[0], x[1], x[2]}, b{x[3], x[4], x[5]}, c{x[6], x[7], x[8]};
-                  const slices::Sight at_a = slices::sight_of(a);
-                  const auto bounds = slices::bounds_of_triangle(
-                      at_a, slices::sight_of(b), slices::sight_of(c), a.z, b.z, c.z, {0.3F, 5e-3F});
-                  const slices::Corner moved =
-                      slices::place({x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[0], x[1], x[2]},
-                                    a.x, a.y, a.z);
-                  return Numbers{at_a.azimuth,
-                                 at_a.horizontal_squared,
-                                 at_a.tangent,
-                                 static_cast<float>(bounds.in_elevation),
-                                 static_cast<float>(bounds.thin),
-                                 static_cast<float>(bounds.upright),
-                                 bounds.low_azimuth,
-                                 bounds.high_azimuth,
-                                 slices::is_turned_away(a, b, c, x[9]) ? 1.0F : 0.0F,
-                                 moved.x,
-                                 moved.y,
-                                 moved.z};
-                }});
+       13, false,
+       [](std::mt19937& random) {
+         Numbers numbers = corners(random);
+         if (uniform(random, 0, 1) < 0.3F) {  // an upright edge
+           numbers[3] = numbers[0] * (1 + uniform(random, -1e-3, 1e-3));
+           numbers[4] = numbers[1] * (1 + uniform(random, -1e-3, 1e-3));
+         }
+         numbers.push_back(std::floor(uniform(random, -1, 2)));
+         return numbers;
+       },
+       [](const Numbers& x) {
+         const slices::Corner a{x[0], x[1], x[2]}, b{x[3], x[4], x[5]}, c{x[6], x[7], x[8]};
+         const slices::Sight at_a = slices::sight_of(a);
+         const auto bounds = slices::bounds_of_triangle(at_a, slices::sight_of(b), slices::sight_of(c), a.z,
+                                                        b.z, c.z, {0.3F, 5e-3F});
+         const slices::Corner moved = slices::place(
+             {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[0], x[1], x[2]}, a.x, a.y, a.z);
+         return Numbers{
+             at_a.azimuth,
+             at_a.horizontal_squared,
+             at_a.tangent,
+             static_cast<float>(bounds.in_elevation),
+             static_cast<float>(bounds.thin),
+             static_cast<float>(bounds.upright),
+             bounds.low_azimuth,
+             bounds.high_azimuth,
+             slices::is_turned_away(a, b, c, x[9]) ? 1.0F : 0.0F,
+             moved.x,
+             moved.y,
+             moved.z,
+             slices::misses_fan({5.0F, 0.2F, 0.98F, x[9] < 0 ? 0 : 1, -0.5F, 0.87F, -0.5F, -0.87F}, a, 0.1F)
+                 ? 1.0F
+                 : 0.0F};
+       }});
 }
 
 /// Two segments that both reach over `from`; a third of them cross, a third touch.
