@@ -10,5 +10,6 @@ set(SONARD_DEVICES
   gemini
   micron
   oculus
+  ping1d
   ping360
 )

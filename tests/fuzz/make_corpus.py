@@ -306,6 +306,28 @@ def ping360_frames():
     yield "set_ip", b"SetSS1IP 192.168.002.004"
 
 
+def ping1d_device_scripts():
+    """Kinds of events and flags are those of the Ping360's script."""
+    def say(name, kind=P360_A, delay=2):
+        return event(AS_IS | kind, messages("ping1d")[name]["bytes"], delay)
+
+    def script(flags, *events):
+        return bytes([flags]) + b"".join(events)
+
+    image = event(P360_IMAGE, delay=100)
+    settings = b"".join(say(name) for name in ("set_mode_auto", "set_range", "set_speed_of_sound", "set_gain_setting",
+                                               "set_ping_interval", "set_ping_enable"))
+    yield "stream", script(0, say("continuous_start_profile"), 4 * image, say("continuous_stop_profile"))
+    yield "settings", script(0, settings, say("continuous_start_distance_simple", P360_B), 3 * image)
+    yield "requests", script(0, say("request_device_information"), event(P360_A, struct.pack("<HH", 6, 1300)), image,
+                             event(P360_A, struct.pack("<H", 1211)), event(P360_A, struct.pack("<H", 1004)))
+    yield "restart", script(0, say("continuous_start_profile"), say("goto_bootloader"), event(P360_FAILED), say("set_device_id"))
+    yield "two_clients", script(FAN_OUT | TWO_CLIENTS, say("continuous_start_profile"), say("set_range", P360_B),
+                                say("set_mode_auto", P360_SERIAL), image, event(P360_GONE))
+    yield "next_ping_due", script(WAITS, say("continuous_start_profile"), 3 * (event(P360_NEXT_DUE) + image))
+    yield "played", script(PLAYS_BACK, say("continuous_start_profile"), 3 * (event(P360_FEED) + image))
+
+
 def glf_record(kind, body):
     return struct.pack("<cBIdBHHH", b"*", 2, 21 + len(body), 1479651753.25, kind, 1194, 100, 0) + body
 
@@ -558,7 +580,8 @@ def main():
                             ("micron/device", micron_device_scripts()), ("micron/client", micron_client_scripts()),
                             ("oculus/device", oculus_device_scripts()), ("oculus/client", oculus_streams()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
-                            ("ping360/client", ping360_client_scripts()), ("glf/log", glf_logs()), ("mcap", mcap_files()),
+                            ("ping360/client", ping360_client_scripts()), ("ping1d/device", ping1d_device_scripts()),
+                            ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
                             ("configuration", configurations()), ("sdf", sdf_worlds()), ("ply", ply_files()),

@@ -52,6 +52,10 @@ TEST(HostileBytes, Oculus) {
   expect_no_failure("oculus", 52'102);
 }
 
+TEST(HostileBytes, Ping1d) {
+  expect_no_failure("ping1d", 9090);
+}
+
 TEST(HostileBytes, Ping360) {
   expect_no_failure("ping360", 12'345);
 }
