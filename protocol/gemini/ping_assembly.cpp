@@ -46,7 +46,7 @@ PingAssembly::Added PingAssembly::add_line(const PingLine& line) {
 
 bool PingAssembly::has_line(int number) const {
   const auto index = static_cast<std::size_t>(number);
-  return head_ ? index < received_.size() && received_[index] : waiting_.count(number) > 0;
+  return head_ ? index < received_.size() && received_[index] : waiting_.contains(number);
 }
 
 std::vector<LineRange> PingAssembly::missing(int from, int to) const {
