@@ -2,7 +2,6 @@
 #include "clients/sonarview/gemini/watched_head.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/crc.hpp>
@@ -10,7 +9,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <utility>
-#include <vector>
 
 #include "protocol/common/endpoint.hpp"
 #include "protocol/gemini/bearings.hpp"
@@ -185,12 +183,12 @@ std::string WatchedHead::no_head_text() const {
       "check that sonard runs, that it sends its status to this address or broadcasts it on this network, "
       "and that no firewall blocks UDP";
   if (const auto& others = client_.other_heads(); !others.empty()) {
-    std::vector<std::string> received;
+    std::string received;
     for (const auto& [id, address] : others) {
-      received.push_back(fmt::format("{} at {}", id, address_text(address)));
+      received += fmt::format("{}head {} at {}", received.empty() ? "" : ", ", id, address_text(address));
     }
-    advice = fmt::format("only head {} sent a status (to view one, use --sonar-id {})",
-                         fmt::join(received, ", head "), others.begin()->first);
+    advice = fmt::format("only {} sent a status (to view one, use --sonar-id {})", received,
+                         others.begin()->first);
   }
   return fmt::format("no status{} on port {} within {:.1f} s: {}",
                      sonar_id_ != 0 ? fmt::format(" of head {}", sonar_id_) : "", gemini::client_port,
