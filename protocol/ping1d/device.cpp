@@ -376,12 +376,12 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const GeneralRequest
 }
 
 void Device::Impl::answer_waiting(TimePoint now) {
-  const auto rest =
-      std::ranges::partition(waiting_, [&](const Waiting& it) { return state_.pings > 0 || now >= it.due; });
-  for (auto it = waiting_.begin(); it != rest.begin(); ++it) {
+  const auto rest = std::stable_partition(
+      waiting_.begin(), waiting_.end(), [&](const Waiting& it) { return state_.pings > 0 || now >= it.due; });
+  for (auto it = waiting_.begin(); it != rest; ++it) {
     reply(it->asker, data(it->id));
   }
-  waiting_.erase(waiting_.begin(), rest.begin());
+  waiting_.erase(waiting_.begin(), rest);
 }
 
 // ---- Settings
