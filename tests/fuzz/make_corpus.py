@@ -306,6 +306,12 @@ def ping360_frames():
     yield "set_ip", b"SetSS1IP 192.168.002.004"
 
 
+def ping1d_messages():
+    """Number and payload of each message."""
+    for name, message in sorted(messages("ping1d").items()):
+        yield name, message["bytes"][4:6] + message["bytes"][8:-2]
+
+
 def ping1d_device_scripts():
     """Kinds of events and flags are those of the Ping360's script."""
     def say(name, kind=P360_A, delay=2):
@@ -580,7 +586,7 @@ def main():
                             ("micron/device", micron_device_scripts()), ("micron/client", micron_client_scripts()),
                             ("oculus/device", oculus_device_scripts()), ("oculus/client", oculus_streams()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
-                            ("ping360/client", ping360_client_scripts()), ("ping1d/device", ping1d_device_scripts()),
+                            ("ping360/client", ping360_client_scripts()), ("ping1d/device", ping1d_device_scripts()), ("ping1d/messages", ping1d_messages()),
                             ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
