@@ -221,7 +221,7 @@ void read_gpu(YamlSection& section, render::GpuOptions& gpu) {
   section.integer("memory_mib", gpu.memory_mib, 1, 1'048'576,
                   "video memory for meshes and normal maps in MiB, for each renderer. All fans share one "
                   "renderer, all scanning heads another. If the data of one ping do not fit, the CPU renders "
-                  "it ([engines.md](engines.md#video-memory))");
+                  "it ([engines](../renderer/engines/README.md#video-memory))");
   section.number("retry_s", gpu.retry_s, Range::from(0.0, 86'400.0),
                  "time between attempts to use a lost GPU again, each during a ping, which waits for it; 0: "
                  "the CPU renders until the daemon ends");

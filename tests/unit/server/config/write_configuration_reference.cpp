@@ -250,6 +250,14 @@ void share_rows_of(std::vector<Table>& tables, const std::string& path) {
   const std::size_t count = places_of(tables, path).size();
   for (std::size_t one = 0; one < count; ++one) {
     for (std::size_t other = one + 1; other < count; ++other) {
+      for (std::size_t third = other + 1; third < count; ++third) {
+        const std::vector<std::size_t> places = places_of(tables, path);
+        share_rows(tables, {places.at(one), places.at(other), places.at(third)});
+      }
+    }
+  }
+  for (std::size_t one = 0; one < count; ++one) {
+    for (std::size_t other = one + 1; other < count; ++other) {
       const std::vector<std::size_t> places = places_of(tables, path);
       share_rows(tables, {places.at(one), places.at(other)});
     }
