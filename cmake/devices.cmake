@@ -5,7 +5,7 @@
 #   clients/sonarview/NAME    library sonard_view_NAME with `const Subcommand& NAME_subcommand()`
 #   clients/wireshark         NAME_fields.cpp with `std::string NAME_field_tables()`, and the dissector sonard_NAME.lua with
 #                             its sonard_NAME_fields.lua
-# docs/adding-a-device.md explains how to add one.
+# protocol/README.md explains how to add one.
 set(SONARD_DEVICES
   gemini
   micron
