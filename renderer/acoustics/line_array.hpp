@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/acoustics/random.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/aperture.hpp"
 
 namespace sonard::render {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "renderer/physical_model.hpp"
 #include "renderer/ping.hpp"
-#include "renderer/sonar_settings.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

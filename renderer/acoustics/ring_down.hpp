@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "renderer/acoustics/random.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/physical_model.hpp"
+#include "renderer/range_bins.hpp"
 
 namespace sonard::render {
 

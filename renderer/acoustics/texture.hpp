@@ -3,7 +3,7 @@
 #pragma once
 
 #include "renderer/aligned_vector.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/physical_model.hpp"
 
 namespace sonard::render {
 

@@ -4,7 +4,8 @@
 
 #include <vector>
 
-#include "renderer/sonar_settings.hpp"
+#include "renderer/physical_model.hpp"
+#include "renderer/range_bins.hpp"
 
 namespace sonard::render {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "renderer/aperture.hpp"
 #include "renderer/engine.hpp"
 #include "renderer/skip_ledger.hpp"
-#include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "renderer/aperture.hpp"
 #include "renderer/binning/echo_patch.hpp"
-#include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 

@@ -11,8 +11,8 @@
 #include "renderer/multipath/ghost_paths.hpp"
 #include "renderer/multipath/mirror_survey.hpp"
 #include "renderer/multipath/path_scene.hpp"
+#include "renderer/multipath_settings.hpp"
 #include "renderer/pose.hpp"
-#include "renderer/sonar_settings.hpp"
 #include "renderer/worker_pool.hpp"
 
 namespace sonard::render {

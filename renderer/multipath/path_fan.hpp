@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "renderer/sonar_settings.hpp"
+#include "renderer/aperture.hpp"
 
 namespace sonard::render {
 

@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 
 #include "renderer/errors.hpp"
+#include "renderer/sampling.hpp"
 #include "renderer/scene/mesh_cache.hpp"
 #include "renderer/simd.hpp"
-#include "renderer/sonar_settings.hpp"
 #include "renderer/spatial_index/embree.hpp"
 
 namespace sonard::render {

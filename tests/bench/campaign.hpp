@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/physical_model.hpp"
 #include "renderer/renderer_options.hpp"
-#include "renderer/sonar_settings.hpp"
 #include "tests/bench/measurements.hpp"
 #include "tests/bench/points.hpp"
 #include "tests/bench/timing.hpp"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "renderer/sonar_settings.hpp"
+#include "renderer/aperture.hpp"
 
 namespace sonard::render {
 

@@ -8,8 +8,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "renderer/aperture.hpp"
 #include "renderer/engines/slices/slice_math.hpp"
-#include "renderer/sonar_settings.hpp"
 
 namespace sonard::render {
 

@@ -2,7 +2,8 @@
 // How closely slices follow the world, for each preset.
 #pragma once
 
-#include "renderer/sonar_settings.hpp"
+#include "renderer/model.hpp"
+#include "renderer/sampling.hpp"
 
 namespace sonard::render {
 

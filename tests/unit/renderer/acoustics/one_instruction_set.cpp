@@ -26,7 +26,7 @@
 #include "renderer/acoustics/texture.cpp"
 #include "renderer/acoustics/tone.cpp"
 #include "renderer/acoustics/tvg.cpp"
-#include "renderer/sonar_settings.cpp"
+#include "renderer/aperture.cpp"
 #include "renderer/usable_cores.cpp"
 #include "renderer/worker_pool.cpp"
 //

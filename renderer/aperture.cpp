@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/sonar_settings.hpp"
+#include "renderer/aperture.hpp"
 
 #include <algorithm>
 #include <cmath>
