@@ -46,11 +46,15 @@ struct PosesOfJob {
 }  // namespace
 
 struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
-  Impl(const HeadConfig& head_config, int head_index, const HeadServices& head_services);
+  Impl(const HeadConfig& head_config, int head_index, const HeadServices& services);
 
   const HeadConfig config;
-  const HeadServices services;
   const int index;  ///< among all heads
+  const Clock& clock;
+  const PoseHistory& history;
+  const std::optional<double> water_surface_z_m;
+  Playback* const playback;
+  PingViewer* const viewer;
   const DeviceType& type;
 
   std::unique_ptr<ConnectedDevice> connected;
@@ -120,7 +124,7 @@ void Head::stop() {
   impl_->stop();
 }
 void Head::poses_changed() {
-  if (impl_->services.poses.ping_clock() != PingClock::wall) {
+  if (impl_->history.ping_clock() != PingClock::wall) {
     impl_->happen(TimePassed{});
   }
 }
@@ -140,23 +144,27 @@ const RenderCounters& Head::render_counters() const {
   return impl_->rendering.counters();
 }
 
-Head::Impl::Impl(const HeadConfig& head_config, int head_index, const HeadServices& head_services)
+Head::Impl::Impl(const HeadConfig& head_config, int head_index, const HeadServices& services)
     : config(head_config),
-      services(head_services),
       index(head_index),
+      clock(services.clock),
+      history(services.poses),
+      water_surface_z_m(services.water_surface_z_m),
+      playback(services.playback),
+      viewer(services.viewer),
       type(type_of(config)),
-      connected(type.connect(config, services.io, services.clock)),
-      poses(config, services.poses, services.vehicle_model),
-      rendering(config, index, services.renderer, services.clock,
+      connected(type.connect(config, services.io, clock)),
+      poses(config, history, services.vehicle_model),
+      rendering(config, index, services.renderer, clock,
                 // If poses bring the time, pings wait for them, and the image must depend on nothing else. A
                 // recording is played as it is.
-                {.adapts = !poses.in_simulated_time() && services.playback == nullptr,
+                {.adapts = !poses.in_simulated_time() && playback == nullptr,
                  .withdraws = services.skip.on(render::SkipRule::nobody_listening)}),
       timer(services.io),
       report_timer(services.io),
       log(config.name),
-      recording(services.recorder, index, services.clock),
-      diagnosis(config, services.poses, services.vehicle_model, services.world) {}
+      recording(services.recorder, index, clock),
+      diagnosis(config, history, services.vehicle_model, services.world) {}
 
 // ---- Life
 
@@ -197,14 +205,14 @@ TransportEvents Head::Impl::transport_events() {
   TransportEvents hooks{.received =
                             [weak](BytesReceived received) {
                               if (const auto self = weak.lock()) {
-                                self->clients.sent(received.from.remote, self->services.clock.now());
+                                self->clients.sent(received.from.remote, self->clock.now());
                                 self->happen(std::move(received));
                               }
                             },
                         .came =
                             [weak](const ClientCame& came) {
                               if (const auto self = weak.lock()) {
-                                self->clients.sent(came.who.remote, self->services.clock.now());
+                                self->clients.sent(came.who.remote, self->clock.now());
                                 self->happen(came);
                               }
                             },
@@ -237,7 +245,7 @@ HeadCounts Head::Impl::counts() const {
 }
 
 HeadStatus Head::Impl::status() const {
-  const TimePoint now = services.clock.now();
+  const TimePoint now = clock.now();
   return {.name = config.name,
           .type = std::string(type.name()),
           .scanning = type.scanning(),
@@ -254,7 +262,7 @@ HeadStatus Head::Impl::status() const {
 }
 
 std::vector<Finding> Head::Impl::findings() const {
-  std::vector<Finding> all = diagnosis.findings(services.clock.now());
+  std::vector<Finding> all = diagnosis.findings(clock.now());
   for (const Ipv4 address : own_addresses.gone()) {
     all.push_back(
         {"address_gone", fmt::format("The address {} is gone from this machine, so no client reaches the "
@@ -307,11 +315,11 @@ void Head::Impl::pump() {
   while (running && !events.empty() && !connected->transport().blocked()) {
     const Event event = std::move(events.front());
     events.pop_front();
-    take_or_lose(services.clock.now(), event);
+    take_or_lose(clock.now(), event);
   }
   pumping = false;
   if (running) {
-    schedule(services.clock.now());
+    schedule(clock.now());
   }
 }
 
@@ -383,8 +391,8 @@ std::optional<std::uint64_t> Head::Impl::carry_out(TimePoint now, Actions action
   if (actions.nobody_there) {
     poses.rest();
   }
-  if (services.playback != nullptr) {
-    services.playback->progress(index, now, connected->device().progress());
+  if (playback != nullptr) {
+    playback->progress(index, now, connected->device().progress());
   }
   if (actions.cancelled && rendering.withdraw()) {
     return actions.cancelled;
@@ -413,8 +421,8 @@ void Head::Impl::record(TimePoint now, PingRecord ping) {
   if (recording.on() && newest_job.poses && newest_job.number == ping.number) {
     recording.ping({ping, newest_job.poses});
   }
-  if (services.viewer != nullptr) {
-    services.viewer->show(std::make_shared<const ShownPing>(
+  if (viewer != nullptr) {
+    viewer->show(std::make_shared<const ShownPing>(
         ShownPing{index, now, std::move(ping),
                   newest_job.poses ? std::optional(newest_job.poses->T_world_sonar) : std::nullopt}));
   }
@@ -423,10 +431,10 @@ void Head::Impl::record(TimePoint now, PingRecord ping) {
 // Looks at the pose of the present at each new pose in simulated time, else every sense_period: an event may
 // be any datagram.
 void Head::Impl::sense(TimePoint now) {
-  if (!services.water_surface_z_m && !type.has_sensors()) {
+  if (!water_surface_z_m && !type.has_sensors()) {
     return;
   }
-  const TimePoint present = services.poses.present(now);
+  const TimePoint present = history.present(now);
   if (sensed_at &&
       (poses.in_simulated_time() ? present == *sensed_at : present - *sensed_at < sense_period)) {
     return;
@@ -440,15 +448,14 @@ void Head::Impl::sense(TimePoint now) {
 }
 
 void Head::Impl::read_sensors(TimePoint now, const render::Pose& T_world_mount) {
-  const SensorReadings present = sensor_readings(T_world_mount, services.water_surface_z_m);
+  const SensorReadings present = sensor_readings(T_world_mount, water_surface_z_m);
   if (std::exchange(readings, present) != present) {
     step(now, SensorsRead{present});
   }
 }
 
 void Head::Impl::note_water(TimePoint now, const std::optional<render::Pose>& T_world_mount) {
-  const bool out = services.water_surface_z_m && T_world_mount &&
-                   T_world_mount->position_m.z > *services.water_surface_z_m;
+  const bool out = water_surface_z_m && T_world_mount && T_world_mount->position_m.z > *water_surface_z_m;
   if (std::exchange(out_of_water, out) == out) {
     return;
   }
@@ -464,20 +471,20 @@ void Head::Impl::note_water(TimePoint now, const std::optional<render::Pose>& T_
 }
 
 void Head::Impl::feed(TimePoint now) {
-  if (services.playback != nullptr) {
-    step(now, PingFed{services.playback->next_ping(index, now)});
+  if (playback != nullptr) {
+    step(now, PingFed{playback->next_ping(index, now)});
   }
 }
 
 // In simulated time. True if a ping begins with the next step.
 bool Head::Impl::next_ping_is_due(TimePoint now) {
-  if (services.poses.ping_clock() == PingClock::wall) {
+  if (history.ping_clock() == PingClock::wall) {
     return false;
   }
   if (poses.begin_ping(now, next_ping, rendering.busy())) {
     return true;
   }
-  if (next_ping && next_ping->from <= now && !services.poses.newest()) {
+  if (next_ping && next_ping->from <= now && !history.newest()) {
     diagnosis.no_pose(now);
   }
   return false;
@@ -490,7 +497,7 @@ void Head::Impl::schedule(TimePoint now) {
   }
   std::optional<TimePoint> deadline = wake_at;
   // A ping that is already due waits for poses, and poses wake the head.
-  if (services.poses.ping_clock() != PingClock::wall && next_ping && next_ping->from > now) {
+  if (history.ping_clock() != PingClock::wall && next_ping && next_ping->from > now) {
     deadline = deadline ? std::min(*deadline, next_ping->from) : next_ping->from;
   }
   timer.set(deadline, [weak = weak_from_this()] {
@@ -506,7 +513,7 @@ void Head::Impl::schedule(TimePoint now) {
 // Returns false if this ping is impossible.
 bool Head::Impl::render(const PingJob& job) {
   if (job.record) {
-    services.playback->started(index, job);
+    playback->started(index, job);
   }
   newest_job = {job.number, poses.of_ping(job)};
   const std::shared_ptr<const PosesUsed>& of_ping = newest_job.poses;
@@ -536,12 +543,11 @@ bool Head::Impl::render(const PingJob& job) {
         }
         if (self->rendering.take(result)) {
           self->done_or_lost([&] {
-            self->diagnosis.look(self->services.clock.now(), *self->newest, *of_ping,
-                                 result.statistics.sees_surface, result.statistics.echo_over_floor);
+            self->diagnosis.look(self->clock.now(), *self->newest, *of_ping, result.statistics.sees_surface,
+                                 result.statistics.echo_over_floor);
           });
-          self->happen(
-              PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16),
-                            sensor_readings(of_ping->T_world_sonar, self->services.water_surface_z_m)}});
+          self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16),
+                                     sensor_readings(of_ping->T_world_sonar, self->water_surface_z_m)}});
         } else {
           self->happen(PingNotRendered{number});
         }
@@ -561,7 +567,7 @@ PosedPing Head::Impl::posed(const PingJob& job, std::shared_ptr<const PosesUsed>
                              job.record.value_or(job.number), config.seed,
                              at_end ? std::optional(transducer(*at_end)) : std::nullopt},
                  .poses = nullptr,
-                 .hidden_body = config.hides_vehicle ? services.vehicle_model : ""};
+                 .hidden_body = poses.hidden_body()};
   ping.poses = std::move(poses_of_ping);
   return ping;
 }

@@ -32,7 +32,8 @@ struct HeadStatus;
 struct InterfaceAddress;
 struct RenderCounters;
 
-/// Services of the daemon that a head uses. They outlive the head.
+/// Services of the daemon, from which a head gives each of its parts what the part needs. They outlive the
+/// head.
 struct HeadServices {
   boost::asio::io_context& io;
   const Clock& clock;
