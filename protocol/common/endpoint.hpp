@@ -2,6 +2,7 @@
 // IPv4 addresses and ports as plain values.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,7 +17,8 @@ struct Endpoint {
   Ipv4 address = 0;        ///< 0 binds all addresses
   std::uint16_t port = 0;  ///< 0 lets the kernel choose (bind only)
 
-  bool operator==(const Endpoint&) const = default;
+  /// By address, then port.
+  auto operator<=>(const Endpoint&) const = default;
 };
 
 /// "127.0.0.1"

@@ -16,9 +16,8 @@ struct PublisherId {
   /// MAVLink IDs; 0: the publisher uses another protocol.
   std::uint8_t system_id = 0, component_id = 0;
 
-  bool operator==(const PublisherId&) const = default;
-  /// By address, then port.
-  std::strong_ordering operator<=>(const PublisherId& other) const;
+  /// By endpoint, then IDs.
+  auto operator<=>(const PublisherId&) const = default;
 };
 
 /// For people: "127.0.0.1:41234", "127.0.0.1:41234 system 1 component 1".
