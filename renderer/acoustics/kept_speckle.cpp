@@ -8,16 +8,15 @@
 
 namespace sonard::render {
 
-using Speckle = PhysicalModel::Speckle;
-
 void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tables) {
+  using Kind = SpeckleSettings::Kind;
   const PhysicalModel& model = request.settings.physical;
   const Aperture& aperture = request.settings.aperture;
-  const Maker maker{model.speckle, request.seed, tables.filter, tables.pulse_correlation,
+  const Maker maker{model.speckle.kind, request.seed, tables.filter, tables.pulse_correlation,
                     aperture.receive_beamwidth_rad};
-  kept_ = model.speckle == Speckle::ou || model.speckle == Speckle::frozen;
+  kept_ = model.speckle.kind == Kind::ou || model.speckle.kind == Kind::frozen;
   scans_ = aperture.beam_count() == 1;
-  textured_ = model.texture_nu > 0;
+  textured_ = model.speckle.texture_nu > 0;
   if (maker != maker_) {
     maker_ = maker;
     speckle_ = {SpeckleField(kept_ && !scans_ ? aperture.beam_count() : 0), {}};
@@ -38,7 +37,7 @@ void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tabl
   if (kept_ && textured_) {
     ensure(texture_);
   }
-  if (model.speckle == Speckle::ou) {
+  if (model.speckle.kind == Kind::ou) {
     const double faded = decay(request);
     for (Field* field : {&speckle_, &texture_}) {
       field->fan.fade(faded);
@@ -55,8 +54,8 @@ void KeptSpeckle::advance(const PingRequest& request, const ReceiverTables& tabl
 /// scanning head about its axis do not count: they change the bearing, and speckle is kept by bearing.
 double KeptSpeckle::decay(const PingRequest& request) const {
   const Pose& now = request.T_world_sonar;
-  const double moved =
-      glm::length(now.position_m - T_world_sonar_.position_m) / (request.settings.physical.aperture_m / 2);
+  const double moved = glm::length(now.position_m - T_world_sonar_.position_m) /
+                       (request.settings.physical.speckle.aperture_m / 2);
   double half_angle_sine = 0;
   if (scans_) {
     half_angle_sine = glm::length(ScanPose(now).axis - ScanPose(T_world_sonar_).axis) / 2;

@@ -28,7 +28,7 @@ class KeptSpeckle {
  private:
   /// The settings that the fields were made for.
   struct Maker {
-    PhysicalModel::Speckle kind = PhysicalModel::Speckle::off;
+    SpeckleSettings::Kind kind = SpeckleSettings::Kind::off;
     std::uint64_t seed = 0;
     BeamFilter filter;
     PulseCorrelation pulse_correlation;

@@ -19,25 +19,24 @@ double noise_level_db(const NoiseBudget& budget) {
          budget.source_level_db;
 }
 
-std::vector<float> noise_profile(const SonarSettings& settings) {
+std::vector<float> noise_profile(const NoiseSettings& noise, const Aperture& aperture) {
   std::vector<float> profile;
-  const auto& edges = settings.aperture.beam_edges_rad;
-  const double peak = decibels_to_power(settings.physical.broadside_stripe_db) - 1;
+  const auto& edges = aperture.beam_edges_rad;
+  const double peak = decibels_to_power(noise.broadside_stripe_db) - 1;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
-    const double x = 0.5 * (edges[b] + edges[b + 1]) / settings.aperture.receive_beamwidth_rad;
+    const double x = 0.5 * (edges[b] + edges[b + 1]) / aperture.receive_beamwidth_rad;
     profile.push_back(static_cast<float>(std::sqrt(1 + peak * std::exp(-x * x))));
   }
   return profile;
 }
 
-float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey key) {
+float noise_at_bearing(const NoiseSettings& noise, double bearing_rad, RandomKey key) {
   constexpr std::uint64_t levels = 40;
   const double turns = bearing_rad / (2 * std::numbers::pi);
   const double place = (turns - std::floor(turns)) * levels;
   const double below = std::floor(place);
   const auto level_db = [&](double number) {
-    return model.noise_by_bearing_db *
-           (uniform_number(key, static_cast<std::uint64_t>(number) % levels) - 0.5);
+    return noise.by_bearing_db * (uniform_number(key, static_cast<std::uint64_t>(number) % levels) - 0.5);
   };
   const double db = level_db(below) + (place - below) * (level_db(below + 1) - level_db(below));
   return static_cast<float>(std::sqrt(decibels_to_power(db)));

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "renderer/acoustics/random.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/aperture.hpp"
+#include "renderer/physical_model.hpp"
+#include "renderer/range_bins.hpp"
 
 namespace sonard::render {
 
@@ -21,17 +23,17 @@ struct NoiseBudget {
 /// wind and waves.
 double thermal_noise_db(double carrier_hz);
 
-/// PhysicalModel::noise_level_db of the sonar equation: NL - DI + 10 log10 B - SL.
+/// NoiseSettings::level_db of the sonar equation: NL - DI + 10 log10 B - SL.
 double noise_level_db(const NoiseBudget& budget);
 
 /// Noise amplitude per beam: 1, raised in a stripe two acoustic beams wide in the middle of the fan
 /// (docs/physics.md 2.16).
-std::vector<float> noise_profile(const SonarSettings& settings);
+std::vector<float> noise_profile(const NoiseSettings& noise, const Aperture& aperture);
 
 /// Amplitude of noise at a bearing of a scanning head, re the mean level in dB over all bearings. Levels are
-/// uniform within PhysicalModel::noise_by_bearing_db, one every 9 degrees, with linear interpolation in dB.
+/// uniform within NoiseSettings::by_bearing_db, one every 9 degrees, with linear interpolation in dB.
 /// @param bearing_rad ScanPose::bearing_rad
-float noise_at_bearing(const PhysicalModel& model, double bearing_rad, RandomKey key);
+float noise_at_bearing(const NoiseSettings& noise, double bearing_rad, RandomKey key);
 
 /// Interference in the noise of one ping.
 struct InterferenceBurst {

@@ -151,7 +151,7 @@ class PhysicalBins {
   /// Amplitude before TVG.
   float noise_level_at(int bin) {
     const float level = ping_.noise_factor * ping_.tables.noise[static_cast<std::size_t>(bin)];
-    if (!(ping_.tables.model.interference.probability > 0) ||
+    if (!(ping_.tables.model.noise.interference.probability > 0) ||
         (!ping_.interference.raises(bin) && skips(SkipRule::no_interference))) {
       return level;
     }
@@ -164,7 +164,7 @@ class PhysicalBins {
   }
 
   Phasors speckle_of(int cell) {
-    const bool off = ping_.tables.model.speckle == PhysicalModel::Speckle::off;
+    const bool off = ping_.tables.model.speckle.kind == SpeckleSettings::Kind::off;
     return off ? Phasors{still_.real(), still_.imaginary()} : speckle_.line(cell);
   }
 
@@ -190,12 +190,12 @@ class PhysicalBins {
 
   /// The echo times its texture.
   const float* textured(int bin, int cell) {
-    const PhysicalModel& model = ping_.tables.model;
+    const SpeckleSettings& speckle = ping_.tables.model.speckle;
     const float* echo = block_.steady(bin) != nullptr ? diffuse_.data() : block_.line(bin);
-    if (!(model.texture_nu > 0) || model.speckle == PhysicalModel::Speckle::off) {
+    if (!(speckle.texture_nu > 0) || speckle.kind == SpeckleSettings::Kind::off) {
       return echo;
     }
-    const double scatterers = scatterers_at(model, range_m(bin));
+    const double scatterers = scatterers_at(speckle, range_m(bin));
     if (scatterers > texture_ends_at_nu && skips(SkipRule::many_scatterers)) {
       return echo;
     }

@@ -17,11 +17,12 @@ void PointSpread::prepare(const SonarSettings& settings, std::uint64_t seed, int
   if (settings.model == Model::paper) {
     return;
   }
-  energy_ = pulse_energy(settings.physical, settings.range.step_m);
+  energy_ = pulse_energy(settings.physical.pulse, settings.range.step_m);
   if (has_array_beams(settings)) {
     prepare_pattern(settings, seed, head, skip, skipped);
   }
-  if (settings.physical.pulse != PhysicalModel::Pulse::point && settings.physical.range_cell_m > 0) {
+  if (settings.physical.pulse.shape != PulseSettings::Shape::point &&
+      settings.physical.pulse.range_cell_m > 0) {
     prepare_pulse(settings, skip, skipped);
   }
 }
@@ -48,19 +49,14 @@ void PointSpread::prepare_pattern(const SonarSettings& settings, std::uint64_t s
 
 void PointSpread::prepare_pulse(const SonarSettings& settings, const SkipSwitches& skip,
                                 SkipCounts& skipped) {
-  const PhysicalModel& model = settings.physical;
+  const PulseSettings& pulse = settings.physical.pulse;
   const double step_m = settings.range.step_m;
-  if (pulse_ && pulse_->pulse == model.pulse && pulse_->cell_m == model.range_cell_m &&
-      pulse_->tone_rounding_m == model.tone_rounding_m && pulse_->step_m == step_m &&
-      pulse_->energy == energy_ && skip.on(SkipRule::unchanged_settings)) {
+  if (pulse_ && pulse_->made_of == pulse && pulse_->step_m == step_m &&
+      skip.on(SkipRule::unchanged_settings)) {
     skipped.add(SkipRule::unchanged_settings);
   } else {
-    pulse_ = {model.pulse,
-              model.range_cell_m,
-              model.tone_rounding_m,
-              step_m,
-              energy_,
-              PulseResponse(model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, energy_)};
+    pulse_ = {pulse, step_m,
+              PulseResponse(pulse.shape, pulse.range_cell_m, step_m, pulse.tone_rounding_m, energy_)};
   }
   uses_pulse_ = true;
   // A bin loses at most this share, and gains at most this share of the bins around it.
@@ -81,8 +77,8 @@ void PointSpread::form_beams(const EchoImage& fine, const SonarSettings& setting
                              WorkerPool& workers, const SkipSwitches& skip, SkipCounts& skipped) const {
   // Echoes below the noise are ignored. Points come before the pattern so that the beams, which are used
   // next, stay in the caches.
-  const PhysicalModel& model = settings.physical;
-  const double faintest = model.noise ? decibels_to_power(model.noise_level_db) / energy_ : 0.0;
+  const NoiseSettings& noise = settings.physical.noise;
+  const double faintest = noise.on ? decibels_to_power(noise.level_db) / energy_ : 0.0;
   const std::vector<PointEcho> points =
       find_points(fine, mixing_reach(settings), static_cast<float>(faintest), workers);
   pattern_->apply(fine, beams, workers, skip, skipped);

@@ -39,11 +39,8 @@ class PointSpread {
 
  private:
   struct PulseTable {
-    PhysicalModel::Pulse pulse;
-    double cell_m;
-    double tone_rounding_m;
+    PulseSettings made_of;
     double step_m;
-    double energy;
     PulseResponse response;
   };
 

@@ -15,7 +15,7 @@ namespace sonard::render {
 
 namespace {
 
-using Pulse = PhysicalModel::Pulse;
+using Shape = PulseSettings::Shape;
 
 /// sin(pi x) / (pi x): the time signal of an even band of frequencies.
 double sinc_at(double x) {
@@ -27,9 +27,9 @@ constexpr double reach_cells = 16;
 constexpr int steps_per_cell = 32;  // of the integration
 
 /// Intensity of a chirp `cells` away from the echo, re its peak.
-double chirp_response(Pulse pulse, double cells) {
+double chirp_response(Shape shape, double cells) {
   double amplitude = sinc_at(cells);
-  if (pulse == Pulse::windowed_chirp) {
+  if (shape == Shape::windowed_chirp) {
     // The transform of a Hann window, sinc_at(x) / (1 - x^2), written as the sum that has no pole.
     amplitude += 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1));
   }
@@ -38,12 +38,12 @@ double chirp_response(Pulse pulse, double cells) {
 
 /// Mean over two points, each uniform in its line, in lines `lines` apart: the density of their distance is a
 /// triangle that falls to 0 one line to either side of `lines`.
-double mean_chirp(Pulse pulse, int lines, double line_cells) {
+double mean_chirp(Shape shape, int lines, double line_cells) {
   const int steps = 2 * std::max(1, static_cast<int>(std::ceil(line_cells * steps_per_cell)));
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double offset = 2 * (i + 0.5) / steps - 1;
-    sum += (1 - std::abs(offset)) * chirp_response(pulse, (lines + offset) * line_cells);
+    sum += (1 - std::abs(offset)) * chirp_response(shape, (lines + offset) * line_cells);
   }
   return sum * 2 / steps;
 }
@@ -79,7 +79,7 @@ void add_scaled(const float* __restrict in, float share, std::size_t count, floa
 }
 
 /// Mean of the response in an echo's own line and in all lines to one side of it that it reaches.
-std::vector<double> mean_responses(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
+std::vector<double> mean_responses(Shape shape, double cell_m, double step_m, double tone_rounding_m) {
   const double line_cells = step_m / cell_m;
   std::vector<double> responses;
   const auto respond = [&](double reach_lines, auto mean) {
@@ -87,8 +87,8 @@ std::vector<double> mean_responses(Pulse pulse, double cell_m, double step_m, do
       responses.push_back(mean(lines));
     }
   };
-  if (pulse != Pulse::tone) {
-    respond(reach_cells / line_cells, [&](int lines) { return mean_chirp(pulse, lines, line_cells); });
+  if (shape != Shape::tone) {
+    respond(reach_cells / line_cells, [&](int lines) { return mean_chirp(shape, lines, line_cells); });
   } else if (tone_rounding_m > 0) {
     const RoundedTone tone(cell_m, tone_rounding_m);
     respond(tone.reach_m() / step_m, [&](int lines) { return mean_rounded(tone, lines, step_m); });
@@ -109,24 +109,24 @@ double total_of(const std::vector<double>& responses) {
 
 }  // namespace
 
-double pulse_energy(const PhysicalModel& model, double step_m) {
-  const double band = decibels_to_power(model.band_loss_db);
-  const UsualPulse& usual = model.usual_pulse;
-  if (model.pulse != Pulse::tone || !(model.range_cell_m > 0) || !(usual.cell_m > 0)) {
+double pulse_energy(const PulseSettings& pulse, double step_m) {
+  const double band = decibels_to_power(pulse.band_loss_db);
+  const UsualPulse& usual = pulse.usual;
+  if (pulse.shape != Shape::tone || !(pulse.range_cell_m > 0) || !(usual.cell_m > 0)) {
     return band;
   }
   const auto lines = [&](double cell_m, double line_m) {
-    return tone_length_m(cell_m, model.tone_rounding_m) / line_m;
+    return tone_length_m(cell_m, pulse.tone_rounding_m) / line_m;
   };
-  return band * lines(model.range_cell_m, step_m) / lines(usual.cell_m, usual.step_m);
+  return band * lines(pulse.range_cell_m, step_m) / lines(usual.cell_m, usual.step_m);
 }
 
-PulseResponse::PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m, double energy)
+PulseResponse::PulseResponse(Shape shape, double cell_m, double step_m, double tone_rounding_m, double energy)
     : energy_(energy) {
-  if (pulse == Pulse::point || !(cell_m > 0)) {
+  if (shape == Shape::point || !(cell_m > 0)) {
     return;
   }
-  const std::vector<double> responses = mean_responses(pulse, cell_m, step_m, tone_rounding_m);
+  const std::vector<double> responses = mean_responses(shape, cell_m, step_m, tone_rounding_m);
   const double total = total_of(responses);
   for (const double response : responses) {
     share_.push_back(static_cast<float>(response / total * energy));
@@ -161,16 +161,16 @@ constexpr int most_lines_each_side = 32;
 
 /// Amplitude received `lines` away from an echo, not normalised; 0 beyond the main lobe. A tone has sharp
 /// ends here.
-double pulse_amplitude(Pulse pulse, int lines, double line_cells) {
+double pulse_amplitude(Shape shape, int lines, double line_cells) {
   const double cells = lines * line_cells;
-  switch (pulse) {
-    case Pulse::point:
+  switch (shape) {
+    case Shape::point:
       return lines == 0 ? 1.0 : 0.0;
-    case Pulse::chirp:
+    case Shape::chirp:
       return cells < 1 ? sinc_at(cells) : 0.0;
-    case Pulse::windowed_chirp:  // the transform of a Hann window
+    case Shape::windowed_chirp:  // the transform of a Hann window
       return cells < 2 ? sinc_at(cells) + 0.5 * (sinc_at(cells - 1) + sinc_at(cells + 1)) : 0.0;
-    case Pulse::tone:
+    case Shape::tone:
       return std::max(0.0, std::min(0.5, cells + line_cells / 2) - std::max(-0.5, cells - line_cells / 2));
   }
   return 0.0;
@@ -192,19 +192,19 @@ void add_pair(const float* before, const float* after, float weight, int width, 
 
 }  // namespace
 
-PulseCorrelation::PulseCorrelation(Pulse pulse, double cell_m, double step_m, double tone_rounding_m) {
+PulseCorrelation::PulseCorrelation(Shape shape, double cell_m, double step_m, double tone_rounding_m) {
   if (!(cell_m > 0)) {
     return;
   }
   std::optional<RoundedTone> rounded;
-  if (pulse == Pulse::tone && tone_rounding_m > 0) {
+  if (shape == Shape::tone && tone_rounding_m > 0) {
     rounded.emplace(cell_m, tone_rounding_m);
   }
   std::vector<double> amplitudes;
   double power = 0;
   for (int j = 0; j <= most_lines_each_side; ++j) {
     const double amplitude =
-        rounded ? rounded->amplitude(j * step_m) : pulse_amplitude(pulse, j, step_m / cell_m);
+        rounded ? rounded->amplitude(j * step_m) : pulse_amplitude(shape, j, step_m / cell_m);
     if (!(amplitude > 0)) {
       break;
     }

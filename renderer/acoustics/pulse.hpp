@@ -15,21 +15,21 @@ namespace sonard::render {
 /// Energy of a pulse re the usual pulse; for a tone per line. It includes the loss in the transducer's band.
 /// A pulse that is not a tone, without length, or without a usual pulse has only that loss.
 /// @param step_m RangeBins::step_m
-double pulse_energy(const PhysicalModel& model, double step_m);
+double pulse_energy(const PulseSettings& pulse, double step_m);
 
-/// Mean response of a pulse of kind PhysicalModel::Pulse (docs/physics.md 2.6). The mean runs over all places
+/// Mean response of a pulse of PulseSettings::Shape (docs/physics.md 2.6). The mean runs over all places
 /// of the echo in its line, and over the line that receives it; a tone with rounded ends is sampled in the
 /// middle of the receiving line. Chirps reach 16 cells to either side. All shares add up to the energy.
 class PulseResponse {
  public:
-  using Pulse = PhysicalModel::Pulse;
+  using Shape = PulseSettings::Shape;
 
   /// A pulse that spreads nothing.
   PulseResponse() = default;
-  /// @param cell_m PhysicalModel::range_cell_m; 0: spreads nothing
-  /// @param tone_rounding_m PhysicalModel::tone_rounding_m
+  /// @param cell_m PulseSettings::range_cell_m; 0: spreads nothing
+  /// @param tone_rounding_m PulseSettings::tone_rounding_m
   /// @param energy sum of all shares, pulse_energy()
-  PulseResponse(Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0, double energy = 1);
+  PulseResponse(Shape shape, double cell_m, double step_m, double tone_rounding_m = 0, double energy = 1);
 
   /// Number of shares: the echo's line and the lines to one side of it; 0 if nothing is spread.
   int taps() const { return static_cast<int>(share_.size()); }
@@ -55,9 +55,9 @@ class PulseCorrelation {
   /// Lines without correlation.
   PulseCorrelation() = default;
   /// Uses the main lobe of a chirp, or the whole tone.
-  /// @param cell_m PhysicalModel::range_cell_m; 0: a pulse without length
-  /// @param tone_rounding_m PhysicalModel::tone_rounding_m
-  PulseCorrelation(PhysicalModel::Pulse pulse, double cell_m, double step_m, double tone_rounding_m = 0);
+  /// @param cell_m PulseSettings::range_cell_m; 0: a pulse without length
+  /// @param tone_rounding_m PulseSettings::tone_rounding_m
+  PulseCorrelation(PulseSettings::Shape shape, double cell_m, double step_m, double tone_rounding_m = 0);
 
   /// Number of lines to either side with which a line is correlated.
   int reach() const { return static_cast<int>(weights_.size()) - 1; }

@@ -15,17 +15,17 @@ namespace {
 
 /// Frozen speckle depends on the seed alone, so it does not matter when a line is first drawn.
 std::uint64_t speckle_ping(const PingRequest& request) {
-  const bool frozen = request.settings.physical.speckle == PhysicalModel::Speckle::frozen;
+  const bool frozen = request.settings.physical.speckle.kind == SpeckleSettings::Kind::frozen;
   return frozen ? 0 : request.ping_number;
 }
 
 /// The noise level of a single beam depends on its bearing.
 float noise_factor_of(const PingRequest& request, int head) {
-  const PhysicalModel& model = request.settings.physical;
-  if (request.settings.aperture.beam_count() > 1 || model.noise_by_bearing_db == 0) {
+  const NoiseSettings& noise = request.settings.physical.noise;
+  if (request.settings.aperture.beam_count() > 1 || noise.by_bearing_db == 0) {
     return 1.0F;
   }
-  return noise_at_bearing(model, ScanPose(request.T_world_sonar).bearing_rad,
+  return noise_at_bearing(noise, ScanPose(request.T_world_sonar).bearing_rad,
                           make_random_key(request.seed, head, RandomField::noise_by_bearing, 0));
 }
 
@@ -54,7 +54,7 @@ RandomFieldOfPing Receiver::texture_of(HeadState& state, const PingRequest& requ
 /// The noise of a single beam is drawn at once for all bins.
 RandomFieldOfPing Receiver::noise_of(HeadState& state, RandomKey key) {
   const ReceiverTables& tables = state.tables;
-  if (tables.filter.beams() > 1 || !tables.model.noise) {
+  if (tables.filter.beams() > 1 || !tables.model.noise.on) {
     return {.key = key};
   }
   return {.key = key,
@@ -82,7 +82,7 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
       speckle_of(state, request, head),
       texture_of(state, request, head),
       noise_of(state, key(RandomField::noise)),
-      draw_interference(settings.physical.interference, settings.range, key(RandomField::interference)),
+      draw_interference(settings.physical.noise.interference, settings.range, key(RandomField::interference)),
       draw_ring_down(settings.physical.ring_down, key(RandomField::ring_down)),
       noise_factor_of(request, head),
       skip_};
@@ -92,7 +92,7 @@ PingSamples Receiver::receive(const EchoImage& echo, const PingRequest& request,
 bool Receiver::pass(const PingRequest& request, int head, WorkerPool& workers) {
   skipped_ = {};
   const SonarSettings& settings = request.settings;
-  if (settings.model == Model::paper || settings.physical.speckle != PhysicalModel::Speckle::ou) {
+  if (settings.model == Model::paper || settings.physical.speckle.kind != SpeckleSettings::Kind::ou) {
     return true;  // no state between pings
   }
   HeadState& state = state_of(settings, head);

@@ -28,8 +28,8 @@ int cells_per_line(const SonarSettings& settings) {
     return 2;  // the receiver's band depends on the bin length, so half a bin is a cell
   }
   // The main lobe of a chirp with a Hann window is twice as wide.
-  const bool windowed = settings.physical.pulse == PhysicalModel::Pulse::windowed_chirp;
-  const double cell_m = settings.physical.range_cell_m * (windowed ? 2.0 : 1.0);
+  const bool windowed = settings.physical.pulse.shape == PulseSettings::Shape::windowed_chirp;
+  const double cell_m = settings.physical.pulse.range_cell_m * (windowed ? 2.0 : 1.0);
   if (!joins_decibels(settings) || !(cell_m > 0)) {
     return 1;
   }
@@ -38,29 +38,29 @@ int cells_per_line(const SonarSettings& settings) {
 
 /// A tone has no matched filter: noise has the band of the receiver.
 PulseCorrelation noise_correlation_of(const PhysicalModel& model, double step_m) {
-  const bool matched = !(model.noise_cell_m > 0);
-  return {matched ? model.pulse : PhysicalModel::Pulse::chirp,
-          matched ? model.range_cell_m : model.noise_cell_m, step_m};
+  const bool matched = !(model.noise.cell_m > 0);
+  return {matched ? model.pulse.shape : PulseSettings::Shape::chirp,
+          matched ? model.pulse.range_cell_m : model.noise.cell_m, step_m};
 }
 
 /// Noise power before the gain, re the noise with the usual pulse: the longer a tone, the less noise passes
 /// its matched filter.
 double matched_noise(const PhysicalModel& model) {
-  const UsualPulse& usual = model.usual_pulse;
-  if (model.pulse != PhysicalModel::Pulse::tone || model.noise_cell_m > 0 || !(model.range_cell_m > 0) ||
-      !(usual.cell_m > 0)) {
+  const UsualPulse& usual = model.pulse.usual;
+  if (model.pulse.shape != PulseSettings::Shape::tone || model.noise.cell_m > 0 ||
+      !(model.pulse.range_cell_m > 0) || !(usual.cell_m > 0)) {
     return 1;
   }
-  return tone_length_m(usual.cell_m, model.tone_rounding_m) /
-         tone_length_m(model.range_cell_m, model.tone_rounding_m);
+  return tone_length_m(usual.cell_m, model.pulse.tone_rounding_m) /
+         tone_length_m(model.pulse.range_cell_m, model.pulse.tone_rounding_m);
 }
 
 /// @param gain per range bin, amplitude
 std::vector<float> noise_amplitudes(const PhysicalModel& model, const std::vector<float>& gain) {
   std::vector<float> amplitudes(gain.size(), 0.0F);
-  const double before_gain = decibels_to_power(model.noise_level_db) * matched_noise(model);
-  const double behind_gain = decibels_to_power(model.output_noise_db);
-  for (std::size_t k = 0; model.noise && k < gain.size(); ++k) {
+  const double before_gain = decibels_to_power(model.noise.level_db) * matched_noise(model);
+  const double behind_gain = decibels_to_power(model.noise.output_db);
+  for (std::size_t k = 0; model.noise.on && k < gain.size(); ++k) {
     const double power = static_cast<double>(gain[k]) * static_cast<double>(gain[k]);
     amplitudes[k] = static_cast<float>(std::sqrt(before_gain + behind_gain / power));
   }
@@ -79,10 +79,11 @@ ReceiverTables::ReceiverTables(const SonarSettings& settings)
       cells(cells_per_line(settings)),
       overlap(joins_decibels(settings) ? static_cast<float>(model.bin_overlap) : 0.0F),
       filter(receive_kernel(aperture), aperture.beam_count()),
-      pulse_correlation(model.pulse, model.range_cell_m, range.step_m / cells, model.tone_rounding_m),
+      pulse_correlation(model.pulse.shape, model.pulse.range_cell_m, range.step_m / cells,
+                        model.pulse.tone_rounding_m),
       noise_correlation(noise_correlation_of(model, range.step_m / cells)),
       gain(tvg_amplitudes(model, range)),
-      profile(noise_profile(settings)),
+      profile(noise_profile(model.noise, aperture)),
       ring_down(ring_down_amplitudes(model, range)),
       ring_down_bins(render::ring_down_bins(model.ring_down, range)),
       vehicle(vehicle_reverberation(model.ring_down, range)) {

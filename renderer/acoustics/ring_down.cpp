@@ -18,7 +18,7 @@ constexpr double fall_db = 80.0;  // from the peak to the end
 double before_peak(const PhysicalModel& model, double range_m) {
   const double peak_m = model.ring_down.peak_m;
   if (model.ring_down.from_start) {
-    return std::sqrt(decibels_to_power(tvg_db(model, peak_m) - tvg_db(model, range_m)));
+    return std::sqrt(decibels_to_power(tvg_db(model.tvg, peak_m) - tvg_db(model.tvg, range_m)));
   }
   const double rise = std::max(0.0, 2 * range_m / peak_m - 1);
   return 0.5 * (1 - std::cos(std::numbers::pi * rise));

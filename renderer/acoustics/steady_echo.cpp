@@ -87,7 +87,7 @@ MixingReach mixing_reach(const SonarSettings& settings) {
   const std::vector<double>& edges = aperture.beam_edges_rad;
   const double fine_sine = (std::sin(edges.front()) - std::sin(edges.back())) /
                            (aperture.beam_count() * static_cast<double>(aperture.fine_beams));
-  const double lines = settings.physical.range_cell_m / settings.range.step_m;
+  const double lines = settings.physical.pulse.range_cell_m / settings.range.step_m;
   return {std::max(2, static_cast<int>(std::lround(aperture.receive_beamwidth_rad / fine_sine))),
           std::max(2, static_cast<int>(std::lround(lines)))};
 }

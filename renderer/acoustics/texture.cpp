@@ -130,8 +130,8 @@ void TextureRoot::apply(const float* intensity, const float* gaussian, int count
   apply_texture(root_.data(), intensity, gaussian, count, out);
 }
 
-double scatterers_at(const PhysicalModel& model, double range_m) {
-  return model.texture_nu * range_m / model.texture_range_m;
+double scatterers_at(const SpeckleSettings& speckle, double range_m) {
+  return speckle.texture_nu * range_m / speckle.texture_range_m;
 }
 
 }  // namespace sonard::render

@@ -23,7 +23,7 @@ class TextureRoot {
 };
 
 /// Effective number of scatterers in a cell at a range; cells of a fan grow in proportion to range.
-double scatterers_at(const PhysicalModel& model, double range_m);
+double scatterers_at(const SpeckleSettings& speckle, double range_m);
 
 /// Above this number of scatterers in a cell, texture has no visible effect (SkipRule::many_scatterers).
 inline constexpr double texture_ends_at_nu = 20.0;

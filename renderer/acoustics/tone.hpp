@@ -6,7 +6,7 @@ namespace sonard::render {
 
 /// Length over which a tone spreads energy, in metres: the integral of its intensity, whose peak is 1. It is
 /// c tau / 2, but at least the length that the transducer's band allows.
-/// @param cell_m PhysicalModel::range_cell_m, > 0. @param rounding_m PhysicalModel::tone_rounding_m
+/// @param cell_m PulseSettings::range_cell_m, > 0. @param rounding_m PulseSettings::tone_rounding_m
 double tone_length_m(double cell_m, double rounding_m);
 
 /// A box with rounded ends: convolved with the main lobe of a sinc, the response of an even band to an

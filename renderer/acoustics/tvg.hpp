@@ -10,7 +10,7 @@
 namespace sonard::render {
 
 /// Time-varying gain of mode `physical` at a range, in dB, up to its ceiling. @param range_m > 0
-double tvg_db(const PhysicalModel& model, double range_m);
+double tvg_db(const TvgSettings& tvg, double range_m);
 
 /// Time-varying gain and gain setting of mode `physical` per range bin, as amplitude.
 std::vector<float> tvg_amplitudes(const PhysicalModel& model, const RangeBins& range);

@@ -16,20 +16,11 @@ PaperModel echo_part(PaperModel model) {
   return model;
 }
 
-/// Resets the values that only the receiver uses.
-PhysicalModel echo_part(const PhysicalModel& model) {
-  PhysicalModel part;
-  part.absorption_db_per_m = model.absorption_db_per_m;
-  part.backscatter = model.backscatter;
-  part.multipath = model.multipath;
-  part.pulse = model.pulse;
-  part.range_cell_m = model.range_cell_m;
-  part.tone_rounding_m = model.tone_rounding_m;
-  part.usual_pulse = model.usual_pulse;
-  part.band_loss_db = model.band_loss_db;
-  part.water_clutter = model.water_clutter;
-  part.volume_scattering_db = model.volume_scattering_db;
-  return part;
+/// Compares the values that the receiver does not use.
+bool same_echo(const PhysicalModel& a, const PhysicalModel& b) {
+  return a.absorption_db_per_m == b.absorption_db_per_m && a.backscatter == b.backscatter &&
+         a.pulse == b.pulse && a.volume_scattering_db == b.volume_scattering_db &&
+         a.water_clutter == b.water_clutter && a.multipath == b.multipath;
 }
 
 /// Whether both settings give the same mean echo.
@@ -38,7 +29,7 @@ bool same_echo(const SonarSettings& a, const SonarSettings& b) {
       a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
     return false;
   }
-  return a.model == Model::physical ? echo_part(a.physical) == echo_part(b.physical)
+  return a.model == Model::physical ? same_echo(a.physical, b.physical)
                                     : echo_part(a.paper) == echo_part(b.paper);
 }
 

@@ -112,49 +112,47 @@ void read_multipath(YamlSection& section, render::MultipathSettings& multipath) 
 
 void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                          render::PhysicalModel& model) {
-  using Speckle = render::PhysicalModel::Speckle;
-  section.choice("speckle", model.speckle,
-                 {{"ou", Speckle::ou},
-                  {"frozen", Speckle::frozen},
-                  {"per_ping", Speckle::per_ping},
-                  {"off", Speckle::off}},
-                 "`ou`: constant at rest, decorrelates as the sonar moves; `frozen`: always the same; "
-                 "`per_ping`: drawn anew for each ping");
+  using Kind = render::SpeckleSettings::Kind;
+  section.choice(
+      "speckle", model.speckle.kind,
+      {{"ou", Kind::ou}, {"frozen", Kind::frozen}, {"per_ping", Kind::per_ping}, {"off", Kind::off}},
+      "`ou`: constant at rest, decorrelates as the sonar moves; `frozen`: always the same; "
+      "`per_ping`: drawn anew for each ping");
   section.number(
-      "aperture_m", model.aperture_m, Range::above(0.0, 10.0),
+      "aperture_m", model.speckle.aperture_m, Range::above(0.0, 10.0),
       "length of the array; a motion by half of it, from one ping to the next, keeps 37 % of the speckle");
   using Backscatter = render::PhysicalModel::Backscatter;
   section.choice(
       "backscatter", model.backscatter,
       {{"lambert_facet", Backscatter::lambert_facet}, {"lambert", Backscatter::lambert}},
       "`lambert_facet`: materials show facets near normal incidence; `lambert`: they only scatter diffusely");
-  section.boolean("noise", model.noise, "adds noise, which the TVG amplifies with range");
+  section.boolean("noise", model.noise.on, "adds noise, which the TVG amplifies with range");
   if (section.has("noise_budget") && section.has("noise_level_db")) {
     section.report("noise_budget", "sets noise_level_db, which is given too (expected one of the two)");
   }
-  section.number("noise_level_db", model.noise_level_db, level_db,
+  section.number("noise_level_db", model.noise.level_db, level_db,
                  "noise intensity re the source intensity at 1 m, before TVG");
   section.section("noise_budget", "sonar equation for the noise, instead of `noise_level_db`",
-                  [&](YamlSection& inner) { model.noise_level_db = read_noise_budget(inner, carrier_hz); });
-  if (!model.noise) {
+                  [&](YamlSection& inner) { model.noise.level_db = read_noise_budget(inner, carrier_hz); });
+  if (!model.noise.on) {
     for (const char* key : {"noise_level_db", "noise_budget", "noise_cell_m", "broadside_stripe_db"}) {
       section.warn_if_given(key, "`noise` is false");
     }
   }
-  section.number_or_word("output_noise_db", model.output_noise_db, level_db,
+  section.number_or_word("output_noise_db", model.noise.output_db, level_db,
                          {{"off", -std::numeric_limits<double>::infinity()}},
                          "noise after the TVG, re full scale");
-  section.number("noise_cell_m", model.noise_cell_m, Range::from(0.0, 10.0),
+  section.number("noise_cell_m", model.noise.cell_m, Range::from(0.0, 10.0),
                  "c / 2B of the receiver's band B, within which noise is even. 0: noise has the band of the "
                  "pulse, so the longer a tone is, the lower is the noise");
-  section.number("tone_rounding_m", model.tone_rounding_m, Range::from(0.0, 10.0),
+  section.number("tone_rounding_m", model.pulse.tone_rounding_m, Range::from(0.0, 10.0),
                  "c / 2B of the transducer band; 0: sharp ends");
-  section.number("texture_nu", model.texture_nu, Range::from(0.0, 1000.0),
+  section.number("texture_nu", model.speckle.texture_nu, Range::from(0.0, 1000.0),
                  "number of scatterers in a cell at `texture_range_m`, proportional to the range: sand 5 to "
                  "20, gravel and rock 1 to 5, clutter 0.5 to 1; 0: echoes are Rayleigh everywhere");
-  section.number("texture_range_m", model.texture_range_m, Range::above(0.0, 1000.0),
+  section.number("texture_range_m", model.speckle.texture_range_m, Range::above(0.0, 1000.0),
                  "range at which a cell contains `texture_nu` scatterers");
-  if (model.texture_nu == 0.0) {
+  if (model.speckle.texture_nu == 0.0) {
     section.warn_if_given("texture_range_m", "`texture_nu` is 0");
   }
   section.number_or_word("volume_scattering_db", model.volume_scattering_db, Range::from(-200.0, 0.0),
@@ -162,21 +160,21 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
                          "scattering strength of a cubic metre: -80 clear, -60 turbid");
   section.section("water_clutter", "single objects at fixed places in the water: fish, weed, bubbles",
                   [&](YamlSection& inner) { read_water_clutter(inner, model.water_clutter); });
-  section.number("tvg_log_coefficient", model.tvg_log_coefficient, Range::from(0.0, 60.0),
+  section.number("tvg_log_coefficient", model.tvg.log_coefficient, Range::from(0.0, 60.0),
                  "X of the time-varying gain, X log10 r + 2 alpha r");
-  section.number("tvg_absorption_db_per_km", model.tvg_absorption_db_per_m, Range::from(0.0, 10'000.0),
+  section.number("tvg_absorption_db_per_km", model.tvg.absorption_db_per_m, Range::from(0.0, 10'000.0),
                  "alpha of the TVG, one way, as the device assumes", 1000.0);
   section.default_is("tvg_absorption_db_per_km", "absorption of the water");
-  section.number("tvg_max_db", model.tvg_max_db, Range::from(0.0, 200.0),
+  section.number("tvg_max_db", model.tvg.max_db, Range::from(0.0, 200.0),
                  "maximum of the TVG; a Gemini reaches it at 37 m in the sea");
   section.number("gain_db", model.gain_db, level_db,
                  "output level of unit intensity after TVG, re full scale (80 dB if samples are decibels); "
                  "the client's gain is added");
   section.number("near_field_blank_m", model.near_field_blank_m, Range::from(0.0, 120.0),
                  "range below which the output is 0");
-  section.number("broadside_stripe_db", model.broadside_stripe_db, Range::from(0.0, 60.0),
+  section.number("broadside_stripe_db", model.noise.broadside_stripe_db, Range::from(0.0, 60.0),
                  "extra noise in the middle of the fan; 0: off");
-  section.number("noise_by_bearing_db", model.noise_by_bearing_db, Range::from(0.0, 60.0),
+  section.number("noise_by_bearing_db", model.noise.by_bearing_db, Range::from(0.0, 60.0),
                  "scanning heads: difference of the noise between bearings");
   section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
                 "scanning heads: standard deviation of the bearings of lines");
@@ -188,7 +186,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
   section.section("ring_down", "ringing of the transducer after the pulse",
                   [&](YamlSection& inner) { read_ring_down(inner, model.ring_down); });
   section.section("interference", "noise from another sonar or from the vehicle, in some pings",
-                  [&](YamlSection& inner) { read_interference(inner, model.interference); });
+                  [&](YamlSection& inner) { read_interference(inner, model.noise.interference); });
   section.section("multipath", "ghosts in smooth surfaces, and corner reflectors",
                   [&](YamlSection& inner) { read_multipath(inner, model.multipath); });
   section.boolean(
@@ -417,7 +415,7 @@ void apply_water(YamlSection& section, const HeadContext& context, double carrie
   head.acoustics.physical.absorption_db_per_m = absorption;
   head.acoustics.physical.multipath.wavelength_m = render::sound_speed_mps(water) / carrier_hz;
   // By default, the device's own absorption setting matches the water.
-  head.acoustics.physical.tvg_absorption_db_per_m = absorption;
+  head.acoustics.physical.tvg.absorption_db_per_m = absorption;
 }
 
 }  // namespace sonard::server

@@ -19,7 +19,7 @@ render::SonarSettings truth_settings(render::SonarSettings settings) {
   settings.transmit = true;
   settings.sampling.within_facets = true;
   settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
-  settings.physical.pulse = render::PhysicalModel::Pulse::point;
+  settings.physical.pulse.shape = render::PulseSettings::Shape::point;
   settings.physical.multipath.level = render::MultipathSettings::Level::off;
   settings.physical.water_clutter.density_per_m3 = 0.0;
   settings.physical.volume_scattering_db = -std::numeric_limits<double>::infinity();

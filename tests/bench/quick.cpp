@@ -39,23 +39,25 @@ void add_point_ladder(Plan& plan) {
 /// The receiver at ranges of 8, 20 and 50 m, and at 8 m with one effect less or one more.
 std::vector<PlannedReceiver> receivers() {
   using render::PhysicalModel;
+  using render::PulseSettings;
+  using render::SpeckleSettings;
   return {
       {1000, "receiver_ms", many},
       {2411, "receiver_2411_ms", many},
       {6028, "receiver_6028_ms", some},
-      {1000, "receiver_without_noise_ms", many, [](PhysicalModel& model) { model.noise = false; }},
+      {1000, "receiver_without_noise_ms", many, [](PhysicalModel& model) { model.noise.on = false; }},
       {1000, "receiver_without_speckle_ms", many,
-       [](PhysicalModel& model) { model.speckle = PhysicalModel::Speckle::off; }},
+       [](PhysicalModel& model) { model.speckle.kind = SpeckleSettings::Kind::off; }},
       {1000, "receiver_frozen_ms", many,
-       [](PhysicalModel& model) { model.speckle = PhysicalModel::Speckle::frozen; }},
-      {1000, "receiver_with_texture_ms", many, [](PhysicalModel& model) { model.texture_nu = 1; }},
+       [](PhysicalModel& model) { model.speckle.kind = SpeckleSettings::Kind::frozen; }},
+      {1000, "receiver_with_texture_ms", many, [](PhysicalModel& model) { model.speckle.texture_nu = 1; }},
       {1000, "receiver_with_range_correlation_ms", many,
        [](PhysicalModel& model) {
-         model.pulse = PhysicalModel::Pulse::tone;
-         model.range_cell_m = 0.025;  // three lines
+         model.pulse.shape = PulseSettings::Shape::tone;
+         model.pulse.range_cell_m = 0.025;  // three lines
        }},
       {1000, "receiver_with_interference_ms", many,
-       [](PhysicalModel& model) { model.interference.probability = 1; }},
+       [](PhysicalModel& model) { model.noise.interference.probability = 1; }},
       {1000, "receiver_with_ring_down_ms", many, [](PhysicalModel& model) { model.ring_down.on = true; }}};
 }
 

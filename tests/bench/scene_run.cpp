@@ -146,8 +146,8 @@ void SceneRun::measure_reception(const Point& point, const Repetition& repetitio
   ping.settings.aperture.azimuth = render::Aperture::Azimuth::array;
   ping.settings.aperture.element_amplitude_sd = 0.45;
   ping.settings.aperture.element_phase_sd_rad = 0.45;
-  ping.settings.physical.pulse = render::PhysicalModel::Pulse::chirp;
-  ping.settings.physical.range_cell_m = ping.settings.range.step_m;
+  ping.settings.physical.pulse.shape = render::PulseSettings::Shape::chirp;
+  ping.settings.physical.pulse.range_cell_m = ping.settings.range.step_m;
   const render::Pose start = ping.T_world_sonar;
   for (const int fine_beams : {1, 2, 3}) {
     ping.settings.aperture.fine_beams = fine_beams;

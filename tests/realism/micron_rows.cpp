@@ -84,8 +84,8 @@ double noise_sd() {
 /// @param noise true: noise only, no echo
 double bins_shared(bool noise) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.interference.probability = 0;
-  head.acoustics.physical.noise_by_bearing_db = 0;
+  head.acoustics.physical.noise.interference.probability = 0;
+  head.acoustics.physical.noise.by_bearing_db = 0;
   MicronClient client{head, bin_m, bins};
   client.gain_db = 0.8 * 45;
   std::vector<double> here, next;
@@ -145,7 +145,7 @@ double bearings_stay() {
 /// otherwise.
 double lines_hit() {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.noise_by_bearing_db = 0;
+  head.acoustics.physical.noise.by_bearing_db = 0;
   MicronClient client{head, bin_m, bins};
   constexpr std::size_t window = 30;
   int hit = 0;

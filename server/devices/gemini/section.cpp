@@ -115,8 +115,9 @@ void read_gain_law(YamlSection& section, gemini::GainLaw& law) {
 void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig& config) {
   read_acoustics(section, gemini::carrier_hz, head);
   read_receive_array(section, head.acoustics.aperture);
-  using Pulse = render::PhysicalModel::Pulse;
-  section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
+  using Shape = render::PulseSettings::Shape;
+  section.choice("pulse", head.acoustics.physical.pulse.shape,
+                 {{"tone", Shape::tone}, {"point", Shape::point}},
                  "`tone`: as long as the client requests; `point`: no length");
   section.boolean("snap_sound_speed", config.device.snap_sound_speed,
                   "true: the head rounds sound speeds to 1400 + 3.2 k m/s, as a real one");

@@ -46,8 +46,8 @@ render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig
                     .compression_peak = false};  // a 720i always averages (docs/protocols/gemini.md 5)
   settings.sixteen_bit = job.sixteen_bit;
   settings.transmit = job.transmit;
-  settings.physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
-  settings.physical.usual_pulse = {job.sound_speed_mps * usual_pulse_s / 2.0, job.native_bin_m};
+  settings.physical.pulse.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
+  settings.physical.pulse.usual = {job.sound_speed_mps * usual_pulse_s / 2.0, job.native_bin_m};
   settings.physical.gain_db += job.gain_db;
   return settings;
 }

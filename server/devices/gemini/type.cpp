@@ -232,15 +232,15 @@ render::SonarSettings gemini_acoustics() {
   acoustics.aperture.element_amplitude_sd = 0.12;
   acoustics.aperture.element_phase_sd_rad = 7 * degree;
   acoustics.physical.multipath.most_bounces = 6;
-  acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
-  acoustics.physical.noise_cell_m = 0.0096;  // 78 kHz, of lines sampled at 90 kHz
-  acoustics.physical.tvg_log_coefficient = 40.0;
-  acoustics.physical.tvg_max_db = 78.0;
-  acoustics.physical.tone_rounding_m = 0.018;  // 42 kHz: a Q of 17
+  acoustics.physical.pulse.shape = render::PulseSettings::Shape::tone;
+  acoustics.physical.noise.cell_m = 0.0096;  // 78 kHz, of lines sampled at 90 kHz
+  acoustics.physical.tvg.log_coefficient = 40.0;
+  acoustics.physical.tvg.max_db = 78.0;
+  acoustics.physical.pulse.tone_rounding_m = 0.018;  // 42 kHz: a Q of 17
   acoustics.physical.gain_db = 31.0;
-  acoustics.physical.noise_level_db = -132.0;
-  acoustics.physical.output_noise_db = -46.0;
-  acoustics.physical.texture_nu = 15.0;
+  acoustics.physical.noise.level_db = -132.0;
+  acoustics.physical.noise.output_db = -46.0;
+  acoustics.physical.speckle.texture_nu = 15.0;
   acoustics.physical.water_clutter.density_per_m3 = 0.1;
   // It is not published whether transmitter and receiver have the same height, so the pattern applies once
   // (docs/physics.md 2.5).

@@ -82,10 +82,10 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
   read_single_beam(section, head.acoustics.aperture);
   section.number("nominal_gain_db", config.nominal_gain_db, Range::from(0.0, 80.0),
                  "initial gain of the client (of 80 dB) at which the level is `physical.gain_db`");
-  using Pulse = render::PhysicalModel::Pulse;
+  using Shape = render::PulseSettings::Shape;
   section.choice(
-      "pulse", head.acoustics.physical.pulse,
-      {{"chirp", Pulse::chirp}, {"windowed_chirp", Pulse::windowed_chirp}, {"point", Pulse::point}},
+      "pulse", head.acoustics.physical.pulse.shape,
+      {{"chirp", Shape::chirp}, {"windowed_chirp", Shape::windowed_chirp}, {"point", Shape::point}},
       "response in range: `chirp` has side lobes of -13 dB; `windowed_chirp` has side lobes of -31 dB and is "
       "1.6 times as wide; `point` has no length");
   section.number("chirp_bandwidth_khz", config.chirp_bandwidth_hz, Range::from(0.0, 10'000.0),

@@ -15,7 +15,7 @@ render::SonarSettings micron_sonar_settings(const PingJob& job, const HeadConfig
   settings.transmit = job.transmit;
   settings.physical.gain_db += job.gain_db - config.nominal_gain_db;
   if (config.chirp_bandwidth_hz > 0.0 && job.sound_speed_mps > 0.0) {
-    settings.physical.range_cell_m = job.sound_speed_mps / (2.0 * config.chirp_bandwidth_hz);
+    settings.physical.pulse.range_cell_m = job.sound_speed_mps / (2.0 * config.chirp_bandwidth_hz);
   }
   return settings;
 }

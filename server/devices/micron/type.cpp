@@ -156,20 +156,20 @@ render::SonarSettings micron_acoustics() {
       render::Aperture::Elevation::sinc_two_way;  // one transducer sends and receives
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.multipath.most_bounces = 6;
-  acoustics.physical.pulse = render::PhysicalModel::Pulse::windowed_chirp;
+  acoustics.physical.pulse.shape = render::PulseSettings::Shape::windowed_chirp;
   acoustics.physical.gain_db = -9.0;
-  acoustics.physical.tvg_max_db = 59.0;
-  acoustics.physical.noise_level_db = -110.0;
-  acoustics.physical.output_noise_db = -77.8;
+  acoustics.physical.tvg.max_db = 59.0;
+  acoustics.physical.noise.level_db = -110.0;
+  acoustics.physical.noise.output_db = -77.8;
   acoustics.physical.bin_overlap = 0.55;
-  acoustics.physical.noise_by_bearing_db = 7.0;
+  acoustics.physical.noise.by_bearing_db = 7.0;
   acoustics.physical.bearing_jitter_rad = 0.15 * degree;
   acoustics.physical.near_field_blank_m = 0.1;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.level_db = -40.0;
   acoustics.physical.ring_down.vehicle_level_db = -70.0;
-  acoustics.physical.interference.probability = 0.16;
-  acoustics.physical.broadside_stripe_db = 0.0;
+  acoustics.physical.noise.interference.probability = 0.16;
+  acoustics.physical.noise.broadside_stripe_db = 0.0;
   return acoustics;
 }
 

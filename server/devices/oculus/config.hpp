@@ -21,7 +21,7 @@ struct OculusModeAcoustics {
   double range_cell_m = 0.0;  ///< c / 2B of the chirp
   double absorption_db_per_m = 0.0;
   double wavelength_m = 0.0;
-  double noise_db = 0.0;  ///< noise above PhysicalModel::noise_level_db
+  double noise_db = 0.0;  ///< noise above NoiseSettings::level_db
 };
 
 /// The head's x axis is the acoustic axis, so the mount includes any down tilt. Its jobs set the beams,

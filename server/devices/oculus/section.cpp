@@ -131,10 +131,10 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
   read_aperture(section, model.modes[0], low);
   section.default_is("vertical_beamwidth_deg", "set by `model`");
   section.default_is("receive_beamwidth_deg", "set by `model`");
-  using Pulse = render::PhysicalModel::Pulse;
+  using Shape = render::PulseSettings::Shape;
   section.choice(
-      "pulse", head.acoustics.physical.pulse,
-      {{"windowed_chirp", Pulse::windowed_chirp}, {"chirp", Pulse::chirp}, {"point", Pulse::point}},
+      "pulse", head.acoustics.physical.pulse.shape,
+      {{"windowed_chirp", Shape::windowed_chirp}, {"chirp", Shape::chirp}, {"point", Shape::point}},
       "matched filter, windowed or not, or a `point`");
   section.number("gain_db_per_percent", config.gain_db_per_percent, Range::from(0.0, 10.0),
                  "dB per percent of gain; 50 percent is 0 dB");

@@ -42,12 +42,12 @@ render::SonarSettings oculus_sonar_settings(const PingJob& job, const HeadConfig
   settings.output_scale = render::OutputScale::power;
   settings.output_exponent = job.amplitude_exponent;
   render::PhysicalModel& physical = settings.physical;
-  physical.range_cell_m = mode.range_cell_m;
+  physical.pulse.range_cell_m = mode.range_cell_m;
   physical.absorption_db_per_m = mode.absorption_db_per_m;
   // The head's error in the absorption of its water is the same at both frequencies.
-  physical.tvg_absorption_db_per_m += mode.absorption_db_per_m - low.absorption_db_per_m;
+  physical.tvg.absorption_db_per_m += mode.absorption_db_per_m - low.absorption_db_per_m;
   physical.multipath.wavelength_m = mode.wavelength_m;
-  physical.noise_level_db += mode.noise_db;
+  physical.noise.level_db += mode.noise_db;
   physical.gain_db += (job.gain_percent - 50.0) * config.gain_db_per_percent;
   return settings;
 }

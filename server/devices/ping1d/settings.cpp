@@ -29,17 +29,17 @@ render::SonarSettings ping1d_acoustics(Ping1dModel model) {
   acoustics.aperture.receive_beamwidth_rad = width_rad;
   acoustics.aperture.vertical_beamwidth_rad = width_rad;
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // same transducer both ways
-  acoustics.physical.pulse = render::PhysicalModel::Pulse::point;
+  acoustics.physical.pulse.shape = render::PulseSettings::Shape::point;
   acoustics.physical.gain_db = 40.0;
-  acoustics.physical.tvg_log_coefficient = 0.0;
-  acoustics.physical.tvg_max_db = 0.0;
-  acoustics.physical.noise_level_db = -110.0;
+  acoustics.physical.tvg.log_coefficient = 0.0;
+  acoustics.physical.tvg.max_db = 0.0;
+  acoustics.physical.noise.level_db = -110.0;
   acoustics.physical.near_field_blank_m = 0.0;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.from_start = true;
   acoustics.physical.ring_down.peak_m = 0.1;
   acoustics.physical.ring_down.end_m = model == Ping1dModel::ping1d ? 0.5 : 0.3;
-  acoustics.physical.broadside_stripe_db = 0.0;
+  acoustics.physical.noise.broadside_stripe_db = 0.0;
   return acoustics;
 }
 

@@ -136,8 +136,9 @@ void read_transducer_band(YamlSection& section, render::TransducerBand& band) {
 void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Config& config) {
   read_acoustics(section, ping360_carrier_hz, head);
   read_single_beam(section, head.acoustics.aperture);
-  using Pulse = render::PhysicalModel::Pulse;
-  section.choice("pulse", head.acoustics.physical.pulse, {{"tone", Pulse::tone}, {"point", Pulse::point}},
+  using Shape = render::PulseSettings::Shape;
+  section.choice("pulse", head.acoustics.physical.pulse.shape,
+                 {{"tone", Shape::tone}, {"point", Shape::point}},
                  "response in range: `tone`: as long as the client's pulse; `point`: no length");
   section.section("transducer_band", "frequencies that pass the transducer",
                   [&](YamlSection& inner) { read_transducer_band(inner, config.transducer_band); });

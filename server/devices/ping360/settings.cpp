@@ -23,7 +23,7 @@ void follow_frequency(double frequency_hz, const Ping360Config& config, render::
         render::francois_garrison_absorption_db_per_m(frequency_hz, *config.water) -
         render::francois_garrison_absorption_db_per_m(ping360_carrier_hz, *config.water);
     physical.absorption_db_per_m += change_db_per_m;
-    physical.tvg_absorption_db_per_m = std::max(0.0, physical.tvg_absorption_db_per_m + change_db_per_m);
+    physical.tvg.absorption_db_per_m = std::max(0.0, physical.tvg.absorption_db_per_m + change_db_per_m);
   }
 }
 
@@ -38,15 +38,15 @@ render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfi
                     .compression_peak = false};
   settings.transmit = job.transmit;
   render::PhysicalModel& physical = settings.physical;
-  physical.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
-  physical.usual_pulse = {job.sound_speed_mps * usual_pulse_s / 2.0,
+  physical.pulse.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
+  physical.pulse.usual = {job.sound_speed_mps * usual_pulse_s / 2.0,
                           job.sound_speed_mps * ping360::sample_time_s(usual_sample_period) / 2.0};
   // The transducer can receive only after its tone ends, and then rings.
-  const double longer_m = std::max(0.0, physical.range_cell_m - physical.usual_pulse.cell_m);
+  const double longer_m = std::max(0.0, physical.pulse.range_cell_m - physical.pulse.usual.cell_m);
   physical.ring_down.peak_m += longer_m;
   physical.ring_down.end_m += longer_m;
   const double frequency_hz = job.frequency_hz > 0 ? job.frequency_hz : ping360_carrier_hz;
-  physical.band_loss_db = render::band_loss_db(config.transducer_band, frequency_hz, job.pulse_s);
+  physical.pulse.band_loss_db = render::band_loss_db(config.transducer_band, frequency_hz, job.pulse_s);
   follow_frequency(frequency_hz, config, physical);
   physical.gain_db += job.gain_db;
   return settings;

@@ -149,15 +149,15 @@ render::SonarSettings ping360_acoustics() {
   acoustics.aperture.elevation = render::Aperture::Elevation::sinc_two_way;  // same transducer both ways
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.multipath.most_bounces = 6;
-  acoustics.physical.pulse = render::PhysicalModel::Pulse::tone;
+  acoustics.physical.pulse.shape = render::PulseSettings::Shape::tone;
   acoustics.physical.gain_db = -9.0;
-  acoustics.physical.tvg_max_db = 75.0;
-  acoustics.physical.noise_level_db = -141.0;
+  acoustics.physical.tvg.max_db = 75.0;
+  acoustics.physical.noise.level_db = -141.0;
   acoustics.physical.near_field_blank_m = 0.0;
   acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.end_m = 0.75;
   acoustics.physical.ring_down.from_start = true;
-  acoustics.physical.broadside_stripe_db = 0.0;
+  acoustics.physical.noise.broadside_stripe_db = 0.0;
   return acoustics;
 }
 

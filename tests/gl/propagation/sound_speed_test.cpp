@@ -49,7 +49,7 @@ class SoundSpeed : public EngineTest {
  protected:
   static render::EchoImage image_of(const render::World& world, render::SonarSettings settings) {
     settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
-    settings.physical.range_cell_m = 0;  // a pulse spreads an echo before and behind its range
+    settings.physical.pulse.range_cell_m = 0;  // a pulse spreads an echo before and behind its range
     render::SonarRenderer renderer(world, options());
     return renderer.render_echo({{}, settings});
   }

@@ -91,8 +91,8 @@ PingRequest quiet_request(const Pose& T_world_sonar) {
   SonarSettings& settings = request.settings;
   settings.aperture.beam_edges_rad = equal_sine_edges(256, 60 * degree);
   settings.range = {1000, 0.02, 0, false};
-  settings.physical.speckle = PhysicalModel::Speckle::off;
-  settings.physical.noise = false;
+  settings.physical.speckle.kind = SpeckleSettings::Kind::off;
+  settings.physical.noise.on = false;
   settings.paper.speckle = PaperModel::Speckle::off;
   return request;
 }

@@ -68,7 +68,7 @@ TEST_P(Image, SameRequestGivesTheSameBytes) {
 // A daemon renders an unused echo before its first ping.
 TEST_P(Image, AnEchoOfAnotherPlaceBeforeChangesNoPing) {
   PingRequest request = small_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::ou;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::ou;
   PingRequest elsewhere = request;
   elsewhere.T_world_sonar.position_m = {1, 2, 4};
   elsewhere.settings.range.count = 500;

@@ -46,7 +46,7 @@ PingRequest middle_of_a_gemini() {
   request.settings.aperture.beam_edges_rad = equal_sine_edges(beams, std::asin(gemini_spacing * beams / 2));
   request.settings.aperture.azimuth = Aperture::Azimuth::array;
   request.settings.physical.absorption_db_per_m = 0;
-  request.settings.physical.tvg_absorption_db_per_m = 0;
+  request.settings.physical.tvg.absorption_db_per_m = 0;
   return request;
 }
 
@@ -97,8 +97,8 @@ TEST_P(Reception, APointIsHeardWithTheResponseOfThePulse) {
   PingRequest request = middle_of_a_gemini();
   request.settings.range = {5300, line_m, 0, false};
   request.settings.sampling = sampling_of_small_things();
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = cell_m;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = cell_m;
   SonarRenderer renderer(ball_at(10, 0, radius_m), options());
   const EchoImage& echo = renderer.render_echo(request);
   std::vector<double> lines(5300, 0.0);
@@ -288,11 +288,11 @@ TEST_P(Reception, AStrongTargetLeaksAlongItsRow) {
 double level_db(SonarRenderer& renderer, PingRequest request, double tvg_log_coefficient) {
   request.settings.sixteen_bit = true;
   PhysicalModel& model = request.settings.physical;
-  model.speckle = PhysicalModel::Speckle::off;
-  model.noise = false;
+  model.speckle.kind = SpeckleSettings::Kind::off;
+  model.noise.on = false;
   model.near_field_blank_m = 0;
-  model.tvg_max_db = 200;
-  model.tvg_log_coefficient = tvg_log_coefficient;
+  model.tvg.max_db = 200;
+  model.tvg.log_coefficient = tvg_log_coefficient;
   const PingSamples samples = renderer.render_ping(request);
   double sum = 0;
   for (const std::uint16_t sample : samples.u16) {
@@ -310,7 +310,7 @@ TEST_P(Reception, Tvg40KeepsTheLevelOfAPoint) {
     request.settings.aperture.azimuth = Aperture::Azimuth::ideal;
     request.settings.aperture.beam_edges_rad = equal_angle_edges(3, 6 * degree);
     request.settings.physical.absorption_db_per_m = 0.2;
-    request.settings.physical.tvg_absorption_db_per_m = 0.2;
+    request.settings.physical.tvg.absorption_db_per_m = 0.2;
     request.settings.range = {120, range_m / 100, 0, false};
     request.settings.sampling = sampling_of_small_things();
     const double radius_m = 1e-3 * range_m;
@@ -332,7 +332,7 @@ TEST_P(Reception, Tvg20KeepsTheLevelOfAWall) {
   for (const double range_m : {1.0, 10.0, 100.0}) {
     PingRequest request = middle_of_a_gemini();
     request.settings.physical.absorption_db_per_m = 0.05;
-    request.settings.physical.tvg_absorption_db_per_m = 0.05;
+    request.settings.physical.tvg.absorption_db_per_m = 0.05;
     request.settings.range = {220, range_m / 200, 0, false};
     const auto half = static_cast<float>(range_m);
     SonarRenderer renderer(
@@ -360,10 +360,10 @@ TEST_P(Reception, Tvg30LeavesABedFallingWithTheSquareOfTheRange) {
     PingRequest blanked = request;
     blanked.settings.sixteen_bit = true;
     PhysicalModel& model = blanked.settings.physical;
-    model.speckle = PhysicalModel::Speckle::off;
-    model.noise = false;
-    model.tvg_max_db = 200;
-    model.tvg_log_coefficient = 30;
+    model.speckle.kind = SpeckleSettings::Kind::off;
+    model.noise.on = false;
+    model.tvg.max_db = 200;
+    model.tvg.log_coefficient = 30;
     model.near_field_blank_m = (lines - 10) * 0.1;
     double sum = 0;
     for (const std::uint16_t sample : renderer.render_ping(blanked).u16) {

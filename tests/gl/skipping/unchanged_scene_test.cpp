@@ -125,9 +125,9 @@ TEST_P(UnchangedScene, WhatOnlyTheReceiverLooksAtDoesNot) {
       {"ping", [](PingRequest& r) { ++r.ping_number; }},
       {"seed", [](PingRequest& r) { ++r.seed; }},
       {"gain", [](PingRequest& r) { r.settings.physical.gain_db += 3; }},
-      {"noise", [](PingRequest& r) { r.settings.physical.noise = false; }},
-      {"speckle", [](PingRequest& r) { r.settings.physical.speckle = PhysicalModel::Speckle::off; }},
-      {"gain law", [](PingRequest& r) { r.settings.physical.tvg_log_coefficient = 40; }},
+      {"noise", [](PingRequest& r) { r.settings.physical.noise.on = false; }},
+      {"speckle", [](PingRequest& r) { r.settings.physical.speckle.kind = SpeckleSettings::Kind::off; }},
+      {"gain law", [](PingRequest& r) { r.settings.physical.tvg.log_coefficient = 40; }},
       {"compression", [](PingRequest& r) { r.settings.range.compression_log2 = 2; }},
       {"bits", [](PingRequest& r) { r.settings.sixteen_bit = true; }},
   };

@@ -14,8 +14,8 @@ SONARD_STABILITY_SUITE(Repeat);
 
 /// quiet_request() with everything random on.
 PingRequest lively(PingRequest request) {
-  request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
-  request.settings.physical.noise = true;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
+  request.settings.physical.noise.on = true;
   return request;
 }
 
@@ -124,8 +124,8 @@ TEST(Agreement, S21EnginesAgreeOnOneGrid) {
   request.settings.aperture.beam_edges_rad = equal_sine_edges(128, 60 * degree);
   request.settings.range = {800, 0.02, 0, false};
   request.settings.sampling = Sampling::of_grid(3, 256, 256);
-  request.settings.physical.speckle = PhysicalModel::Speckle::off;
-  request.settings.physical.noise = false;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::off;
+  request.settings.physical.noise.on = false;
   request.T_world_sonar = {{0, 0, 3}, glm::angleAxis(20 * degree, glm::dvec3(0, 1, 0))};
   SonarRenderer gpu(small_harbour(), {EngineKind::gpu, 0});
   SonarRenderer cpu(small_harbour(), {EngineKind::cpu, 0});

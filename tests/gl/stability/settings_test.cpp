@@ -317,7 +317,7 @@ TEST_P(Settings, S15AbsorptionFromNoneToTenDecibelsAMetre) {
   // Over ten kilometres 10 dB/m leave nothing, and no NaN.
   request.settings.range = {1000, 10.0, 0, false};
   for (const double tvg : {0.0, 10.0}) {
-    request.settings.physical.tvg_absorption_db_per_m = tvg;
+    request.settings.physical.tvg.absorption_db_per_m = tvg;
     EXPECT_TRUE(is_sane(renderer.render_echo(request)));
     EXPECT_EQ(renderer.render_ping(request).u8.size(), 64U * 1000U);
   }
@@ -363,7 +363,7 @@ TEST_P(Settings, S17GainFromNothingToSaturationEverywhere) {
   PingRequest request = level_request();
   PhysicalModel& model = request.settings.physical;
   model.near_field_blank_m = 0;
-  model.noise = true;
+  model.noise.on = true;
   for (const bool sixteen_bit : {false, true}) {
     request.settings.sixteen_bit = sixteen_bit;
     const auto codes = [&](double gain_db) {

@@ -67,8 +67,8 @@ class StabilityTest : public ::testing::TestWithParam<Way> {
     settings.range = {800, 0.02, 0, false};
     settings.sampling = sampling();
     settings.physical.absorption_db_per_m = 0;
-    settings.physical.speckle = render::PhysicalModel::Speckle::off;
-    settings.physical.noise = false;
+    settings.physical.speckle.kind = render::SpeckleSettings::Kind::off;
+    settings.physical.noise.on = false;
     settings.paper.speckle = render::PaperModel::Speckle::off;
     request.T_world_sonar.position_m.z = 3;
     request.T_world_sonar.orientation = glm::angleAxis(20 * degree, glm::dvec3(0, 1, 0));

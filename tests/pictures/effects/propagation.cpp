@@ -21,8 +21,8 @@ render::BodyPart part_of(render::TriangleMesh mesh, double lambert_mu) {
 /// Without speckle and noise, which do not show ranges.
 View smooth_view() {
   View view = configured_view("demo.yaml", 20);
-  view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
-  view.settings.physical.noise = false;
+  view.settings.physical.speckle.kind = render::SpeckleSettings::Kind::off;
+  view.settings.physical.noise.on = false;
   return view;
 }
 
@@ -42,7 +42,7 @@ View long_view() {
   }
   View view = plain_view(std::move(world), {{0, 0, 5}, {1, 0, 0, 0}}, 100);
   view.settings.aperture.vertical_beamwidth_rad = 8 * degree;
-  view.settings.physical.noise = false;
+  view.settings.physical.noise.on = false;
   view.settings.physical.gain_db += 10;
   return view;
 }

@@ -10,7 +10,8 @@
 namespace sonard::pictures {
 namespace {
 
-using render::PhysicalModel;
+using render::PulseSettings;
+using render::SpeckleSettings;
 
 View docking_station() {
   return configured_view("demo.yaml", 20);
@@ -50,15 +51,15 @@ std::vector<EffectPicture> receiver_pictures() {
       {.name = "noise",
        .view = [] { return configured_view("demo.yaml", 50); },
        .caption_before = "noise: off",
-       .before = [](View& view) { view.settings.physical.noise = false; },
+       .before = [](View& view) { view.settings.physical.noise.on = false; },
        .caption_after = "noise: on",
-       .after = [](View& view) { view.settings.physical.noise = true; }},
+       .after = [](View& view) { view.settings.physical.noise.on = true; }},
       {.name = "speckle",
        .view = docking_station,
        .caption_before = "speckle: off",
-       .before = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::off; },
+       .before = [](View& view) { view.settings.physical.speckle.kind = SpeckleSettings::Kind::off; },
        .caption_after = "speckle: ou",
-       .after = [](View& view) { view.settings.physical.speckle = PhysicalModel::Speckle::ou; }},
+       .after = [](View& view) { view.settings.physical.speckle.kind = SpeckleSettings::Kind::ou; }},
       {.name = "range_correlation",
        .view = close_bed,
        .caption_before = "pulse: point",
@@ -66,21 +67,21 @@ std::vector<EffectPicture> receiver_pictures() {
        .caption_after = "pulse: chirp, with a cell of 40 mm",
        .after =
            [](View& view) {
-             view.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-             view.settings.physical.range_cell_m = 0.04;
+             view.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+             view.settings.physical.pulse.range_cell_m = 0.04;
            }},
       {.name = "texture",
        .view = close_bed,
        .caption_before = "texture_nu: 0 (off)",
-       .before = [](View& view) { view.settings.physical.texture_nu = 0; },
+       .before = [](View& view) { view.settings.physical.speckle.texture_nu = 0; },
        .caption_after = "texture_nu: 0.5",
-       .after = [](View& view) { view.settings.physical.texture_nu = 0.5; }},
+       .after = [](View& view) { view.settings.physical.speckle.texture_nu = 0.5; }},
       {.name = "broadside_stripe",
        .view = [] { return configured_view("demo.yaml", 50); },
        .caption_before = "broadside_stripe_db: 0 (off)",
-       .before = [](View& view) { view.settings.physical.broadside_stripe_db = 0; },
+       .before = [](View& view) { view.settings.physical.noise.broadside_stripe_db = 0; },
        .caption_after = "broadside_stripe_db: 3.5",
-       .after = [](View& view) { view.settings.physical.broadside_stripe_db = 3.5; }},
+       .after = [](View& view) { view.settings.physical.noise.broadside_stripe_db = 3.5; }},
       {.name = "ring_down",
        .view =
            [] {
@@ -95,14 +96,14 @@ std::vector<EffectPicture> receiver_pictures() {
       {.name = "interference",
        .view = gained_tank,
        .caption_before = "interference: 0",
-       .before = [](View& view) { view.settings.physical.interference.probability = 0; },
+       .before = [](View& view) { view.settings.physical.noise.interference.probability = 0; },
        .caption_after = "interference: 0.16",
-       .after = [](View& view) { view.settings.physical.interference.probability = 0.16; }},
+       .after = [](View& view) { view.settings.physical.noise.interference.probability = 0.16; }},
       {.name = "volume_reverberation",
        .view =
            [] {
              View view = sharp_docking_station(40);
-             view.settings.physical.noise = false;
+             view.settings.physical.noise.on = false;
              view.settings.physical.gain_db += 12;
              return view;
            },

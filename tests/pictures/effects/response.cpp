@@ -11,7 +11,7 @@ View perfect_docking_station() {
   View view = configured_view("demo.yaml", 20);
   view.settings.aperture.element_amplitude_sd = 0;
   view.settings.aperture.element_phase_sd_rad = 0;
-  view.settings.physical.noise = false;  // noise makes pictures large
+  view.settings.physical.noise.on = false;  // noise makes pictures large
   return view;
 }
 
@@ -21,7 +21,7 @@ std::vector<EffectPicture> response_pictures() {
   using Azimuth = render::Aperture::Azimuth;
   using Elevation = render::Aperture::Elevation;
   using Backscatter = render::PhysicalModel::Backscatter;
-  using Pulse = render::PhysicalModel::Pulse;
+  using Shape = render::PulseSettings::Shape;
   return {
       {.name = "facets",
        .view = [] { return configured_view("demo-micron.yaml", 12); },
@@ -39,7 +39,7 @@ std::vector<EffectPicture> response_pictures() {
        .view =
            [] {
              View view = perfect_docking_station();
-             view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
+             view.settings.physical.speckle.kind = render::SpeckleSettings::Kind::off;
              return view;
            },
        .caption_before = "element_amplitude_sd: 0, element_phase_sd_deg: 0",
@@ -54,24 +54,24 @@ std::vector<EffectPicture> response_pictures() {
        .view =
            [] {
              View view = configured_view("demo.yaml", 20);
-             view.settings.physical.noise = false;  // noise makes pictures large
-             view.settings.physical.speckle = render::PhysicalModel::Speckle::off;
+             view.settings.physical.noise.on = false;  // noise makes pictures large
+             view.settings.physical.speckle.kind = render::SpeckleSettings::Kind::off;
              return view;
            },
        .caption_before = "pulse: point",
-       .before = [](View& view) { view.settings.physical.pulse = Pulse::point; },
+       .before = [](View& view) { view.settings.physical.pulse.shape = Shape::point; },
        .caption_after = "pulse: tone, of 128 cycles",
        .after =
            [](View& view) {
-             view.settings.physical.pulse = Pulse::tone;
-             view.settings.physical.range_cell_m = 128 / 723380.0 * 1500 / 2;
+             view.settings.physical.pulse.shape = Shape::tone;
+             view.settings.physical.pulse.range_cell_m = 128 / 723380.0 * 1500 / 2;
            }},
       {.name = "elevation_pattern",
        .view =
            [] {
              View view = configured_view("demo.yaml", 20);
-             view.settings.physical.speckle =
-                 render::PhysicalModel::Speckle::off;  // speckle would hide the fading
+             view.settings.physical.speckle.kind =
+                 render::SpeckleSettings::Kind::off;  // speckle would hide the fading
              return view;
            },
        .caption_before = "elevation_pattern: top_hat",

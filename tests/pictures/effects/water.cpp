@@ -11,7 +11,7 @@ std::vector<EffectPicture> water_pictures() {
        .before =
            [](View& view) {
              view.settings.physical.absorption_db_per_m = 0;
-             view.settings.physical.tvg_absorption_db_per_m = 0;
+             view.settings.physical.tvg.absorption_db_per_m = 0;
            },
        .caption_after = "sea water, TVG makes up for it",
        .after = [](View&) {}},

@@ -24,16 +24,16 @@ View view_of(const GalleryScene& scene) {
 void take_effects_off(View& view) {
   render::PhysicalModel& physical = view.settings.physical;
   physical.backscatter = render::PhysicalModel::Backscatter::lambert;
-  physical.speckle = render::PhysicalModel::Speckle::off;
-  physical.noise = false;
-  physical.texture_nu = 0;
+  physical.speckle.kind = render::SpeckleSettings::Kind::off;
+  physical.noise.on = false;
+  physical.speckle.texture_nu = 0;
   physical.water_clutter.density_per_m3 = 0;
   physical.volume_scattering_db = -std::numeric_limits<double>::infinity();
   physical.multipath.level = render::MultipathSettings::Level::off;
-  physical.broadside_stripe_db = 0;
+  physical.noise.broadside_stripe_db = 0;
   physical.ring_down.on = false;
-  physical.interference.probability = 0;
-  physical.pulse = render::PhysicalModel::Pulse::point;
+  physical.noise.interference.probability = 0;
+  physical.pulse.shape = render::PulseSettings::Shape::point;
   view.settings.aperture.azimuth = render::Aperture::Azimuth::ideal;
   view.settings.aperture.elevation = render::Aperture::Elevation::top_hat;
 }

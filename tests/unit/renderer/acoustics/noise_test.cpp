@@ -20,7 +20,7 @@ TEST(Noise, LevelFollowsFromTheSonarEquation) {
   NoiseBudget budget;
   budget.spectral_level_db = thermal_noise_db(720e3);
   EXPECT_NEAR(noise_level_db(budget), 42.15 - 30 + 49.73 - 200, 0.01);
-  EXPECT_NEAR(noise_level_db(budget), PhysicalModel().noise_level_db, 0.2);
+  EXPECT_NEAR(noise_level_db(budget), PhysicalModel().noise.level_db, 0.2);
 }
 
 TEST(Noise, InterferenceIsDrawnEvenlyBySeed) {
@@ -74,8 +74,8 @@ TEST(Noise, TellsHowFarTheStrongestEchoStandsOutOfIt) {
   const double half_a_step = std::pow(0.5 / 65535, 2);
   EXPECT_NEAR(over_floor(request, even_echo(request, 1e-6)), 1e-6 / half_a_step, 1e-3 * 1e-6 / half_a_step);
   EXPECT_EQ(over_floor(request, even_echo(request, 0)), 0.0);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -40;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -40;
   EXPECT_NEAR(over_floor(request, even_echo(request, 1e-6)), 1e-6 / (1e-4 + half_a_step), 1e-6);
   EchoImage one_bin = even_echo(request, 1e-6);
   one_bin.intensity[37 * 100 + 52] = 1e-3F;
@@ -92,15 +92,15 @@ TEST(Noise, TellsHowFarTheStrongestEchoStandsOutOfIt) {
 TEST(Noise, InterferenceRaisesNoiseWithinItsBurst) {
   WorkerPool workers;
   PingRequest request = bare_request(400);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -40;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -40;
   const std::vector<double> calm =
       intensities_of(Receiver().receive(even_echo(request, 0), request, 0, workers));
-  request.settings.physical.interference = {1.0, 10, 10, 1.0, 0.0};
+  request.settings.physical.noise.interference = {1.0, 10, 10, 1.0, 0.0};
   const std::vector<double> hit =
       intensities_of(Receiver().receive(even_echo(request, 0), request, 0, workers));
   const InterferenceBurst burst =
-      draw_interference(request.settings.physical.interference, request.settings.range,
+      draw_interference(request.settings.physical.noise.interference, request.settings.range,
                         make_random_key(request.seed, 0, RandomField::interference, request.ping_number));
   ASSERT_GT(burst.first_line, 0);
   ASSERT_LT(burst.end_line, 399);
@@ -133,8 +133,8 @@ TEST(RingDown, RisesToItsPeakAndFallsBy80Decibels) {
 TEST(RingDown, IsEvenFromTheFirstLineWhereThePulseOverdrivesTheReceiver) {
   PhysicalModel model;
   model.ring_down = {.on = true, .level_db = -6, .peak_m = 0.3, .end_m = 0.9, .from_start = true};
-  model.tvg_log_coefficient = 30;
-  model.tvg_absorption_db_per_m = 0.2;
+  model.tvg.log_coefficient = 30;
+  model.tvg.absorption_db_per_m = 0.2;
   const std::vector<float> amplitude = ring_down_amplitudes(model, {2000, 0.001, 0, false});
   const auto output_db = [&](std::size_t line) {
     const double range_m = (static_cast<double>(line) + 0.5) * 0.001;

@@ -20,10 +20,10 @@ PingRequest scanning_request(int lines) {
   request.settings.range = {lines, 0.05, 0, false};
   request.settings.output_scale = OutputScale::half_decibels;
   PhysicalModel& model = request.settings.physical;
-  model.speckle = PhysicalModel::Speckle::off;
-  model.noise = false;
-  model.tvg_log_coefficient = 0;
-  model.tvg_absorption_db_per_m = 0;
+  model.speckle.kind = SpeckleSettings::Kind::off;
+  model.noise.on = false;
+  model.tvg.log_coefficient = 0;
+  model.tvg.absorption_db_per_m = 0;
   model.gain_db = 0;
   model.near_field_blank_m = 0;
   return request;

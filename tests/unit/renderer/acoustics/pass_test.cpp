@@ -22,11 +22,11 @@ PingRequest ping(int number, const std::function<void(SonarSettings&)>& adjust) 
   request.ping_number = static_cast<std::uint64_t>(number);
   request.T_world_sonar.position_m.x = 0.004 * number;
   request.T_world_sonar.orientation = glm::angleAxis(0.001 * number, glm::dvec3(0, 0, 1));
-  request.settings.physical.speckle = PhysicalModel::Speckle::ou;
-  request.settings.physical.pulse = PhysicalModel::Pulse::tone;
-  request.settings.physical.range_cell_m = 3.0 * request.settings.range.step_m;
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -60.0;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::ou;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::tone;
+  request.settings.physical.pulse.range_cell_m = 3.0 * request.settings.range.step_m;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -60.0;
   adjust(request.settings);
   return request;
 }
@@ -75,8 +75,8 @@ TEST_P(Passed, WithoutThePingsBetweenOnlySpeckleThatIsKeptDiffers) {
   whole.receive(echo_of(last), ping(0, GetParam().adjust), 2, workers);
   const bool same = whole.receive(echo_of(last), last, 2, workers).u16 ==
                     forgetful.receive(echo_of(last), last, 2, workers).u16;
-  const bool kept =
-      last.settings.model == Model::physical && last.settings.physical.speckle == PhysicalModel::Speckle::ou;
+  const bool kept = last.settings.model == Model::physical &&
+                    last.settings.physical.speckle.kind == SpeckleSettings::Kind::ou;
   EXPECT_EQ(same, !kept);
 }
 
@@ -84,9 +84,9 @@ INSTANTIATE_TEST_SUITE_P(
     Kinds, Passed,
     testing::Values(
         Case{"fan", [](SonarSettings&) {}},
-        Case{"fan_with_texture", [](SonarSettings& s) { s.physical.texture_nu = 1.5; }},
-        Case{"frozen", [](SonarSettings& s) { s.physical.speckle = PhysicalModel::Speckle::frozen; }},
-        Case{"per_ping", [](SonarSettings& s) { s.physical.speckle = PhysicalModel::Speckle::per_ping; }},
+        Case{"fan_with_texture", [](SonarSettings& s) { s.physical.speckle.texture_nu = 1.5; }},
+        Case{"frozen", [](SonarSettings& s) { s.physical.speckle.kind = SpeckleSettings::Kind::frozen; }},
+        Case{"per_ping", [](SonarSettings& s) { s.physical.speckle.kind = SpeckleSettings::Kind::per_ping; }},
         Case{"scanning_beam",
              [](SonarSettings& s) {
                s.aperture.beam_edges_rad = {0.03, -0.03};
@@ -94,14 +94,14 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"scanning_beam_without_pulse",
              [](SonarSettings& s) {
                s.aperture.beam_edges_rad = {0.03, -0.03};
-               s.physical.pulse = PhysicalModel::Pulse::point;
+               s.physical.pulse.shape = PulseSettings::Shape::point;
              }},
         Case{"paper", [](SonarSettings& s) { s.model = Model::paper; }}),
     [](const auto& of) { return of.param.name; });
 
 TEST(Pass, SaysSoWhereOnlyTheEchoKnows) {
   WorkerPool workers;
-  const auto no_pulse = [](SonarSettings& s) { s.physical.pulse = PhysicalModel::Pulse::point; };
+  const auto no_pulse = [](SonarSettings& s) { s.physical.pulse.shape = PulseSettings::Shape::point; };
   Receiver whole, passing;
   const PingRequest first = ping(0, no_pulse);
   EXPECT_FALSE(passing.pass(first, 0, workers));

@@ -14,7 +14,7 @@
 namespace sonard::render {
 namespace {
 
-constexpr auto chirp = PhysicalModel::Pulse::chirp;
+constexpr auto chirp = PulseSettings::Shape::chirp;
 constexpr double step_m = 0.01;
 constexpr double cell_m = 0.035;  // three and a half lines
 
@@ -51,8 +51,8 @@ double intensity_correlation(const PingSamples& samples, int lag) {
 PingRequest fine_request(int lines) {
   PingRequest request = bare_request(lines);
   request.settings.range.step_m = step_m;
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = cell_m;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = cell_m;
   return request;
 }
 
@@ -83,24 +83,24 @@ TEST(PulseCorrelation, SquaresOfItsWeightsAddUpToOne) {
 // A box three lines long: [1 1 1]. One of two and a half, in the middle of a line: [3/4 1 3/4]. Under a Hann
 // window the main lobe is twice as wide, 1/2 where the lobe of a bare chirp is 0.
 TEST(PulseCorrelation, EveryPulseHasItsShape) {
-  const PulseCorrelation three(PhysicalModel::Pulse::tone, 3 * step_m, step_m);
+  const PulseCorrelation three(PulseSettings::Shape::tone, 3 * step_m, step_m);
   EXPECT_EQ(three.reach(), 1);
   EXPECT_NEAR(three.weight(1), three.weight(0), 1e-6);
-  const PulseCorrelation two_and_a_half(PhysicalModel::Pulse::tone, 2.5 * step_m, step_m);
+  const PulseCorrelation two_and_a_half(PulseSettings::Shape::tone, 2.5 * step_m, step_m);
   EXPECT_NEAR(two_and_a_half.weight(1) / two_and_a_half.weight(0), 0.75, 1e-6);
-  EXPECT_EQ(PulseCorrelation(PhysicalModel::Pulse::tone, step_m, step_m).reach(), 0);
-  const PulseCorrelation windowed(PhysicalModel::Pulse::windowed_chirp, 2 * step_m, step_m);
+  EXPECT_EQ(PulseCorrelation(PulseSettings::Shape::tone, step_m, step_m).reach(), 0);
+  const PulseCorrelation windowed(PulseSettings::Shape::windowed_chirp, 2 * step_m, step_m);
   EXPECT_EQ(windowed.reach(), 3);
   EXPECT_NEAR(windowed.weight(2) / windowed.weight(0), 0.5, 1e-6);
-  EXPECT_EQ(PulseCorrelation(PhysicalModel::Pulse::point, 3 * step_m, step_m).reach(), 0);
+  EXPECT_EQ(PulseCorrelation(PulseSettings::Shape::point, 3 * step_m, step_m).reach(), 0);
 }
 
 TEST(PulseCorrelation, SpeckleOfShortLinesIsCorrelatedByThePulse) {
   WorkerPool workers;
   for (const auto kind :
-       {PhysicalModel::Speckle::ou, PhysicalModel::Speckle::frozen, PhysicalModel::Speckle::per_ping}) {
+       {SpeckleSettings::Kind::ou, SpeckleSettings::Kind::frozen, SpeckleSettings::Kind::per_ping}) {
     PingRequest request = fine_request(3000);
-    request.settings.physical.speckle = kind;
+    request.settings.physical.speckle.kind = kind;
     expect_correlation(Receiver().receive(even_echo(request, 0.01), request, 0, workers), 0.01);
   }
 }
@@ -108,16 +108,16 @@ TEST(PulseCorrelation, SpeckleOfShortLinesIsCorrelatedByThePulse) {
 TEST(PulseCorrelation, NoiseOfShortLinesHasTheSame) {
   WorkerPool workers;
   PingRequest request = fine_request(3000);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   expect_correlation(Receiver().receive(even_echo(request, 0), request, 0, workers), 0.01);
 }
 
 TEST(PulseCorrelation, LinesOfACellShareNothing) {
   WorkerPool workers;
   PingRequest request = fine_request(3000);
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = step_m;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = step_m;
   EXPECT_NEAR(intensity_correlation(Receiver().receive(even_echo(request, 0.01), request, 0, workers), 1), 0,
               0.01);
 }
@@ -137,11 +137,11 @@ TEST(PulseCorrelation, KeptSpeckleKeepsItsCorrelationAsItFades) {
 
 TEST(PulseCorrelation, IsTheSameForAnyNumberOfThreads) {
   PingRequest request = fine_request(700);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -30;
-  request.settings.physical.texture_nu = 2;
-  for (const auto kind : {PhysicalModel::Speckle::ou, PhysicalModel::Speckle::per_ping}) {
-    request.settings.physical.speckle = kind;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -30;
+  request.settings.physical.speckle.texture_nu = 2;
+  for (const auto kind : {SpeckleSettings::Kind::ou, SpeckleSettings::Kind::per_ping}) {
+    request.settings.physical.speckle.kind = kind;
     WorkerPool one(1);
     WorkerPool many(5);
     EXPECT_EQ(Receiver().receive(even_echo(request, 0.02), request, 0, one).u16,

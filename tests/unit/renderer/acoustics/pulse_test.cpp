@@ -17,7 +17,7 @@
 namespace sonard::render {
 namespace {
 
-using Pulse = PhysicalModel::Pulse;
+using Shape = PulseSettings::Shape;
 
 constexpr double pulse_m = 0.0075;  // 100 kHz at 1500 m/s
 
@@ -45,7 +45,7 @@ double integral(double step_m, int lines) {
 
 TEST(PulseResponse, SharesAreTheIntegralOfTheChirp) {
   for (const double step_m : {0.0024, 0.0075, 0.015, 0.0254}) {
-    const PulseResponse response(Pulse::chirp, pulse_m, step_m);
+    const PulseResponse response(Shape::chirp, pulse_m, step_m);
     ASSERT_GT(response.taps(), 3);
     for (int lines = 0; lines < 4; ++lines) {
       // 0.6 % of the energy lies beyond 16 cells; the response spreads it over the rest.
@@ -56,7 +56,7 @@ TEST(PulseResponse, SharesAreTheIntegralOfTheChirp) {
 }
 
 TEST(PulseResponse, NothingIsLost) {
-  const PulseResponse response(Pulse::chirp, pulse_m, 0.0024);
+  const PulseResponse response(Shape::chirp, pulse_m, 0.0024);
   std::vector<float> intensity(1200, 0.0F);
   intensity[300] = 2.0F;
   intensity[900] = 1.0F;
@@ -74,7 +74,7 @@ TEST(PulseResponse, NothingIsLost) {
 }
 
 TEST(PulseResponse, StaysInsideItsBeamAndImage) {
-  const PulseResponse response(Pulse::chirp, pulse_m, 0.0075);
+  const PulseResponse response(Shape::chirp, pulse_m, 0.0075);
   EchoImage out;
   WorkerPool workers(2);
   response.apply(image_of(2, {1, 0, 0, 0, 0, 0}), out, workers);
@@ -84,7 +84,7 @@ TEST(PulseResponse, StaysInsideItsBeamAndImage) {
 }
 
 /// Level of a pulse `away_m` from the echo, in lines so short that they do not blur it.
-double level_db(Pulse pulse, double away_m) {
+double level_db(Shape pulse, double away_m) {
   constexpr double line_m = pulse_m / 40;
   const PulseResponse response(pulse, pulse_m, line_m);
   return 10 * std::log10(response.share(static_cast<int>(std::lround(away_m / line_m))) / response.share(0));
@@ -93,43 +93,38 @@ double level_db(Pulse pulse, double away_m) {
 // docs/physics.md 2.6.
 TEST(PulseResponse, PulsesHaveTheWidthAndSideLobesOfTheirKind) {
   // sinc^2 is one half at 0.443 cells; its first side lobe, at 1.43 cells, is 13.3 dB down.
-  EXPECT_NEAR(level_db(Pulse::chirp, 0.443 * pulse_m), -3, 0.15);
-  EXPECT_NEAR(level_db(Pulse::chirp, 1.43 * pulse_m), -13.26, 0.1);
-  EXPECT_NEAR(level_db(Pulse::chirp, 2.46 * pulse_m), -17.83, 0.1);
+  EXPECT_NEAR(level_db(Shape::chirp, 0.443 * pulse_m), -3, 0.15);
+  EXPECT_NEAR(level_db(Shape::chirp, 1.43 * pulse_m), -13.26, 0.1);
+  EXPECT_NEAR(level_db(Shape::chirp, 2.46 * pulse_m), -17.83, 0.1);
   // A Hann window makes it 1.63 times as wide; its first zero is at 2 cells, its highest side lobe 31.5 dB
   // down.
-  EXPECT_NEAR(level_db(Pulse::windowed_chirp, 1.63 * 0.443 * pulse_m), -3, 0.15);
+  EXPECT_NEAR(level_db(Shape::windowed_chirp, 1.63 * 0.443 * pulse_m), -3, 0.15);
   double highest = -100;
   for (double cells = 2; cells < 6; cells += 0.025) {
-    highest = std::max(highest, level_db(Pulse::windowed_chirp, cells * pulse_m));
+    highest = std::max(highest, level_db(Shape::windowed_chirp, cells * pulse_m));
   }
   EXPECT_NEAR(highest, -31.5, 0.1);
   // A tone is even over its length and zero beyond.
-  EXPECT_NEAR(level_db(Pulse::tone, 0.45 * pulse_m), 0, 1e-6);
-  const PulseResponse tone(Pulse::tone, pulse_m, pulse_m / 40);
+  EXPECT_NEAR(level_db(Shape::tone, 0.45 * pulse_m), 0, 1e-6);
+  const PulseResponse tone(Shape::tone, pulse_m, pulse_m / 40);
   EXPECT_EQ(tone.taps(), 21);  // the last one catches half a line
   EXPECT_NEAR(tone.share(20), tone.share(0) / 2, 1e-6);
 }
 
 // A tone of length l, its middle anywhere in a line of length d >= l, is outside of it by l / 4d in the mean.
 TEST(PulseResponse, ToldWhatIsHeardOutsideOfTheLine) {
-  EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
-  EXPECT_NEAR(PulseResponse(Pulse::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
-  EXPECT_NEAR(PulseResponse(Pulse::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * pulse_m, 0), 0.01);
+  EXPECT_NEAR(PulseResponse(Shape::tone, 0.01, 0.02).share_outside(), 0.125, 1e-6);
+  EXPECT_NEAR(PulseResponse(Shape::tone, 0.01, 0.5).share_outside(), 0.005, 1e-6);
+  EXPECT_NEAR(PulseResponse(Shape::chirp, 0.01, 0.02).share_outside(), 1 - integral(2 * pulse_m, 0), 0.01);
 }
 
 /// A tone of length `cell_m`; levels are stated for a tone of 20 mm in lines of 5 mm.
-PhysicalModel tone_of(double cell_m, double rounding_m = 0) {
-  PhysicalModel model;
-  model.pulse = Pulse::tone;
-  model.range_cell_m = cell_m;
-  model.tone_rounding_m = rounding_m;
-  model.usual_pulse = {0.02, 0.005};
-  return model;
+PulseSettings tone_of(double cell_m, double rounding_m = 0) {
+  return {Shape::tone, cell_m, rounding_m, {0.02, 0.005}};
 }
 
-PulseResponse response_of(const PhysicalModel& model, double step_m) {
-  return {model.pulse, model.range_cell_m, step_m, model.tone_rounding_m, pulse_energy(model, step_m)};
+PulseResponse response_of(const PulseSettings& pulse, double step_m) {
+  return {pulse.shape, pulse.range_cell_m, step_m, pulse.tone_rounding_m, pulse_energy(pulse, step_m)};
 }
 
 /// Level of an even echo of 1.
@@ -145,9 +140,9 @@ double bed(const PulseResponse& response) {
 // echo, and an even echo has a quarter for each line in the tone.
 TEST(PulseEnergy, ALongerToneLeavesAPointAndRaisesABed) {
   for (const double cell_m : {0.005, 0.02, 0.1, 0.75}) {
-    const PhysicalModel model = tone_of(cell_m);
-    EXPECT_NEAR(bed(response_of(model, 0.005)), cell_m / 0.02, 1e-4 * cell_m / 0.02) << cell_m;
-    EXPECT_NEAR(response_of(model, 0.0002).share(0), 0.25, 0.25 * 0.02) << cell_m;
+    const PulseSettings pulse = tone_of(cell_m);
+    EXPECT_NEAR(bed(response_of(pulse, 0.005)), cell_m / 0.02, 1e-4 * cell_m / 0.02) << cell_m;
+    EXPECT_NEAR(response_of(pulse, 0.0002).share(0), 0.25, 0.25 * 0.02) << cell_m;
   }
   EXPECT_NEAR(bed(response_of(tone_of(0.02), 0.005)), 1, 1e-6);
 }
@@ -167,10 +162,10 @@ TEST(PulseEnergy, LevelsDoNotDependOnTheLengthOfLines) {
 TEST(PulseEnergy, ARoundedToneKeepsItsPeakAndItsLength) {
   constexpr double rounding_m = 0.018;
   for (const double cell_m : {0.004, 0.0126, 0.02, 0.033, 0.13}) {
-    const PhysicalModel model = tone_of(cell_m, rounding_m);
+    const PulseSettings pulse = tone_of(cell_m, rounding_m);
     const double length_m = std::max(cell_m, 0.9028 * rounding_m);
-    EXPECT_NEAR(bed(response_of(model, 0.005)), length_m / 0.02, 1e-3 * length_m / 0.02) << cell_m;
-    EXPECT_NEAR(response_of(model, 0.0005).share(0), 0.25, 0.25 * 0.01) << cell_m;
+    EXPECT_NEAR(bed(response_of(pulse, 0.005)), length_m / 0.02, 1e-3 * length_m / 0.02) << cell_m;
+    EXPECT_NEAR(response_of(pulse, 0.0005).share(0), 0.25, 0.25 * 0.01) << cell_m;
   }
 }
 
@@ -186,7 +181,7 @@ TEST(PulseResponse, ARoundedToneIsABoxBehindABand) {
     }
     return sum;
   };
-  const PulseResponse response(Pulse::tone, 0.0332, step_m, rounding_m);
+  const PulseResponse response(Shape::tone, 0.0332, step_m, rounding_m);
   for (const int lines : {10, 20, 30, 40, 50}) {
     const double expected = std::pow(amplitude(lines * step_m) / amplitude(0), 2);
     EXPECT_NEAR(response.share(lines) / response.share(0), expected, 0.01) << lines;
@@ -194,16 +189,16 @@ TEST(PulseResponse, ARoundedToneIsABoxBehindABand) {
 }
 
 TEST(PulseEnergy, IsOneWhereLevelsDoNotFollowTheLength) {
-  PhysicalModel model = tone_of(0.1);
-  model.usual_pulse = {};
-  EXPECT_EQ(pulse_energy(model, 0.01), 1);
-  model = tone_of(0.1);
-  model.pulse = Pulse::windowed_chirp;
-  EXPECT_EQ(pulse_energy(model, 0.01), 1);
-  model.band_loss_db = -20;
-  EXPECT_NEAR(pulse_energy(model, 0.01), 0.01, 1e-12);
-  model = tone_of(0.02);
-  EXPECT_EQ(pulse_energy(model, 0.005), 1);  // exactly: pictures of the usual pulse do not change
+  PulseSettings pulse = tone_of(0.1);
+  pulse.usual = {};
+  EXPECT_EQ(pulse_energy(pulse, 0.01), 1);
+  pulse = tone_of(0.1);
+  pulse.shape = Shape::windowed_chirp;
+  EXPECT_EQ(pulse_energy(pulse, 0.01), 1);
+  pulse.band_loss_db = -20;
+  EXPECT_NEAR(pulse_energy(pulse, 0.01), 0.01, 1e-12);
+  pulse = tone_of(0.02);
+  EXPECT_EQ(pulse_energy(pulse, 0.005), 1);  // exactly: pictures of the usual pulse do not change
 }
 
 // By hand: a band of 200 kHz around 743.3 kHz has a quality of 3.717. 500 kHz is detuned by
@@ -238,8 +233,8 @@ TEST(TransducerBand, AShortToneEndsBeforeTheTransducerHasBuiltUp) {
 
 TEST(PulseResponse, APulseWithoutLengthSpreadsNothing) {
   EXPECT_EQ(PulseResponse().taps(), 0);
-  EXPECT_EQ(PulseResponse(Pulse::point, 0.01, 0.01).taps(), 0);
-  EXPECT_EQ(PulseResponse(Pulse::chirp, 0, 0.01).taps(), 0);
+  EXPECT_EQ(PulseResponse(Shape::point, 0.01, 0.01).taps(), 0);
+  EXPECT_EQ(PulseResponse(Shape::chirp, 0, 0.01).taps(), 0);
 }
 
 }  // namespace

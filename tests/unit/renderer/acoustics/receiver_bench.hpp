@@ -16,12 +16,12 @@ inline PingRequest bare_request(int lines) {
   request.settings.aperture.beam_edges_rad = equal_sine_edges(256, 1.0471975511965976);
   request.settings.range = {lines, 0.01, 0, false};
   PhysicalModel& model = request.settings.physical;
-  model.tvg_log_coefficient = 0;
-  model.tvg_absorption_db_per_m = 0;
+  model.tvg.log_coefficient = 0;
+  model.tvg.absorption_db_per_m = 0;
   model.gain_db = 0;
-  model.noise = false;
+  model.noise.on = false;
   model.near_field_blank_m = 0;
-  model.broadside_stripe_db = 0;
+  model.noise.broadside_stripe_db = 0;
   request.settings.sixteen_bit = true;
   request.seed = 5;
   return request;

@@ -72,8 +72,8 @@ TEST(Receiver, SpeckleIsRayleighAndCorrelatedByTheArray) {
 TEST(Receiver, NoiseFillsEmptyWaterWithTheSameCorrelation) {
   WorkerPool workers;
   PingRequest request = bare_request(1500);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   expect_rayleigh(Receiver().receive(uniform_echo(1500, 0), request, 0, workers), 0.1);
 }
 
@@ -106,8 +106,8 @@ TEST(Receiver, AmplitudesAreRayleighInDistributionAndMoments) {
   WorkerPool workers;
   PingRequest request = bare_request(3000);
   const PingSamples speckle = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   const PingSamples noise = Receiver().receive(uniform_echo(3000, 0), request, 0, workers);
   const PingSamples both = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);
   const std::vector<std::pair<const PingSamples*, double>> cases = {
@@ -156,8 +156,8 @@ TEST(Receiver, FieldsAreCorrelatedByTheArrayAcrossBeamsAndNotInRange) {
   WorkerPool workers;
   PingRequest request = bare_request(3000);
   const PingSamples speckle = Receiver().receive(uniform_echo(3000, 0.01F), request, 0, workers);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   const PingSamples noise = Receiver().receive(uniform_echo(3000, 0), request, 0, workers);
   const double bound = 4 / std::sqrt(3000.0 * 256 / 4);
   for (const PingSamples* samples : {&speckle, &noise}) {
@@ -172,9 +172,9 @@ TEST(Receiver, FieldsAreCorrelatedByTheArrayAcrossBeamsAndNotInRange) {
 
 TEST(Receiver, TvgLiftsByTheDocumentedLawUpToItsCeiling) {
   PhysicalModel model;
-  model.tvg_log_coefficient = 30;
-  model.tvg_absorption_db_per_m = 0.2;
-  model.tvg_max_db = 50;
+  model.tvg.log_coefficient = 30;
+  model.tvg.absorption_db_per_m = 0.2;
+  model.tvg.max_db = 50;
   model.gain_db = 6;
   const std::vector<float> gain = tvg_amplitudes(model, {10000, 0.01, 0, false});
   const auto level_db = [&](std::size_t line) { return 20 * std::log10(static_cast<double>(gain[line])); };
@@ -202,8 +202,8 @@ TEST(Receiver, CompressionAveragesAmplitudesOrKeepsThePeak) {
 
 TEST(Receiver, IsTheSameForAnyNumberOfThreads) {
   PingRequest request = bare_request(700);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -30;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -30;
   WorkerPool one(1);
   WorkerPool many(5);
   const EchoImage echo = uniform_echo(700, 0.02F);
@@ -265,8 +265,8 @@ TEST(Receiver, SpeckleFadesByTheLawOfMotionAndNoiseAtOnce) {
   const PingSamples turned = receiver.receive(echo, request, 0, workers);
   EXPECT_NEAR(intensity_correlation(first, turned, 0, 0), std::exp(-2 * exponent), bound);
 
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   const EchoImage silence = uniform_echo(2000, 0);
   const PingSamples noise = receiver.receive(silence, request, 0, workers);
   ++request.ping_number;
@@ -296,9 +296,9 @@ TEST(Receiver, SpeckleOfLinesThatHadNoEchoFadesAllTheSame) {
 TEST(Receiver, LinesWithoutEchoAreThoseWithAnEchoThatVanishes) {
   WorkerPool workers;
   PingRequest request = bare_request(300);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
-  request.settings.physical.broadside_stripe_db = 3.5;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
+  request.settings.physical.noise.broadside_stripe_db = 3.5;
   const PingSamples without = Receiver().receive(uniform_echo(300, 0), request, 0, workers);
   const PingSamples with = Receiver().receive(uniform_echo(300, 1e-30F), request, 0, workers);
   ASSERT_EQ(without.u16.size(), with.u16.size());
@@ -310,9 +310,9 @@ TEST(Receiver, LinesWithoutEchoAreThoseWithAnEchoThatVanishes) {
 TEST(Receiver, FrozenAndPerPingSpeckleDependOnTheRequestAlone) {
   WorkerPool workers;
   const EchoImage echo = uniform_echo(200, 0.01F);
-  for (const auto kind : {PhysicalModel::Speckle::frozen, PhysicalModel::Speckle::per_ping}) {
+  for (const auto kind : {SpeckleSettings::Kind::frozen, SpeckleSettings::Kind::per_ping}) {
     PingRequest request = bare_request(200);
-    request.settings.physical.speckle = kind;
+    request.settings.physical.speckle.kind = kind;
     request.ping_number = 9;
     const PingSamples alone = Receiver().receive(echo, request, 0, workers);
     Receiver receiver;
@@ -320,10 +320,10 @@ TEST(Receiver, FrozenAndPerPingSpeckleDependOnTheRequestAlone) {
     other.ping_number = 8;
     other.T_world_sonar.position_m.x = 1;
     const PingSamples before = receiver.receive(echo, other, 0, workers);
-    other.settings.physical.speckle = PhysicalModel::Speckle::ou;
+    other.settings.physical.speckle.kind = SpeckleSettings::Kind::ou;
     receiver.receive(echo, other, 0, workers);
     EXPECT_EQ(receiver.receive(echo, request, 0, workers).u16, alone.u16);
-    EXPECT_EQ(before.u16 == alone.u16, kind == PhysicalModel::Speckle::frozen);
+    EXPECT_EQ(before.u16 == alone.u16, kind == SpeckleSettings::Kind::frozen);
   }
 }
 
@@ -332,22 +332,22 @@ TEST(Receiver, FollowsEveryChangeOfItsSettings) {
   WorkerPool workers;
   Receiver receiver;
   PingRequest request = bare_request(200);
-  request.settings.physical.speckle = PhysicalModel::Speckle::frozen;
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -40;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::frozen;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -40;
   const EchoImage echo = uniform_echo(200, 0.001F);
   const std::vector<std::function<void(SonarSettings&)>> changes = {
       [](SonarSettings& s) { s.physical.gain_db = 6; },
-      [](SonarSettings& s) { s.physical.noise_level_db = -30; },
-      [](SonarSettings& s) { s.physical.broadside_stripe_db = 3; },
-      [](SonarSettings& s) { s.physical.tvg_log_coefficient = 10; },
+      [](SonarSettings& s) { s.physical.noise.level_db = -30; },
+      [](SonarSettings& s) { s.physical.noise.broadside_stripe_db = 3; },
+      [](SonarSettings& s) { s.physical.tvg.log_coefficient = 10; },
       [](SonarSettings& s) { s.range.step_m = 0.02; },
       [](SonarSettings& s) { s.range.compression_log2 = 1; },
       [](SonarSettings& s) { s.range.compression_peak = true; },
       [](SonarSettings& s) { s.aperture.receive_beamwidth_rad *= 2; },
       [](SonarSettings& s) { s.aperture.beam_edges_rad = equal_angle_edges(beams, 1.5); },
       [](SonarSettings& s) { s.physical.near_field_blank_m = 0.5; },
-      [](SonarSettings& s) { s.physical.noise = false; },
+      [](SonarSettings& s) { s.physical.noise.on = false; },
       [](SonarSettings& s) { s.sixteen_bit = false; }};
   PingSamples last = receiver.receive(echo, request, 0, workers);
   for (const auto& change : changes) {
@@ -388,14 +388,14 @@ TEST(Receiver, AgreesWithPlainDoubleArithmetic) {
   PingRequest request = bare_request(lines);
   request.settings.range = {lines, 0.05, 1, false};
   PhysicalModel& model = request.settings.physical;
-  model.speckle = PhysicalModel::Speckle::per_ping;
-  model.tvg_log_coefficient = 30;
-  model.tvg_absorption_db_per_m = 0.2;
+  model.speckle.kind = SpeckleSettings::Kind::per_ping;
+  model.tvg.log_coefficient = 30;
+  model.tvg.absorption_db_per_m = 0.2;
   model.gain_db = -3;
-  model.noise = true;
-  model.noise_level_db = -30;
+  model.noise.on = true;
+  model.noise.level_db = -30;
   model.near_field_blank_m = 0.7;
-  model.broadside_stripe_db = 3.5;
+  model.noise.broadside_stripe_db = 3.5;
   request.ping_number = 3;
   EchoImage echo = uniform_echo(lines, 0);
   for (std::size_t i = 0; i < echo.intensity.size(); ++i) {
@@ -454,7 +454,7 @@ TEST(Receiver, SaturatesWithoutWrapping) {
   WorkerPool workers;
   PingRequest request = bare_request(64);
   request.settings.sixteen_bit = false;
-  request.settings.physical.speckle = PhysicalModel::Speckle::off;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::off;
   const PingSamples samples = Receiver().receive(uniform_echo(64, 1e12F), request, 0, workers);
   for (const std::uint8_t v : samples.u8) {
     EXPECT_EQ(v, 255);
@@ -465,7 +465,7 @@ TEST(Receiver, QuantisesToTheNearestCode) {
   WorkerPool workers;
   PingRequest request = bare_request(1);
   request.settings.sixteen_bit = false;
-  request.settings.physical.speckle = PhysicalModel::Speckle::off;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::off;
   const auto code = [&](double amplitude) {
     return Receiver()
         .receive(uniform_echo(1, static_cast<float>(amplitude * amplitude)), request, 0, workers)
@@ -480,8 +480,8 @@ TEST(Receiver, QuantisesToTheNearestCode) {
 TEST(Receiver, NearFieldIsExactlyZero) {
   WorkerPool workers;
   PingRequest request = bare_request(200);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -20;
   request.settings.physical.near_field_blank_m = 0.7;
   const PingSamples samples = Receiver().receive(uniform_echo(200, 0.01F), request, 0, workers);
   for (std::size_t i = 0; i < 70 * beams; ++i) {
@@ -496,9 +496,9 @@ TEST(Receiver, NearFieldIsExactlyZero) {
 TEST(Receiver, BroadsideStripeRaisesNoiseInMidFan) {
   WorkerPool workers;
   PingRequest request = bare_request(2000);
-  request.settings.physical.noise = true;
-  request.settings.physical.noise_level_db = -30;
-  request.settings.physical.broadside_stripe_db = 3.5;
+  request.settings.physical.noise.on = true;
+  request.settings.physical.noise.level_db = -30;
+  request.settings.physical.noise.broadside_stripe_db = 3.5;
   const PingSamples samples = Receiver().receive(uniform_echo(2000, 0), request, 0, workers);
   const auto power_db = [&](int beam) {
     double sum = 0;

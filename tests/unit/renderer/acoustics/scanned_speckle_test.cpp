@@ -108,7 +108,7 @@ TEST(ScannedSpeckle, MotionOfTheVehicleFades) {
 
 TEST(ScannedSpeckle, FrozenSpeckleDoesNotFade) {
   PingRequest request = beam_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::frozen;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::frozen;
   Scan scan(request);
   const std::vector<double> first = scan.field_at(looking(0.4));
   EXPECT_EQ(scan.field_at(looking(0.4, {{5, 0, 0}, {1, 0, 0, 0}})), first);
@@ -117,8 +117,8 @@ TEST(ScannedSpeckle, FrozenSpeckleDoesNotFade) {
 // sinc(x / cell) in its main lobe, as in PulseCorrelation.
 TEST(ScannedSpeckle, IsCorrelatedByThePulse) {
   PingRequest request = beam_request();
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = 2 * request.settings.range.step_m;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = 2 * request.settings.range.step_m;
   Scan scan(request);
   const std::vector<double> field = scan.field_at(looking(0.4));
   const double side = 2 / std::numbers::pi;
@@ -129,7 +129,7 @@ TEST(ScannedSpeckle, IsCorrelatedByThePulse) {
 
 TEST(ScannedSpeckle, TextureComesBackToo) {
   PingRequest request = beam_request();
-  request.settings.physical.texture_nu = 1;
+  request.settings.physical.speckle.texture_nu = 1;
   Scan scan(request);
   const std::vector<double> first = scan.field_at(looking(0.4));
   EXPECT_LT(test::correlation(first, scan.field_at(looking(1.4))), 0.3);

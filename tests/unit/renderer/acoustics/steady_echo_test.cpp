@@ -87,7 +87,7 @@ TEST(SteadyEcho, BeamsReceiveAPointThroughTheirPatternAndThePulse) {
   fine.intensity.assign(static_cast<std::size_t>(fine.beams * fine.bins), 0.0F);
   const int middle = fine.beams / 2;
   cell(fine, middle, 30) = 2;
-  const PulseResponse pulse(PhysicalModel::Pulse::tone, 0.04, 0.01);
+  const PulseResponse pulse(PulseSettings::Shape::tone, 0.04, 0.01);
   const SteadyEcho steady = receive_points({{middle, 30, 0.5F}}, fine, pattern, &pulse, 32);
   double sum = 0;
   for (int line = 0; line < 60; ++line) {

@@ -56,10 +56,10 @@ TEST(Texture, HasTheQuantilesOfTheExponential) {
 
 TEST(Texture, ScatterersGrowWithTheRange) {
   PhysicalModel model;
-  model.texture_nu = 3;
-  model.texture_range_m = 10;
-  EXPECT_DOUBLE_EQ(scatterers_at(model, 10), 3);
-  EXPECT_DOUBLE_EQ(scatterers_at(model, 25), 7.5);
+  model.speckle.texture_nu = 3;
+  model.speckle.texture_range_m = 10;
+  EXPECT_DOUBLE_EQ(scatterers_at(model.speckle, 10), 3);
+  EXPECT_DOUBLE_EQ(scatterers_at(model.speckle, 25), 7.5);
 }
 
 // Index var / mean^2 of the intensity in the far half of the lines; nu is 2/3 to 4/3 of its value in the
@@ -72,9 +72,9 @@ TEST(Texture, ScintillationIndexIsOnePlusTwoOverNu) {
     Receiver receiver;
     PingRequest request = bare_request(lines);
     PhysicalModel& model = request.settings.physical;
-    model.speckle = PhysicalModel::Speckle::per_ping;
-    model.texture_nu = nu;
-    model.texture_range_m = 0.75 * lines * request.settings.range.step_m;
+    model.speckle.kind = SpeckleSettings::Kind::per_ping;
+    model.speckle.texture_nu = nu;
+    model.speckle.texture_range_m = 0.75 * lines * request.settings.range.step_m;
     double n = 0, sum = 0, square = 0, expected = 0;
     for (request.ping_number = 0; request.ping_number < 14; ++request.ping_number) {
       const std::vector<double> intensities =
@@ -95,7 +95,7 @@ TEST(Texture, StaysWhileTheSonarRests) {
   WorkerPool workers;
   Receiver receiver;
   PingRequest request = bare_request(300);
-  request.settings.physical.texture_nu = 1;
+  request.settings.physical.speckle.texture_nu = 1;
   const std::vector<std::uint16_t> first =
       receiver.receive(even_echo(request, 0.01), request, 0, workers).u16;
   ++request.ping_number;
@@ -103,7 +103,7 @@ TEST(Texture, StaysWhileTheSonarRests) {
   ++request.ping_number;
   request.T_world_sonar.position_m.x = 1;
   EXPECT_NE(receiver.receive(even_echo(request, 0.01), request, 0, workers).u16, first);
-  request.settings.physical.texture_nu = 0;
+  request.settings.physical.speckle.texture_nu = 0;
   EXPECT_NE(receiver.receive(even_echo(request, 0.01), request, 0, workers).u16, first);
 }
 

@@ -92,8 +92,8 @@ TEST(WaterClutter, DoesNotMakeSurfacesStandOut) {
   PingRequest request;
   request.settings = settings_of(0);
   request.settings.aperture.azimuth = Aperture::Azimuth::ideal;
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = 0.2;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = 0.2;
   request.T_world_sonar.position_m = {0, 0, 4};
   const World bed =
       test::make_world({test::make_body("bed", test::make_quad({-60, -60, 0}, {120, 0, 0}, {0, 120, 0}))});

@@ -90,8 +90,8 @@ PingRequest ping(int lines, std::uint64_t number) {
     request.settings.aperture.beam_edges_rad.push_back(0.8 - 1.6 * edge / beams);
   }
   request.settings.model = Model::physical;
-  request.settings.physical.speckle = PhysicalModel::Speckle::ou;
-  request.settings.physical.texture_nu = 3.0;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::ou;
+  request.settings.physical.speckle.texture_nu = 3.0;
   request.settings.range.count = lines;
   request.settings.range.step_m = 0.01;
   return request;

@@ -34,9 +34,9 @@ PingRequest request_of(int beams, double fan_rad = 2.0) {
   request.settings.aperture.beam_edges_rad = equal_angle_edges(beams, fan_rad);
   request.settings.range = {lines, 0.01, 0, false};
   PhysicalModel& model = request.settings.physical;
-  model.noise_level_db = -30;
-  model.tvg_log_coefficient = 0;
-  model.tvg_absorption_db_per_m = 0;
+  model.noise.level_db = -30;
+  model.tvg.log_coefficient = 0;
+  model.tvg.absorption_db_per_m = 0;
   model.gain_db = 0;
   model.near_field_blank_m = 0;
   request.settings.sixteen_bit = true;
@@ -103,18 +103,18 @@ TEST(ReceiverRules, NearFieldIsNotWorkedOut) {
 TEST(ReceiverRules, NoiseOfAmplitudeZeroIsNotDrawn) {
   PingRequest request = request_of(64);
   expect_within_bound(SkipRule::no_noise, request, 0);
-  request.settings.physical.noise = false;
+  request.settings.physical.noise.on = false;
   expect_within_bound(SkipRule::no_noise, request, lines);
 }
 
 TEST(ReceiverRules, SpeckleOfASonarAtRestIsKept) {
-  for (const auto speckle : {PhysicalModel::Speckle::ou, PhysicalModel::Speckle::frozen}) {
+  for (const auto speckle : {SpeckleSettings::Kind::ou, SpeckleSettings::Kind::frozen}) {
     PingRequest request = request_of(64);
-    request.settings.physical.speckle = speckle;
+    request.settings.physical.speckle.kind = speckle;
     expect_within_bound(SkipRule::unmoved_speckle, request, lines_with_echo);
   }
   PingRequest request = request_of(64);
-  request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
   expect_within_bound(SkipRule::unmoved_speckle, request, 0);
 }
 
@@ -131,12 +131,12 @@ TEST(ReceiverRules, SpeckleOfAMovingSonarIsNot) {
 // Speckle `per_ping`: a row of it for every line with an echo, and one of noise for every line.
 TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
   PingRequest scanning = request_of(1, 0.05);
-  scanning.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
+  scanning.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
   // The noise of a single beam is drawn along the range at once.
   expect_within_bound(SkipRule::narrow_aperture, scanning, lines_with_echo);
   // 21 beams 5.5 degrees apart, each one degree wide; the odd number leaves one vector that is not full.
   PingRequest sparse = request_of(21, 2.0);
-  sparse.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
+  sparse.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
   expect_within_bound(SkipRule::narrow_aperture, sparse, lines + lines_with_echo);
   PingRequest dense = request_of(256, 2.0);
   expect_within_bound(SkipRule::narrow_aperture, dense, 0);
@@ -146,18 +146,18 @@ TEST(ReceiverRules, BeamsThatShareNothingAreNotFiltered) {
 TEST(ReceiverRules, LinesAsLongAsThePulseAreNotJoined) {
   PingRequest request = request_of(64);
   expect_within_bound(SkipRule::long_bins, request, lines + lines_with_echo);
-  request.settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  request.settings.physical.range_cell_m = 0.02;
+  request.settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  request.settings.physical.pulse.range_cell_m = 0.02;
   expect_within_bound(SkipRule::long_bins, request, 0);
 }
 
 // nu is 30 at 0.4 m and exceeds 20 beyond 0.267 m: in the lines with an echo, from 27 to 49.
 TEST(ReceiverRules, ManyScatterersAreNotTextured) {
   PingRequest request = request_of(64);
-  request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
-  request.settings.physical.noise = false;
-  request.settings.physical.texture_nu = 30;
-  request.settings.physical.texture_range_m = 0.4;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
+  request.settings.physical.noise.on = false;
+  request.settings.physical.speckle.texture_nu = 30;
+  request.settings.physical.speckle.texture_range_m = 0.4;
   EXPECT_EQ(two_pings(SkipRule::many_scatterers, {}, request).skipped, 23u);
   const SkipSwitches off = SkipSwitches{}.turn_off(SkipRule::many_scatterers);
   EXPECT_EQ(two_pings(SkipRule::many_scatterers, off, request).skipped, 0u);
@@ -188,7 +188,7 @@ TEST(ReceiverRules, ManyScatterersAreNotTextured) {
 // Lines of 1 cm: the ring-down ends behind the 60th.
 TEST(ReceiverRules, RingDownIsNotFollowedBeyondItsEnd) {
   PingRequest request = request_of(64);
-  request.settings.physical.noise = false;
+  request.settings.physical.noise.on = false;
   request.settings.physical.ring_down = {true, -3, 0.2, 0.6, 0};
   const Outcome on = two_pings(SkipRule::ring_down_over, {}, request);
   EXPECT_EQ(on.skipped, 40u);
@@ -207,7 +207,7 @@ TEST(ReceiverRules, RingDownIsNotFollowedBeyondItsEnd) {
 TEST(ReceiverRules, PingsThatAreNotHitAreLeftAlone) {
   PingRequest request = request_of(64);
   expect_within_bound(SkipRule::no_interference, request, 0);  // there is no interference
-  request.settings.physical.interference.probability = 1e-12;
+  request.settings.physical.noise.interference.probability = 1e-12;
   expect_within_bound(SkipRule::no_interference, request, lines);
 }
 

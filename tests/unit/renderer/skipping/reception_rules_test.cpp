@@ -122,20 +122,20 @@ TEST(ReceptionRules, PerfectElementsLeakNothing) {
 
 TEST(ReceptionRules, APulseFarShorterThanALineIsAPoint) {
   SonarSettings settings = gemini();
-  settings.physical.pulse = PhysicalModel::Pulse::tone;
-  settings.physical.range_cell_m = settings.range.step_m / 51;
+  settings.physical.pulse.shape = PulseSettings::Shape::tone;
+  settings.physical.pulse.range_cell_m = settings.range.step_m / 51;
   expect_within_bound(SkipRule::short_pulse, settings, 1);
   // Two cells to a line are not enough: an eighth of a tone and a fifth of a chirp fall outside.
-  settings.physical.range_cell_m = settings.range.step_m / 2;
+  settings.physical.pulse.range_cell_m = settings.range.step_m / 2;
   expect_within_bound(SkipRule::short_pulse, settings, 0);
-  settings.physical.pulse = PhysicalModel::Pulse::chirp;
+  settings.physical.pulse.shape = PulseSettings::Shape::chirp;
   expect_within_bound(SkipRule::short_pulse, settings, 0);
 }
 
 TEST(ReceptionRules, TablesAreMadeOnce) {
   SonarSettings settings = gemini();
-  settings.physical.pulse = PhysicalModel::Pulse::chirp;
-  settings.physical.range_cell_m = 0.02;
+  settings.physical.pulse.shape = PulseSettings::Shape::chirp;
+  settings.physical.pulse.range_cell_m = 0.02;
   expect_within_bound(SkipRule::unchanged_settings, settings, 2);
 }
 

@@ -26,9 +26,9 @@ PingRequest plain_request() {
   settings.range = {lines, 0.01, 0, false};
   settings.sixteen_bit = true;
   PhysicalModel& model = settings.physical;
-  model.tvg_log_coefficient = model.tvg_absorption_db_per_m = model.gain_db = 0;
-  model.noise = false;
-  model.near_field_blank_m = model.broadside_stripe_db = 0;
+  model.tvg.log_coefficient = model.tvg.absorption_db_per_m = model.gain_db = 0;
+  model.noise.on = false;
+  model.near_field_blank_m = model.noise.broadside_stripe_db = 0;
   return request;
 }
 
@@ -101,7 +101,7 @@ TEST(Extremes, S13PaperSpeckleHasItsMomentsFromNoneToHuge) {
 TEST(Extremes, S13RayleighHoldsForTheFirstAndTheLastSeedAndPing) {
   constexpr auto last = std::numeric_limits<std::uint64_t>::max();
   PingRequest request = plain_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::per_ping;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::per_ping;
   Receiver receiver;
   WorkerPool workers(2);
   std::vector<std::vector<std::uint16_t>> images;
@@ -126,17 +126,17 @@ TEST(Extremes, S13RayleighHoldsForTheFirstAndTheLastSeedAndPing) {
 
 TEST(Extremes, S13NoiseFromNothingToFarAboveFullScale) {
   PingRequest request = plain_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::off;
-  request.settings.physical.noise = true;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::off;
+  request.settings.physical.noise.on = true;
   for (const double level_db : {-1000.0, -300.0}) {
-    request.settings.physical.noise_level_db = level_db;
+    request.settings.physical.noise.level_db = level_db;
     EXPECT_EQ(heard(request, 0).mean, 0) << level_db;
     EXPECT_NEAR(heard(request, 0.25F).mean, 0.5, 1e-4) << level_db;
   }
-  request.settings.physical.noise_level_db = -20;
+  request.settings.physical.noise.level_db = -20;
   EXPECT_NEAR(heard(request, 0).mean, 0.1 * std::sqrt(std::numbers::pi) / 2, 2e-3);
   for (const double level_db : {100.0, 300.0}) {
-    request.settings.physical.noise_level_db = level_db;
+    request.settings.physical.noise.level_db = level_db;
     EXPECT_NEAR(heard(request, 0).mean, 1.0, 1e-4) << level_db;
   }
 }
@@ -144,11 +144,11 @@ TEST(Extremes, S13NoiseFromNothingToFarAboveFullScale) {
 // Motion of any size, with any aperture, leaves speckle Rayleigh.
 TEST(Extremes, S13SpeckleSurvivesEveryMotion) {
   PingRequest request = plain_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::ou;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::ou;
   Receiver receiver;
   WorkerPool workers(2);
   for (const double aperture_m : {1e-12, 0.1, 1e12}) {
-    request.settings.physical.aperture_m = aperture_m;
+    request.settings.physical.speckle.aperture_m = aperture_m;
     for (const double x_m : {0.0, 1e-15, 1e-3, 1e8, -1e8, 0.0}) {
       request.T_world_sonar.position_m.x = x_m;
       ++request.ping_number;
@@ -164,15 +164,15 @@ TEST(Extremes, S17TvgIsFiniteFromTheFirstMicrometreOn) {
   PhysicalModel model;
   for (const double step_m : {1e-6, 0.01, 1e4}) {
     for (const double coefficient : {0.0, 20.0, 30.0, 40.0, 60.0}) {
-      model.tvg_log_coefficient = coefficient;
-      model.tvg_absorption_db_per_m = 10;
+      model.tvg.log_coefficient = coefficient;
+      model.tvg.absorption_db_per_m = 10;
       const std::vector<float> gain = tvg_amplitudes(model, {10, step_m, 0, false});
       const double first_db =
-          std::min(coefficient * std::log10(step_m / 2) + 20 * step_m / 2, model.tvg_max_db);
+          std::min(coefficient * std::log10(step_m / 2) + 20 * step_m / 2, model.tvg.max_db);
       EXPECT_NEAR(20 * std::log10(static_cast<double>(gain[0])), first_db + model.gain_db, 1e-3);
       for (std::size_t k = 0; k < gain.size(); ++k) {
         EXPECT_TRUE(std::isfinite(gain[k]) && gain[k] > 0) << step_m << ' ' << coefficient;
-        EXPECT_LE(20 * std::log10(static_cast<double>(gain[k])), model.tvg_max_db + model.gain_db + 1e-3);
+        EXPECT_LE(20 * std::log10(static_cast<double>(gain[k])), model.tvg.max_db + model.gain_db + 1e-3);
       }
     }
   }
@@ -181,7 +181,7 @@ TEST(Extremes, S17TvgIsFiniteFromTheFirstMicrometreOn) {
 // An echo far above full scale gives the highest code in both formats and does not wrap around.
 TEST(Extremes, S17SaturationEverywhereDoesNotWrap) {
   PingRequest request = plain_request();
-  request.settings.physical.speckle = PhysicalModel::Speckle::off;
+  request.settings.physical.speckle.kind = SpeckleSettings::Kind::off;
   Receiver receiver;
   WorkerPool workers(2);
   for (const float intensity : {1.0F, 1.01F, 2.0F, 1e6F, 1e30F, std::numeric_limits<float>::max()}) {

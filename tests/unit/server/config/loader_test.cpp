@@ -114,7 +114,7 @@ TEST_F(Loader, ComputesAbsorptionFromTheWaterAtTheFrequencyOfTheDevice) {
   const double expected_db_per_m = 0.161088 * std::pow(723.38 / 720.0, 2);
   const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
   EXPECT_NEAR(model.absorption_db_per_m, expected_db_per_m, 1e-6);
-  EXPECT_NEAR(model.tvg_absorption_db_per_m, expected_db_per_m, 1e-6);
+  EXPECT_NEAR(model.tvg.absorption_db_per_m, expected_db_per_m, 1e-6);
 }
 
 TEST_F(Loader, TakesWaterPropertiesThatAreGivenOutright) {
@@ -123,7 +123,7 @@ TEST_F(Loader, TakesWaterPropertiesThatAreGivenOutright) {
                                    "water: {absorption_db_per_km: 80, sound_speed_mps: 1482.5}\n");
   const render::PhysicalModel& model = loaded.config.heads.at(0).acoustics.physical;
   EXPECT_DOUBLE_EQ(model.absorption_db_per_m, 0.080);
-  EXPECT_DOUBLE_EQ(model.tvg_absorption_db_per_m, 0.120);
+  EXPECT_DOUBLE_EQ(model.tvg.absorption_db_per_m, 0.120);
   EXPECT_DOUBLE_EQ(gemini_of(loaded.config).device.water_sound_speed_mps, 1482.5);
 }
 
@@ -280,7 +280,7 @@ TEST_F(Loader, NoiseFollowsFromABudget) {
     return load(minimal_config + "    acoustics: {physical: " + text + "}\n");
   };
   const auto level_db = [&](const std::string& text) {
-    return physical(text).config.heads.at(0).acoustics.physical.noise_level_db;
+    return physical(text).config.heads.at(0).acoustics.physical.noise.level_db;
   };
   // -15 + 20 log10 723.38 - 30 + 10 log10 94000 - 200
   EXPECT_NEAR(level_db("{noise_budget: {}}"), -138.08, 0.01);

@@ -352,10 +352,10 @@ OfflineOptions quiet_options() {
 }
 
 void take_noise_off(HeadConfig& head) {
-  head.acoustics.physical.noise = false;
-  head.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
+  head.acoustics.physical.noise.on = false;
+  head.acoustics.physical.speckle.kind = render::SpeckleSettings::Kind::off;
   head.acoustics.physical.ring_down.on = false;
-  head.acoustics.physical.interference.probability = 0.0;
+  head.acoustics.physical.noise.interference.probability = 0.0;
 }
 
 TEST(FanFrames, HavePortOnTheLeftOfTheirPictures) {

@@ -48,7 +48,7 @@ TEST(OracleSceneHash, ChangesWithWhatIsHeardAndWithNothingElse) {
   renamed.name = renamed.bodies[0].name = renamed.bodies[0].parts[0].material.name = "other";
   render::SonarSettings resampled = settings;
   resampled.sampling.rows = 17;
-  resampled.physical.noise = !resampled.physical.noise;
+  resampled.physical.noise.on = !resampled.physical.noise.on;
   render::Pose negated = pose;
   negated.orientation = -negated.orientation;
   EXPECT_EQ(scene_hash(renamed, negated, resampled), hash);

@@ -47,12 +47,12 @@ constexpr double level = 0.05;
 
 render::SonarSettings even_gain() {
   render::SonarSettings settings = server::gemini_acoustics();
-  settings.physical.pulse = render::PhysicalModel::Pulse::point;  // lines are independent
-  settings.physical.texture_nu = 0;                               // and have a Rayleigh distribution
-  settings.physical.tvg_log_coefficient = 0;
-  settings.physical.tvg_absorption_db_per_m = 0;
+  settings.physical.pulse.shape = render::PulseSettings::Shape::point;  // lines are independent
+  settings.physical.speckle.texture_nu = 0;                             // and have a Rayleigh distribution
+  settings.physical.tvg.log_coefficient = 0;
+  settings.physical.tvg.absorption_db_per_m = 0;
   settings.physical.gain_db = 0;
-  settings.physical.noise_level_db = 10 * std::log10(level);
+  settings.physical.noise.level_db = 10 * std::log10(level);
   return settings;
 }
 
@@ -129,7 +129,7 @@ void expect_speckle_of_the_array(const Image& image) {
 
 TEST(GeminiImage, EchoOfAnEvenWallIsRayleighAndCorrelatedByTheArray) {
   render::SonarSettings settings = even_gain();
-  settings.physical.noise = false;
+  settings.physical.noise.on = false;
   expect_speckle_of_the_array(Client(settings, 2100).images(1, static_cast<float>(level)).front());
 }
 
@@ -154,7 +154,7 @@ double correlation(const Image& a, const Image& b) {
 // A sonar and a scene at rest, noise 20 dB below the echo: the pattern repeats, the noise does not.
 TEST(GeminiImage, EchoesOfASonarAtRestRepeatAndNoiseDoesNot) {
   render::SonarSettings settings = even_gain();
-  settings.physical.noise_level_db -= 20;
+  settings.physical.noise.level_db -= 20;
   const std::vector<Image> echo = Client(settings, 1100).images(3, static_cast<float>(level));
   EXPECT_GE(correlation(echo[0], echo[1]), 0.95);
   EXPECT_GE(correlation(echo[0], echo[2]), 0.95);
@@ -187,7 +187,7 @@ TEST(GeminiImage, NoiseFloorRisesWithTheTvgAndIsFlatOverTheLastQuarterOf50m) {
   EXPECT_LT(*most - *least, 1.0);
   EXPECT_GT(*least, 20 * std::log10(10)) << "it is seen";
   EXPECT_LT(*most, 20 * std::log10(128)) << "and leaves room for echoes";
-  const double absorption = server::gemini_acoustics().physical.tvg_absorption_db_per_m;
+  const double absorption = server::gemini_acoustics().physical.tvg.absorption_db_per_m;
   EXPECT_NEAR(mean_level_db(image, 29.5, 30.5) - mean_level_db(image, 24.5, 25.5),
               30 * std::log10(30.0 / 25) + 2 * absorption * 5, 0.5);
 }

@@ -50,7 +50,7 @@ TEST(MicronImage, CodesAreOnTheHalfDecibelGridAndNoneIsAbove191) {
 // for 2 to 4 m: at 88 % more than 20 dB at 1.5 m, and almost 0 at 4 m.
 TEST(MicronImage, RingDownPeaksAndIsGoneWithinAMetre) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.interference.probability = 0;
+  head.acoustics.physical.noise.interference.probability = 0;
   MicronClient client{head};
   const double nominal_gain_db = client.gain_db;
   const auto measure = [&](double gain_percent) {
@@ -100,8 +100,8 @@ TEST(MicronImage, AHeadThatOnlyListensDoesNotRing) {
 // floor of 4 to 6 dB, with a standard deviation of levels of 2.5 to 3.2 dB.
 TEST(MicronImage, EmptyWaterAlwaysShowsSomething) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.interference.probability = 0;
-  head.acoustics.physical.noise_by_bearing_db = 0;
+  head.acoustics.physical.noise.interference.probability = 0;
+  head.acoustics.physical.noise.by_bearing_db = 0;
   MicronClient client{head, 0.064, 780};
   client.gain_db = 0.28 * 80;
   double zeros = 0, count = 0, floor_db = 0, squares = 0, far = 0;
@@ -138,11 +138,11 @@ TEST(MicronImage, NeighbouringBinsOverlap) {
       if (overlap != 0.55) {  // the default
         head.acoustics.physical.bin_overlap = overlap;
       }
-      head.acoustics.physical.tvg_log_coefficient = 0;
-      head.acoustics.physical.tvg_absorption_db_per_m = 0;
-      head.acoustics.physical.interference.probability = 0;
-      head.acoustics.physical.noise_by_bearing_db = 0;
-      head.acoustics.physical.noise_level_db = (echo ? 15 : 40) - 80 + 9;
+      head.acoustics.physical.tvg.log_coefficient = 0;
+      head.acoustics.physical.tvg.absorption_db_per_m = 0;
+      head.acoustics.physical.noise.interference.probability = 0;
+      head.acoustics.physical.noise.by_bearing_db = 0;
+      head.acoustics.physical.noise.level_db = (echo ? 15 : 40) - 80 + 9;
       MicronClient client{head, 0.063, 794};
       std::vector<double> here, next, after_next;
       for (int step = 0; step < 40; ++step) {  // three beams from each other
@@ -172,11 +172,11 @@ TEST(MicronImage, NeighbouringBinsOverlap) {
 // not. An even echo 20 dB above the noise, and noise alone, at 40 dB in every bin; levels in dB.
 TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.tvg_log_coefficient = 0;
-  head.acoustics.physical.tvg_absorption_db_per_m = 0;
-  head.acoustics.physical.noise_level_db = 40 - 80 + 9 - 20;
-  head.acoustics.physical.interference.probability = 0;
-  head.acoustics.physical.noise_by_bearing_db = 0;
+  head.acoustics.physical.tvg.log_coefficient = 0;
+  head.acoustics.physical.tvg.absorption_db_per_m = 0;
+  head.acoustics.physical.noise.level_db = 40 - 80 + 9 - 20;
+  head.acoustics.physical.noise.interference.probability = 0;
+  head.acoustics.physical.noise.by_bearing_db = 0;
   const auto sweep = [](MicronClient& client, float intensity) {
     std::vector<double> levels;
     for (double bearing = -3; bearing < 3; bearing += 0.05) {
@@ -190,7 +190,7 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
   const auto echo = static_cast<float>(std::pow(10, (40 - 80 + 9) / 10.0));
   MicronClient client{head};
   const double of_echo = test::correlation(sweep(client, echo), sweep(client, echo));
-  head.acoustics.physical.noise_level_db += 20;
+  head.acoustics.physical.noise.level_db += 20;
   MicronClient hearing_noise{head};
   const double of_noise = test::correlation(sweep(hearing_noise, 0), sweep(hearing_noise, 0));
   std::printf("echo %.3f, noise %.3f\n", of_echo, of_noise);
@@ -203,9 +203,9 @@ TEST(MicronImage, EchoesRepeatFromSweepToSweepAndNoiseDoesNot) {
 // decibels. Noise shares 0; its mean level differs between bearings by up to 7 dB and is constant.
 TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.tvg_log_coefficient = 0;
-  head.acoustics.physical.tvg_absorption_db_per_m = 0;
-  head.acoustics.physical.interference.probability = 0;
+  head.acoustics.physical.tvg.log_coefficient = 0;
+  head.acoustics.physical.tvg.absorption_db_per_m = 0;
+  head.acoustics.physical.noise.interference.probability = 0;
   const auto sweep = [](MicronClient& client, float intensity) {
     std::vector<std::vector<double>> levels;
     for (int step = 0; step < 200; ++step) {
@@ -237,7 +237,7 @@ TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
   const auto echo = sweep(echoes, static_cast<float>(std::pow(10, (40 - 80 + 9) / 10.0)));
   std::printf("lines share %.3f %.3f %.3f\n", shared(echo, 1), shared(echo, 2), shared(echo, 3));
   EXPECT_NEAR(shared(echo, 1), 0.40, 0.04);
-  head.acoustics.physical.noise_level_db = 40 - 80 + 9;
+  head.acoustics.physical.noise.level_db = 40 - 80 + 9;
   MicronClient noises{head};
   const std::vector<double> first = means(sweep(noises, 0));
   const std::vector<double> second = means(sweep(noises, 0));
@@ -246,7 +246,7 @@ TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
               test::correlation(first, second));
   EXPECT_NEAR(most - least, 6.5, 1);
   EXPECT_GT(test::correlation(first, second), 0.95);
-  head.acoustics.physical.noise_by_bearing_db = 0;
+  head.acoustics.physical.noise.by_bearing_db = 0;
   MicronClient even{head};
   EXPECT_LT(std::abs(shared(sweep(even, 0), 1)), 0.02);
 }
@@ -256,13 +256,13 @@ TEST(MicronImage, LinesShareTheirEchoWithTheNextAndNoiseWithTheNextSweep) {
 // others 4 m * 3 / (4 ln 2) / 25 m = 17.3 %: 25.6 % in all (at 60 m one in six).
 TEST(MicronImage, OnePingOfSixIsHitByABurstOfInterference) {
   server::HeadConfig head = server::micron_type().make_default();
-  head.acoustics.physical.tvg_log_coefficient = 0;
-  head.acoustics.physical.tvg_absorption_db_per_m = 0;
-  head.acoustics.physical.noise_level_db = 40 - 80 + 9;
-  EXPECT_EQ(head.acoustics.physical.interference.least_db, 2);
-  EXPECT_EQ(head.acoustics.physical.interference.most_db, 11);
-  head.acoustics.physical.interference.least_db = 10;
-  head.acoustics.physical.interference.most_db = 10;
+  head.acoustics.physical.tvg.log_coefficient = 0;
+  head.acoustics.physical.tvg.absorption_db_per_m = 0;
+  head.acoustics.physical.noise.level_db = 40 - 80 + 9;
+  EXPECT_EQ(head.acoustics.physical.noise.interference.least_db, 2);
+  EXPECT_EQ(head.acoustics.physical.noise.interference.most_db, 11);
+  head.acoustics.physical.noise.interference.least_db = 10;
+  head.acoustics.physical.noise.interference.most_db = 10;
   MicronClient client{head};
   constexpr int window = 20;  // 1 m: a mean intensity known to 1 dB
   constexpr int pings = 3000;

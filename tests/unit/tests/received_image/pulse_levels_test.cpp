@@ -27,7 +27,7 @@ namespace {
 render::SonarSettings gemini_with(std::uint16_t cycles, double range_m, double rounding_m = -1) {
   server::HeadConfig head = server::gemini_type().make_default();
   if (rounding_m >= 0) {
-    head.acoustics.physical.tone_rounding_m = rounding_m;
+    head.acoustics.physical.pulse.tone_rounding_m = rounding_m;
   }
   gemini::PingSettings wanted;
   wanted.range_m = range_m;
@@ -141,8 +141,8 @@ TEST(PulseLevels, APing360IsFarDownBesideItsBand) {
 double noise_db(render::SonarSettings settings) {
   settings.physical.gain_db += 30;
   settings.physical.ring_down.on = false;
-  settings.physical.interference.probability = 0;
-  settings.physical.noise_by_bearing_db = 0;
+  settings.physical.noise.interference.probability = 0;
+  settings.physical.noise.by_bearing_db = 0;
   render::PingRequest request;
   request.settings = settings;
   const render::EchoImage water{1, settings.range.count,

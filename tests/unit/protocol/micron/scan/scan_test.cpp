@@ -164,12 +164,12 @@ HeadConfig plain_head() {
   auto device = std::make_shared<MicronConfig>();
   device->chirp_bandwidth_hz = 0;
   config.device = std::move(device);
-  config.acoustics.physical.noise = false;
-  config.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
+  config.acoustics.physical.noise.on = false;
+  config.acoustics.physical.speckle.kind = render::SpeckleSettings::Kind::off;
   config.acoustics.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
   config.acoustics.physical.multipath.level = render::MultipathSettings::Level::off;
   config.acoustics.physical.ring_down.on = false;
-  config.acoustics.physical.interference.probability = 0;
+  config.acoustics.physical.noise.interference.probability = 0;
   config.acoustics.aperture.elevation = render::Aperture::Elevation::top_hat;
   return config;
 }

@@ -66,16 +66,16 @@ TEST(OculusSettings, FrequenciesHaveBeamsWaterAndNoiseOfTheirOwn) {
   const render::SonarSettings high = settings_of(fire_with(2, 256));
   EXPECT_NEAR(low.aperture.receive_beamwidth_rad, 1.0 * degree, 1e-12);
   EXPECT_NEAR(high.aperture.receive_beamwidth_rad, 0.6 * degree, 1e-12);
-  EXPECT_NEAR(low.physical.range_cell_m, 4e-3, 1e-12);
-  EXPECT_NEAR(high.physical.range_cell_m, 2.5e-3, 1e-12);
+  EXPECT_NEAR(low.physical.pulse.range_cell_m, 4e-3, 1e-12);
+  EXPECT_NEAR(high.physical.pulse.range_cell_m, 2.5e-3, 1e-12);
   EXPECT_NEAR(low.physical.multipath.wavelength_m / high.physical.multipath.wavelength_m, 1200.0 / 750.0,
               1e-9);
   EXPECT_GT(high.physical.absorption_db_per_m, 1.5 * low.physical.absorption_db_per_m);
   // The time-varied gain uses the absorption at each frequency.
-  EXPECT_NEAR(high.physical.tvg_absorption_db_per_m - low.physical.tvg_absorption_db_per_m,
+  EXPECT_NEAR(high.physical.tvg.absorption_db_per_m - low.physical.tvg.absorption_db_per_m,
               high.physical.absorption_db_per_m - low.physical.absorption_db_per_m, 1e-12);
   // Thermal noise rises with 20 log10 of the frequency.
-  EXPECT_NEAR(high.physical.noise_level_db - low.physical.noise_level_db, 20 * std::log10(1200.0 / 750.0),
+  EXPECT_NEAR(high.physical.noise.level_db - low.physical.noise.level_db, 20 * std::log10(1200.0 / 750.0),
               1e-9);
 }
 

@@ -28,8 +28,8 @@ class Sounder {
       : head_(ping1d_type().make_default()), renderer_(world, {render::EngineKind::cpu, 1}) {
     head_.acoustics = ping1d_acoustics(model);
     if (!speckle) {
-      head_.acoustics.physical.speckle = render::PhysicalModel::Speckle::off;
-      head_.acoustics.physical.noise = false;
+      head_.acoustics.physical.speckle.kind = render::SpeckleSettings::Kind::off;
+      head_.acoustics.physical.noise.on = false;
     }
   }
 

@@ -31,7 +31,7 @@ TEST(Ping360Settings, RangesAndPulseAreThoseOfTheCommand) {
   const render::SonarSettings settings = settings_of(usual_command());
   EXPECT_EQ(settings.range.count, 1200);
   EXPECT_NEAR(settings.range.step_m, 888 * 25e-9 * 1500.0 / 2.0, 1e-12);
-  EXPECT_NEAR(settings.physical.range_cell_m, 0.075, 1e-12);
+  EXPECT_NEAR(settings.physical.pulse.range_cell_m, 0.075, 1e-12);
   EXPECT_TRUE(settings.transmit);
 }
 
@@ -51,15 +51,15 @@ TEST(Ping360Settings, TheRingDownLastsAsMuchLongerAsTheTone) {
 // kHz.
 TEST(Ping360Settings, LevelAndAbsorptionAreThoseOfTheFrequency) {
   ping360::Transducer command = usual_command();
-  EXPECT_NEAR(settings_of(command).physical.band_loss_db, 0, 0.01);
+  EXPECT_NEAR(settings_of(command).physical.pulse.band_loss_db, 0, 0.01);
   const double usual_db_per_m = settings_of(command).physical.absorption_db_per_m;
   const double usual_wavelength_m = settings_of(command).physical.multipath.wavelength_m;
   command.transmit_frequency_khz = 500;
-  EXPECT_NEAR(settings_of(command).physical.band_loss_db, -20.1, 0.1);
+  EXPECT_NEAR(settings_of(command).physical.pulse.band_loss_db, -20.1, 0.1);
   EXPECT_NEAR(settings_of(command).physical.multipath.wavelength_m, usual_wavelength_m * 740 / 500, 1e-9);
   const double low_db_per_m = settings_of(command).physical.absorption_db_per_m;
   command.transmit_frequency_khz = 1000;
-  EXPECT_NEAR(settings_of(command).physical.band_loss_db, -15.5, 0.1);
+  EXPECT_NEAR(settings_of(command).physical.pulse.band_loss_db, -15.5, 0.1);
   const double high_db_per_m = settings_of(command).physical.absorption_db_per_m;
   EXPECT_NEAR(high_db_per_m - low_db_per_m, 0.21, 0.06);
   EXPECT_LT(low_db_per_m, usual_db_per_m);
