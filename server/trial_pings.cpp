@@ -97,10 +97,11 @@ std::string TrialPings::view(std::size_t head, const std::optional<render::Pose>
     return looks;
   }
   const render::SonarSettings usual = usual_settings(settings);
-  return fmt::format("{}; {}", looks,
-                     bed_text(view_of_bed(world_, moved, config_.vehicle_model,
-                                          *T_world_vehicle * settings.T_vehicle_sonar, usual),
-                              usual.range.max_range_m()));
+  return fmt::format(
+      "{}; {}", looks,
+      bed_text(view_of_bed(world_, moved, config_.vehicle_model, *T_world_vehicle * settings.T_vehicle_sonar,
+                           usual.aperture, usual.range.max_range_m()),
+               usual.range.max_range_m()));
 }
 
 }  // namespace sonard::server

@@ -48,4 +48,14 @@ bool CachedEcho::fits(const PingRequest& wanted, const SonarMotion& motion_wante
          (seed == wanted.seed || !has_random_array(wanted.settings));
 }
 
+void CachedEcho::keep_inputs(const PingRequest& request, const SonarMotion& motion_used,
+                             std::uint64_t revision) {
+  if (!same_echo(settings, request.settings)) {
+    settings = request.settings;
+  }
+  seed = request.seed;
+  motion = motion_used;
+  world_revision = revision;
+}
+
 }  // namespace sonard::render

@@ -20,6 +20,8 @@ struct CachedEcho {
 
   /// Whether all inputs of the mean echo are the stored ones.
   bool fits(const PingRequest& wanted, const SonarMotion& motion_wanted, std::uint64_t revision) const;
+  /// Stores the inputs of `image`. Copies the settings only if they give another echo than the stored ones.
+  void keep_inputs(const PingRequest& request, const SonarMotion& motion_used, std::uint64_t revision);
 };
 
 }  // namespace sonard::render

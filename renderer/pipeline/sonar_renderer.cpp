@@ -319,10 +319,11 @@ struct SonarRenderer::Impl {
     }
     PointSpread& spread = point_spreads[head];
     spread.prepare(request.settings, request.seed, head, skip, statistics.skipped);
-    const CachedEcho made_of{{}, request.settings, request.seed, motion, world_revision};
+    CachedEcho made_of{{}, request.settings, request.seed, motion, world_revision};
     return &begun
-                .emplace(head, Begun{made_of, spread.has_pattern() ? PointSpread::sampled(request.settings)
-                                                                   : request.settings})
+                .emplace(head, Begun{std::move(made_of), spread.has_pattern()
+                                                             ? PointSpread::sampled(request.settings)
+                                                             : request.settings})
                 .first->second;
   }
 
@@ -403,11 +404,8 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int head
   }
   cached.world_revision = 0;  // until the image is complete
   impl_->render_echo(request, head, motion, cached.image);
-  cached.settings = request.settings;
-  cached.seed = request.seed;
-  cached.motion = motion;
   cached.sees_surface = impl_->statistics.sees_surface;
-  cached.world_revision = impl_->world_revision;
+  cached.keep_inputs(request, motion, impl_->world_revision);
   return cached.image;
 }
 

@@ -3,26 +3,19 @@
 
 namespace sonard::render {
 
-namespace {
-
-bool same_grid(const SonarSettings& a, const SonarSettings& b) {
-  return a.aperture.beam_edges_rad == b.aperture.beam_edges_rad &&
-         a.aperture.vertical_beamwidth_rad == b.aperture.vertical_beamwidth_rad &&
-         a.aperture.elevation == b.aperture.elevation && a.sampling.views == b.sampling.views &&
-         a.sampling.columns_per_view == b.sampling.columns_per_view && a.sampling.rows == b.sampling.rows &&
-         grid_options(a) == grid_options(b);
-}
-
-}  // namespace
-
-bool GridCache::prepare(const SonarSettings& settings, bool may_keep) {
-  if (may_keep && made_of_ && same_grid(*made_of_, settings)) {
+bool GridCache::prepare(const Aperture& aperture, const Sampling& sampling, const GridOptions& options,
+                        bool may_keep) {
+  if (may_keep && made_of_ && made_of_->aperture.beam_edges_rad == aperture.beam_edges_rad &&
+      made_of_->aperture.vertical_beamwidth_rad == aperture.vertical_beamwidth_rad &&
+      made_of_->aperture.elevation == aperture.elevation && made_of_->sampling.views == sampling.views &&
+      made_of_->sampling.columns_per_view == sampling.columns_per_view &&
+      made_of_->sampling.rows == sampling.rows && made_of_->options == options) {
     return true;
   }
   made_of_.reset();
   weights_.reset();
-  grid_ = make_sample_grid(settings.aperture, settings.sampling, grid_options(settings));
-  made_of_ = settings;
+  grid_ = make_sample_grid(aperture, sampling, options);
+  made_of_ = {aperture, sampling, options};
   return false;
 }
 

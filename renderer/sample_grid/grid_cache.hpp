@@ -4,8 +4,9 @@
 
 #include <optional>
 
+#include "renderer/aperture.hpp"
 #include "renderer/sample_grid/sample_grid.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/sampling.hpp"
 
 namespace sonard::render {
 
@@ -13,11 +14,11 @@ namespace sonard::render {
 /// ping.
 class GridCache {
  public:
-  /// Provides the grid for the settings.
+  /// Provides the grid of make_sample_grid().
   /// @param may_keep the cached grid may be used if it is equal
   /// @return true if the cached grid was used; false: rebuild everything that was made from it
   /// @throws RequestError see make_sample_grid()
-  bool prepare(const SonarSettings& settings, bool may_keep);
+  bool prepare(const Aperture& aperture, const Sampling& sampling, const GridOptions& options, bool may_keep);
   const SampleGrid& grid() const { return grid_; }
   /// Weights of the grid, computed on first use.
   const CellWeights& weights() {
@@ -30,7 +31,12 @@ class GridCache {
  private:
   SampleGrid grid_;
   std::optional<CellWeights> weights_;
-  std::optional<SonarSettings> made_of_;
+  struct Source {
+    Aperture aperture;
+    Sampling sampling;
+    GridOptions options;
+  };
+  std::optional<Source> made_of_;
 };
 
 }  // namespace sonard::render

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "renderer/sonar_settings.hpp"
+
 namespace sonard::server {
 namespace {
 

@@ -8,8 +8,12 @@
 #include <string>
 
 #include "protocol/common/device.hpp"
-#include "renderer/sonar_settings.hpp"
+#include "renderer/sampling.hpp"
 #include "server/clock/clock.hpp"
+
+namespace sonard::render {
+struct SonarSettings;
+}
 
 namespace sonard::server {
 

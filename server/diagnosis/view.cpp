@@ -69,12 +69,12 @@ double nearest_to_origin(const glm::dvec2& a, const glm::dvec2& b) {
 /// side.
 class BeamPlane {
  public:
-  BeamPlane(const render::Pose& T_world_sonar, const render::SonarSettings& settings) {
+  BeamPlane(const render::Pose& T_world_sonar, const render::Aperture& aperture) {
     const glm::dvec3 up = T_world_sonar.orientation * glm::dvec3(0, 0, 1);
     const glm::dvec3 port = T_world_sonar.orientation * glm::dvec3(0, 1, 0);
     is_upright_ = std::abs(up.z) >= std::abs(port.z);
-    const std::vector<double>& edges = settings.aperture.beam_edges_rad;  // to port
-    const double half_rad = 0.5 * settings.aperture.vertical_beamwidth_rad;
+    const std::vector<double>& edges = aperture.beam_edges_rad;  // to port
+    const double half_rad = 0.5 * aperture.vertical_beamwidth_rad;
     const double from_rad = is_upright_ || edges.empty() ? -half_rad : std::min(edges.front(), edges.back());
     const double to_rad = is_upright_ || edges.empty() ? half_rad : std::max(edges.front(), edges.back());
     constexpr double widest_rad = 0.49 * std::numbers::pi;
@@ -163,7 +163,7 @@ std::string looks_text(const render::Pose& T_vehicle_sonar) {
 
 std::optional<BedView> view_of_bed(const render::World& world, const std::vector<PosedBody>& moved,
                                    const std::string& without, const render::Pose& T_world_sonar,
-                                   const render::SonarSettings& settings) {
+                                   const render::Aperture& aperture, double range_m) {
   const auto pose_of = [&](const render::Body& body) {
     const auto found = std::ranges::find(moved, body.name, &PosedBody::name);
     return found != moved.end() ? found->T_world_body : body.T_world_body;
@@ -187,7 +187,7 @@ std::optional<BedView> view_of_bed(const render::World& world, const std::vector
     return std::nullopt;
   }
   BedView view{bed->name, below_m, {}, {}};
-  const BeamPlane plane(T_world_sonar, settings);
+  const BeamPlane plane(T_world_sonar, aperture);
   const glm::dvec3 up = glm::conjugate(T_world_sonar.orientation) * glm::dvec3(0, 0, 1);
   const render::Pose T_sonar_body = render::inverse(T_world_sonar) * pose_of(*bed);
   each_triangle(*bed, [&](const std::array<glm::dvec3, 3>& corners) {
@@ -195,7 +195,7 @@ std::optional<BedView> view_of_bed(const render::World& world, const std::vector
     const glm::dvec3 normal = glm::cross(from_sonar[1] - from_sonar[0], from_sonar[2] - from_sonar[0]);
     // Skips undersides of slabs, and walls that belong to the floor's body.
     if (glm::dot(normal, from_sonar[0]) < 0 && glm::dot(normal, up) > least_up * glm::length(normal)) {
-      plane.look_at(from_sonar, view, settings.range.max_range_m());
+      plane.look_at(from_sonar, view, range_m);
     }
   });
   return view;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "renderer/aperture.hpp"
 #include "renderer/scene/world.hpp"
-#include "renderer/sonar_settings.hpp"
 #include "server/pose/posed_body.hpp"
 
 namespace sonard::server {
@@ -29,9 +29,10 @@ struct BedView {
 /// The view of the bed; nullopt if nothing is below the sonar.
 /// @param moved current poses of bodies that have moved
 /// @param without a body to ignore: the vehicle; may be empty
+/// @param range_m of the ping
 std::optional<BedView> view_of_bed(const render::World& world, const std::vector<PosedBody>& moved,
                                    const std::string& without, const render::Pose& T_world_sonar,
-                                   const render::SonarSettings& settings);
+                                   const render::Aperture& aperture, double range_m);
 
 /// "the bed below ('seabed') is visible from 6.1 to 40 m"
 std::string bed_text(const std::optional<BedView>& view, double range_m);

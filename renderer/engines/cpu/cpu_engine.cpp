@@ -65,7 +65,8 @@ void CpuEngine::image_by_grid(const EchoRequest& request, const BinningOptions& 
                               PingStatistics& statistics) {
   Stopwatch watch;
   const SonarSettings& settings = request.settings;
-  if (grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
+  if (grid_.prepare(settings.aperture, settings.sampling, grid_options(settings),
+                    skip_.on(SkipRule::unchanged_settings))) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   }
   const auto views = rays_.sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),

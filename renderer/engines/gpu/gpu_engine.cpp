@@ -167,12 +167,11 @@ void GpuEngine::finish(Ping& ping) {
 /// 3 views of 512 x 512.
 void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options) {
   const auto& [request, echo, statistics] = job;
-  SonarSettings settings = request.settings;
-  if (!needs_grid(settings)) {
-    settings.sampling = Sampling::of_grid(3, 512, 512);
-  }
+  const SonarSettings& settings = request.settings;
+  const Sampling sampling = needs_grid(settings) ? settings.sampling : Sampling::of_grid(3, 512, 512);
   Stopwatch watch;
-  if (grid_.prepare(settings, skip_.on(SkipRule::unchanged_settings))) {
+  if (grid_.prepare(settings.aperture, sampling, grid_options(settings),
+                    skip_.on(SkipRule::unchanged_settings))) {
     statistics.skipped.add(SkipRule::unchanged_settings);
   }
   context_->make_current_or_throw();

@@ -58,16 +58,15 @@ render::World level_bed() {
   return world;
 }
 
-render::SonarSettings settings(double range_m) {
-  render::SonarSettings settings;
-  settings.aperture.vertical_beamwidth_rad = glm::radians(20.0);
-  settings.aperture.beam_edges_rad = render::equal_angle_edges(4, glm::radians(120.0));
-  settings.range = {.count = 100, .step_m = range_m / 100};
-  return settings;
+render::Aperture four_beams() {
+  render::Aperture aperture;
+  aperture.vertical_beamwidth_rad = glm::radians(20.0);
+  aperture.beam_edges_rad = render::equal_angle_edges(4, glm::radians(120.0));
+  return aperture;
 }
 
 std::optional<BedView> view(const render::Pose& turn, double z_m, double range_m) {
-  return view_of_bed(level_bed(), {}, "", {{3, -7, z_m}, turn.orientation}, settings(range_m));
+  return view_of_bed(level_bed(), {}, "", {{3, -7, z_m}, turn.orientation}, four_beams(), range_m);
 }
 
 TEST(BedWindow, IsWhereTheBeamMeetsIt) {
@@ -118,7 +117,7 @@ TEST(BedWindow, WithTheBackToTheBedThereIsNone) {
 TEST(BedWindow, BelowTheBedNothingIsBelow) {
   EXPECT_FALSE(view(mount(0, 20, 0), -21, 100));
   EXPECT_EQ(bed_text({}, 100), "nothing is below it");
-  EXPECT_FALSE(view_of_bed(level_bed(), {}, "seabed", {{0, 0, -10}, {1, 0, 0, 0}}, settings(50)));
+  EXPECT_FALSE(view_of_bed(level_bed(), {}, "seabed", {{0, 0, -10}, {1, 0, 0, 0}}, four_beams(), 50));
 }
 
 /// One body: a floor at z = -20, and a wall at x = 18 from the floor up to z = 0.
@@ -139,14 +138,14 @@ render::World tank() {
 TEST(BedWindow, IsNotAWallOfTheSameBody) {
   // The wall is 15 m away. The floor is 10 m below and begins at 10 / sin 10 = 57.6 m.
   const render::Pose level{{3, -7, -10}, mount(0, 0, 0).orientation};
-  EXPECT_FALSE(view_of_bed(tank(), {}, "", level, settings(40))->nearest_m);
-  EXPECT_NEAR(*view_of_bed(tank(), {}, "", level, settings(100))->nearest_m,
+  EXPECT_FALSE(view_of_bed(tank(), {}, "", level, four_beams(), 40)->nearest_m);
+  EXPECT_NEAR(*view_of_bed(tank(), {}, "", level, four_beams(), 100)->nearest_m,
               10.0 / std::sin(glm::radians(10.0)), 1e-3);
 }
 
 TEST(BedWindow, FollowsABodyThatHasMoved) {
   const auto seen = view_of_bed(level_bed(), {{"seabed", {{0, 0, -15}, {1, 0, 0, 0}}}}, "",
-                                {{3, -7, -10}, mount(0, 20, 0).orientation}, settings(100));
+                                {{3, -7, -10}, mount(0, 20, 0).orientation}, four_beams(), 100);
   EXPECT_NEAR(*seen->nearest_m, 10.0, 1e-3);  // 5 / sin 30
 }
 
