@@ -70,7 +70,7 @@ struct HeadRequest {
   PingRequest request;
 };
 
-/// Work of engine `gpu` for presets, as the GPU has counted it in the last pass.
+/// Work for presets, as the GPU has counted it in the last pass.
 struct GpuWork {
   std::uint64_t dispatches = 0;  ///< of all passes
   std::uint64_t triangles = 0;   ///< in the fan
@@ -82,14 +82,35 @@ struct GpuWork {
   std::uint64_t additions = 0;   ///< atomic, to 32-bit words of the sums over range
 };
 
+/// Cost of a ping on the GPU; engine `gpu` only.
+struct GpuCost {
+  std::uint64_t passes = 0;  ///< images made: more than one if buffers were too small
+  std::uint64_t bytes_read_back = 0;
+  std::uint64_t synchronisations = 0;  ///< waits for the GPU
+  GpuWork work{};
+  std::map<std::string, double> stages_ms{};  ///< by the file of a shader; see GpuOptions::time_stages
+  std::uint64_t bytes_uploaded = 0;           ///< into buffers, including new meshes and normal maps
+  std::uint64_t video_memory_bytes = 0;       ///< meshes and normal maps in video memory after the ping
+};
+
+/// Seconds of rendering, by stage.
+struct StageSeconds {
+  double visibility = 0.0, binning = 0.0, multipath = 0.0, azimuth_pattern = 0.0, pulse = 0.0, receiver = 0.0;
+
+  StageSeconds& operator+=(const StageSeconds& more) {
+    visibility += more.visibility;
+    binning += more.binning;
+    multipath += more.multipath;
+    azimuth_pattern += more.azimuth_pattern;
+    pulse += more.pulse;
+    receiver += more.receiver;
+    return *this;
+  }
+};
+
 /// Time spent and amount of work, for logs, metrics and the benchmark.
 struct PingStatistics {
-  double visibility_s = 0.0;
-  double binning_s = 0.0;
-  double multipath_s = 0.0;
-  double azimuth_pattern_s = 0.0;
-  double pulse_s = 0.0;
-  double receiver_s = 0.0;
+  StageSeconds seconds{};
   std::uint64_t samples = 0;
   /// False if no surface is within range and fan. Mirrored surfaces and volume scattering may still give
   /// echoes.
@@ -98,16 +119,8 @@ struct PingStatistics {
   /// of the samples. 0: no echo. Infinite in mode `paper`, which has no noise.
   double echo_over_floor = std::numeric_limits<double>::infinity();
   std::uint64_t invalid_samples = 0;  ///< NaN or infinite: dropped
-  // GPU engine only: images made, more than one if buffers were too small; bytes read back; waits for the
-  // GPU.
-  std::uint64_t passes = 0;
-  std::uint64_t bytes_read_back = 0;
-  std::uint64_t synchronisations = 0;
-  GpuWork gpu_work{};
-  std::map<std::string, double> gpu_stages_ms{};  ///< by the file of a shader; see GpuOptions::time_stages
-  std::uint64_t bytes_uploaded = 0;               ///< into buffers, including new meshes and normal maps
-  std::uint64_t video_memory_bytes = 0;           ///< meshes and normal maps in video memory after the ping
-  SkipCounts skipped;                             ///< stages that did not run count nothing
+  GpuCost gpu{};
+  SkipCounts skipped;  ///< stages that did not run count nothing
 };
 
 }  // namespace sonard::render

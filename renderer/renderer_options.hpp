@@ -30,7 +30,7 @@ struct GpuOptions {
   double retry_s = 0.0;
   /// For tests: destroys the OpenGL context in the middle of this image, counted from 1; 0: never.
   std::uint64_t lose_context_at_image = 0;
-  /// For the benchmark: fills PingStatistics::gpu_stages_ms, of one ping at a time.
+  /// For the benchmark: fills GpuCost::stages_ms, of one ping at a time.
   bool time_stages = false;
   /// For the benchmark: invocations of a group, each with a piece of the sweep; 0: as many as suit the
   /// device.

@@ -48,7 +48,7 @@ Rounds render_rounds(SonarRenderer& renderer, std::span<const HeadRequest> pings
       if (round == 0) {
         rounds.images.push_back(image);
       }
-      rounds.all_drawn = rounds.all_drawn && renderer.last_statistics().passes > 0;
+      rounds.all_drawn = rounds.all_drawn && renderer.last_statistics().gpu.passes > 0;
     }
     const double round_s = watch.lap();
     taken_s += round_s;

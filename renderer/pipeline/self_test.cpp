@@ -104,7 +104,7 @@ SelfTestResult run_self_test(RendererOptions options) {
           renderer.engine_description()));
     }
     result.error = std::max(result.error, error);
-    if (options.engine == EngineKind::gpu && renderer.last_statistics().passes == 0) {
+    if (options.engine == EngineKind::gpu && renderer.last_statistics().gpu.passes == 0) {
       throw RendererError("self-test failed: the GPU did not render the image: " +
                           renderer.engine_description());
     }

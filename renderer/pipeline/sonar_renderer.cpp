@@ -178,7 +178,7 @@ struct SonarRenderer::Impl {
       sample_echo(PointSpread::sampled(settings), settings_and_seed.seed, head, motion, fine_echo);
       Stopwatch watch;
       point_spread.form_beams(fine_echo, settings, image, workers, skip, statistics.skipped);
-      statistics.azimuth_pattern_s = watch.lap();
+      statistics.seconds.azimuth_pattern = watch.lap();
     } else {
       sample_echo(settings, settings_and_seed.seed, head, motion, image);
     }
@@ -190,7 +190,7 @@ struct SonarRenderer::Impl {
       divide(strongest_of_surfaces, strongest_of_all);
       image.surface_share = strongest_of_surfaces;
     }
-    statistics.pulse_s = watch.lap();
+    statistics.seconds.pulse = watch.lap();
   }
 
   /// The request to the engine; it refers to the settings.
@@ -223,7 +223,7 @@ struct SonarRenderer::Impl {
         std::ranges::any_of(image.intensity, [](float echo_of_bin) { return echo_of_bin > 0; });
     Stopwatch watch;
     multipath.add_to(image.intensity, settings, motion.T_world_sonar, statistics.skipped);
-    statistics.multipath_s = watch.lap();
+    statistics.seconds.multipath = watch.lap();
     if (settings.model == Model::physical) {
       const bool water_echoes =
           settings.physical.water_clutter.density_per_m3 > 0 || has_volume_reverberation(settings);
@@ -237,7 +237,7 @@ struct SonarRenderer::Impl {
       }
       apply_loss(loss_for(settings, head).of_line, image);
     }
-    statistics.binning_s += watch.lap();
+    statistics.seconds.binning += watch.lap();
   }
 
   /// SkipRule::terrain_detail. Motion within a ping extends the range, but does not change the detail.
@@ -252,7 +252,7 @@ struct SonarRenderer::Impl {
       index.set_part_meshes(changes);
       engine.set_part_meshes(changes);
     }
-    statistics.visibility_s += watch.lap();
+    statistics.seconds.visibility += watch.lap();
   }
 
   /// Renders each line from the pose of its span. Nothing is blended: a line comes from one span only.
@@ -413,7 +413,7 @@ PingSamples SonarRenderer::render_ping(const PingRequest& request, int head) {
   const EchoImage& echo = render_echo(request, head);
   Stopwatch watch;
   PingSamples samples = impl_->receiver.receive(echo, request, head, impl_->workers);
-  impl_->statistics.receiver_s = watch.lap();
+  impl_->statistics.seconds.receiver = watch.lap();
   impl_->statistics.skipped += impl_->receiver.skipped();
   impl_->statistics.echo_over_floor = impl_->receiver.echo_over_floor();
   return samples;

@@ -255,7 +255,7 @@ HeadStatus Head::Impl::status() const {
           .counts = counts(),
           .pings_per_s = recent_pings.per_s(now),
           .newest = newest,
-          .spent = rendering.newest_statistics(),
+          .spent = rendering.newest_seconds(),
           .latency = recent_pings.latency(),
           .since_last_ping = recent_pings.silence(now),
           .findings = findings()};

@@ -7,15 +7,6 @@
 #include <spdlog/spdlog.h>
 
 namespace sonard::server {
-StageSeconds& StageSeconds::operator+=(const render::PingStatistics& ping) {
-  visibility += ping.visibility_s;
-  binning += ping.binning_s;
-  multipath += ping.multipath_s;
-  azimuth_pattern += ping.azimuth_pattern_s;
-  pulse += ping.pulse_s;
-  receiver += ping.receiver_s;
-  return *this;
-}
 
 HeadRendering::HeadRendering(const HeadConfig& config, int head, RenderService& renderer, const Clock& clock,
                              const Options& options)
@@ -43,11 +34,11 @@ bool HeadRendering::take(const RenderResult& result) {
   }
   if (result.error.empty()) {
     ++counters_.pings_rendered;
-    const render::PingStatistics& spent = result.statistics;
+    const render::StageSeconds& spent = result.statistics.seconds;
     counters_.render_seconds +=
-        spent.visibility_s + spent.binning_s + spent.azimuth_pattern_s + spent.pulse_s + spent.receiver_s;
+        spent.visibility + spent.binning + spent.azimuth_pattern + spent.pulse + spent.receiver;
     counters_.stages += spent;
-    counters_.skipped += spent.skipped;
+    counters_.skipped += result.statistics.skipped;
     newest_ = spent;
     return true;
   }

@@ -16,19 +16,12 @@
 
 namespace sonard::server {
 
-/// Seconds of rendering, by stage.
-struct StageSeconds {
-  double visibility = 0.0, binning = 0.0, multipath = 0.0, azimuth_pattern = 0.0, pulse = 0.0, receiver = 0.0;
-
-  StageSeconds& operator+=(const render::PingStatistics& ping);
-};
-
 /// Counters; they only grow.
 struct RenderCounters {
   std::uint64_t pings_without_pose = 0;  ///< not rendered: no pose, or a stale one under StalePolicy::silence
   std::uint64_t pings_rendered = 0;
   double render_seconds = 0.0;  ///< all stages except multipath
-  StageSeconds stages;
+  render::StageSeconds stages;
   render::SkipCounts skipped;  ///< of all pings
 };
 
@@ -56,7 +49,7 @@ class HeadRendering {
   /// True if a ping was submitted and is not answered yet.
   bool busy() const { return submitted_; }
   const RenderCounters& counters() const { return counters_; }
-  const render::PingStatistics& newest_statistics() const { return newest_; }
+  const render::StageSeconds& newest_seconds() const { return newest_; }
 
  private:
   const HeadConfig& config_;
@@ -67,7 +60,7 @@ class HeadRendering {
   bool submitted_ = false;
   RenderLoad load_;
   RenderCounters counters_;
-  render::PingStatistics newest_;
+  render::StageSeconds newest_;  ///< of the newest ping
   std::string last_error_;
   PeerLog errors_;
 };

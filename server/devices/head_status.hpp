@@ -46,7 +46,7 @@ struct HeadStatus {
   HeadCounts counts;
   double pings_per_s = 0.0;  ///< over the last five seconds
   std::optional<NewestPing> newest;
-  render::PingStatistics spent;  ///< on the newest rendered ping
+  render::StageSeconds spent;  ///< on the newest rendered ping
   /// From transmission to sending, of the newest ping.
   std::optional<std::chrono::nanoseconds> latency;
   std::optional<std::chrono::nanoseconds> since_last_ping;  ///< since the newest was sent; nullopt: no ping

@@ -28,15 +28,15 @@ json findings_json(const std::vector<Finding>& findings) {
   return list;
 }
 
-json stages_json(const render::PingStatistics& spent) {
-  return {{"visibility", 1e3 * spent.visibility_s}, {"binning", 1e3 * spent.binning_s},
-          {"multipath", 1e3 * spent.multipath_s},   {"azimuth_pattern", 1e3 * spent.azimuth_pattern_s},
-          {"pulse", 1e3 * spent.pulse_s},           {"receiver", 1e3 * spent.receiver_s}};
+json stages_json(const render::StageSeconds& spent) {
+  return {{"visibility", 1e3 * spent.visibility}, {"binning", 1e3 * spent.binning},
+          {"multipath", 1e3 * spent.multipath},   {"azimuth_pattern", 1e3 * spent.azimuth_pattern},
+          {"pulse", 1e3 * spent.pulse},           {"receiver", 1e3 * spent.receiver}};
 }
 
-double render_ms(const render::PingStatistics& spent) {
-  return 1e3 * (spent.visibility_s + spent.binning_s + spent.multipath_s + spent.azimuth_pattern_s +
-                spent.pulse_s + spent.receiver_s);
+double render_ms(const render::StageSeconds& spent) {
+  return 1e3 * (spent.visibility + spent.binning + spent.multipath + spent.azimuth_pattern + spent.pulse +
+                spent.receiver);
 }
 
 json skipped_json(const render::SkipCounts& skipped) {

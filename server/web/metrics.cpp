@@ -84,7 +84,7 @@ void add_pings(std::string& out, const std::vector<HeadStatus>& heads) {
 void add_stages(std::string& out, const std::vector<HeadStatus>& heads) {
   Metric metric(out, "sonard_ping_seconds_total", "counter", "Rendering time by stage.");
   for (const HeadStatus& head : heads) {
-    const StageSeconds& spent = head.counts.rendering.stages;
+    const render::StageSeconds& spent = head.counts.rendering.stages;
     const std::initializer_list<std::pair<std::string_view, double>> stages{
         {"visibility", spent.visibility}, {"binning", spent.binning},
         {"multipath", spent.multipath},   {"azimuth_pattern", spent.azimuth_pattern},

@@ -34,11 +34,11 @@ struct Stages {
 
   void add(double ping_s, const render::PingStatistics& spent) {
     ping_ms.add(ms_per_s * ping_s);
-    visibility_ms.add(ms_per_s * spent.visibility_s);
-    binning_ms.add(ms_per_s * spent.binning_s);
-    multipath_ms.add(ms_per_s * spent.multipath_s);
-    reception_ms.add(ms_per_s * (spent.azimuth_pattern_s + spent.pulse_s));
-    receiver_ms.add(ms_per_s * spent.receiver_s);
+    visibility_ms.add(ms_per_s * spent.seconds.visibility);
+    binning_ms.add(ms_per_s * spent.seconds.binning);
+    multipath_ms.add(ms_per_s * spent.seconds.multipath);
+    reception_ms.add(ms_per_s * (spent.seconds.azimuth_pattern + spent.seconds.pulse));
+    receiver_ms.add(ms_per_s * spent.seconds.receiver);
   }
 };
 

@@ -17,7 +17,7 @@ double number(std::uint64_t count) {
 }
 
 double bins_of(const render::PingStatistics& ping) {
-  return number(ping.bytes_read_back) / sizeof(float);
+  return number(ping.gpu.bytes_read_back) / sizeof(float);
 }
 
 /// Work of a stage. Lane instructions include lanes that wait for others of their warp.
@@ -34,16 +34,16 @@ struct Stage {
 const std::vector<Stage>& stages() {
   using Ping = render::PingStatistics;
   static const std::vector<Stage> all = {
-      {"place.comp", [](const Ping& p) { return 400 * number(p.gpu_work.triangles); }},
-      {"lists.comp", [](const Ping& p) { return 60 * number(p.gpu_work.entries); }},
-      {"things.comp", [](const Ping& p) { return 300 * number(p.gpu_work.entries); }},
+      {"place.comp", [](const Ping& p) { return 400 * number(p.gpu.work.triangles); }},
+      {"lists.comp", [](const Ping& p) { return 60 * number(p.gpu.work.entries); }},
+      {"things.comp", [](const Ping& p) { return 300 * number(p.gpu.work.entries); }},
       {"see.comp",
        [](const Ping& p) {
-         const double in_slice = number(p.gpu_work.segments) / std::max(1.0, number(p.gpu_work.slices));
-         return (650 + 2.6 * in_slice) * number(p.gpu_work.segments);
+         const double in_slice = number(p.gpu.work.segments) / std::max(1.0, number(p.gpu.work.slices));
+         return (650 + 2.6 * in_slice) * number(p.gpu.work.segments);
        },
        70e3},
-      {"refine.comp", [](const Ping& p) { return 21e3 * number(p.gpu_work.slices); }, 40e3},
+      {"refine.comp", [](const Ping& p) { return 21e3 * number(p.gpu.work.slices); }, 40e3},
       {"pieces.comp", [](const Ping& p) { return 800 * number(p.samples); }},
       {"patches.comp", [](const Ping& p) { return 150 * number(p.samples); }},
       {"bin.comp", [](const Ping& p) { return 550 * number(p.samples); }},
@@ -59,13 +59,13 @@ constexpr double bytes_per_bin = 60;  // of the sums: cleared once, read twice; 
 }  // namespace
 
 std::vector<std::pair<std::string, double>> counts_of(const render::PingStatistics& ping) {
-  const render::GpuWork& work = ping.gpu_work;
+  const render::GpuWork& work = ping.gpu.work;
   return {{"triangles", number(work.triangles)},   {"entries", number(work.entries)},
           {"slices", number(work.slices)},         {"rounds", number(work.rounds)},
           {"segments", number(work.segments)},     {"visible", number(work.visible)},
           {"samples", number(ping.samples)},       {"additions", number(work.additions)},
-          {"dispatches", number(work.dispatches)}, {"synchronisations", number(ping.synchronisations)},
-          {"passes", number(ping.passes)},         {"read_back", number(ping.bytes_read_back)}};
+          {"dispatches", number(work.dispatches)}, {"synchronisations", number(ping.gpu.synchronisations)},
+          {"passes", number(ping.gpu.passes)},     {"read_back", number(ping.gpu.bytes_read_back)}};
 }
 
 double total_ms(const StageTimes& times) {
@@ -102,18 +102,18 @@ StageTimes predict(const render::PingStatistics& ping, const GpuCard& card, doub
   StageTimes times;
   for (const Stage& stage : stages()) {
     times[stage.shader] = ms_per_s * (stage.lane_instructions(ping) / (attained * card.lanes * clock) +
-                                      stage.tail_cycles * number(ping.gpu_work.rounds) / clock);
+                                      stage.tail_cycles * number(ping.gpu.work.rounds) / clock);
   }
   times["bin.comp"] =
-      std::max(times["bin.comp"], ms_per_s * number(ping.gpu_work.additions) /
+      std::max(times["bin.comp"], ms_per_s * number(ping.gpu.work.additions) /
                                       (attained_of_additions * card.additions_per_clock * clock));
   times["sums.comp"] = std::max(times["sums.comp"], ms_per_s * bytes_per_bin * bins_of(ping) /
                                                         (attained_of_bytes * card.memory_gb_per_s * giga));
   times[rest_stage] =
-      ms_per_us *
-          (card.dispatch_us * number(ping.gpu_work.dispatches) + wait_us * number(ping.synchronisations)) +
-      ms_per_s * number(ping.bytes_read_back) / (attained_of_bytes * card.bus_gb_per_s * giga) +
-      cpu_ms * number(ping.passes);
+      ms_per_us * (card.dispatch_us * number(ping.gpu.work.dispatches) +
+                   wait_us * number(ping.gpu.synchronisations)) +
+      ms_per_s * number(ping.gpu.bytes_read_back) / (attained_of_bytes * card.bus_gb_per_s * giga) +
+      cpu_ms * number(ping.gpu.passes);
   return times;
 }
 

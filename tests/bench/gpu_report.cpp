@@ -36,7 +36,7 @@ struct Engine {
     const double from_s = now_s();
     renderer->render_echo(request);
     const double ms = ms_per_s * (now_s() - from_s);
-    const StageTimes& stages = renderer->last_statistics().gpu_stages_ms;
+    const StageTimes& stages = renderer->last_statistics().gpu.stages_ms;
     ping_ms.add(ms);
     stages_ms[rest_stage].add(ms - total_ms(stages));
     for (const auto& [stage, stage_ms] : stages) {

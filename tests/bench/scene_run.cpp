@@ -60,12 +60,12 @@ void SceneRun::measure(const Point& point, const Reference* reference, const Rep
   const render::PingStatistics statistics = renderer_.last_statistics();
   const Timing unchanged_ms = time_unchanged(still, {3, repetition.most, repetition.budget_s / 4});
   add_times(subject(point), stages, unchanged_ms);
-  if (statistics.passes > 0) {  // engine `gpu`
+  if (statistics.gpu.passes > 0) {  // engine `gpu`
     for (const auto& [name, count] : counts_of(statistics)) {
       results_.add(subject(point), name, count, "count");
     }
-    results_.add(subject(point), "video_memory", static_cast<double>(statistics.video_memory_bytes) / 0x1p20,
-                 "MiB");
+    results_.add(subject(point), "video_memory",
+                 static_cast<double>(statistics.gpu.video_memory_bytes) / 0x1p20, "MiB");
   } else {
     results_.add(subject(point), "samples", static_cast<double>(statistics.samples), "count");
   }
@@ -93,9 +93,9 @@ SceneRun::Stages SceneRun::time_pings(render::PingRequest request, const Repetit
     const double ping_s = now_s() - from_s;
     const render::PingStatistics& spent = renderer_.last_statistics();
     stages.ping_ms.add(ms_per_s * ping_s);
-    stages.visibility_ms.add(ms_per_s * spent.visibility_s);
-    stages.binning_ms.add(ms_per_s * spent.binning_s);
-    stages.multipath_ms.add(ms_per_s * spent.multipath_s);
+    stages.visibility_ms.add(ms_per_s * spent.seconds.visibility);
+    stages.binning_ms.add(ms_per_s * spent.seconds.binning);
+    stages.multipath_ms.add(ms_per_s * spent.seconds.multipath);
   }
   return stages;
 }
@@ -133,7 +133,7 @@ void SceneRun::measure_receiver(const Point& point, int lines, const std::string
     move_to_timed_pose(ping, start, i + warm_up_pings);
     renderer_.render_ping(ping);
     if (i >= 0) {
-      receiver_ms.add(ms_per_s * renderer_.last_statistics().receiver_s);
+      receiver_ms.add(ms_per_s * renderer_.last_statistics().seconds.receiver);
     }
   }
   results_.add(subject(point), metric, receiver_ms.median(), "ms");
@@ -158,9 +158,9 @@ void SceneRun::measure_reception(const Point& point, const Repetition& repetitio
       renderer_.render_echo(ping);
       if (i >= 0) {
         const render::PingStatistics& spent = renderer_.last_statistics();
-        sampling_ms.add(ms_per_s * (spent.visibility_s + spent.binning_s));
-        pattern_ms.add(ms_per_s * spent.azimuth_pattern_s);
-        pulse_ms.add(ms_per_s * spent.pulse_s);
+        sampling_ms.add(ms_per_s * (spent.seconds.visibility + spent.seconds.binning));
+        pattern_ms.add(ms_per_s * spent.seconds.azimuth_pattern);
+        pulse_ms.add(ms_per_s * spent.seconds.pulse);
       }
     }
     const std::string metric = "fine_beams_" + std::to_string(fine_beams) + "_ms";

@@ -71,11 +71,11 @@ void CpuEngine::image_by_grid(const EchoRequest& request, const BinningOptions& 
   }
   const auto views = rays_.sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
                                   settings.range.sampled_range_m());
-  statistics.visibility_s += watch.lap();
+  statistics.seconds.visibility += watch.lap();
   hand_over(bin_echoes(grid_.grid(), grid_.weights(), views, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);
-  statistics.binning_s += watch.lap();
+  statistics.seconds.binning += watch.lap();
 }
 
 void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions& options, MeanEcho& echo,
@@ -85,12 +85,12 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
   const auto cells = slices_.sample(request.T_world_sonar, settings.aperture, settings.range,
                                     settings.range.sampled_range_m(), surface_model(settings, skip_),
                                     slice_accuracy(settings.sampling, settings.model));
-  statistics.visibility_s += watch.lap();
+  statistics.seconds.visibility += watch.lap();
   statistics.skipped += slices_.skipped();
   BinningResult bins = bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,
                                   std::move(echo.image.intensity));
-  statistics.visibility_s += bins.shading_s;
-  statistics.binning_s += watch.lap() - bins.shading_s;
+  statistics.seconds.visibility += bins.shading_s;
+  statistics.seconds.binning += watch.lap() - bins.shading_s;
   hand_over(std::move(bins), echo, statistics);
 }
 

@@ -120,12 +120,12 @@ void GpuEngine::begin(Ping& ping) {
   setting.surface_bytes = echoes_.surfaces().bytes();
   slices_.find(ping.buffers, world_.parts(), setting);
   slices_.see(ping.buffers, setting);
-  statistics.visibility_s += watch.lap();
+  statistics.seconds.visibility += watch.lap();
   echoes_.make(ping.buffers, world_.surfaces(), setting);
-  statistics.binning_s += watch.lap();
-  statistics.gpu_work.dispatches += slices_.compute().dispatches() - dispatched_before;
-  statistics.bytes_uploaded += slices_.meshes().bytes_uploaded() - uploaded_before;
-  statistics.video_memory_bytes = slices_.meshes().bytes() + echoes_.surfaces().bytes();
+  statistics.seconds.binning += watch.lap();
+  statistics.gpu.work.dispatches += slices_.compute().dispatches() - dispatched_before;
+  statistics.gpu.bytes_uploaded += slices_.meshes().bytes_uploaded() - uploaded_before;
+  statistics.gpu.video_memory_bytes = slices_.meshes().bytes() + echoes_.surfaces().bytes();
 }
 
 /// Waits for the result, and repeats the ping while one of its buffers is too small: the first pings of a
@@ -140,18 +140,18 @@ void GpuEngine::finish(Ping& ping) {
       begin(ping);
     }
     result = GpuEchoes::take(ping.buffers, ping.setting, std::move(echo.image.intensity));
-    ++statistics.synchronisations;
-    ++statistics.passes;
+    ++statistics.gpu.synchronisations;
+    ++statistics.gpu.passes;
   }
   const PingCounts& counts = ping.buffers.counted;
   if (!result || counts.overflows > 0) {
     throw RequestError("a slice of this ping has more surfaces than fit on the GPU");
   }
-  statistics.binning_s += watch.lap();
-  statistics.bytes_read_back +=
+  statistics.seconds.binning += watch.lap();
+  statistics.gpu.bytes_read_back +=
       sizeof(PingCounts) + (result->echo.size() + result->open_sr.size()) * sizeof(float);
-  statistics.gpu_stages_ms = slices_.compute().take_stages_ms();
-  statistics.gpu_work = work_of(counts, statistics.gpu_work.dispatches);
+  statistics.gpu.stages_ms = slices_.compute().take_stages_ms();
+  statistics.gpu.work = work_of(counts, statistics.gpu.work.dispatches);
   statistics.skipped += world_.skipped();
   statistics.skipped.add(SkipRule::culled_clusters, counts.culled_clusters);
   statistics.skipped.add(SkipRule::hidden_faces, counts.hidden_faces);
@@ -181,19 +181,19 @@ void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options)
   const std::uint64_t uploaded_before = raster_->bytes_uploaded();
   const auto samples = raster_->sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
                                        world_.bend().per_m, settings.range.sampled_range_m());
-  statistics.bytes_uploaded += raster_->bytes_uploaded() - uploaded_before;
+  statistics.gpu.bytes_uploaded += raster_->bytes_uploaded() - uploaded_before;
   for (const SubView& view : grid_.grid().views) {
-    statistics.bytes_read_back += sizeof(SurfaceSample) * static_cast<std::uint64_t>(view.columns) *
-                                  static_cast<std::uint64_t>(view.rows);
+    statistics.gpu.bytes_read_back += sizeof(SurfaceSample) * static_cast<std::uint64_t>(view.columns) *
+                                      static_cast<std::uint64_t>(view.rows);
   }
-  statistics.video_memory_bytes = raster_->bytes();
-  statistics.visibility_s += watch.lap();
-  ++statistics.passes;
-  statistics.synchronisations += grid_.grid().views.size();  // each view is read when it is drawn
+  statistics.gpu.video_memory_bytes = raster_->bytes();
+  statistics.seconds.visibility += watch.lap();
+  ++statistics.gpu.passes;
+  statistics.gpu.synchronisations += grid_.grid().views.size();  // each view is read when it is drawn
   hand_over(bin_echoes(grid_.grid(), grid_.weights(), samples, settings.range, options, workers_,
                        std::move(echo.image.intensity)),
             echo, statistics);
-  statistics.binning_s += watch.lap();
+  statistics.seconds.binning += watch.lap();
 }
 
 }  // namespace sonard::render

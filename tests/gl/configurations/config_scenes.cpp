@@ -217,7 +217,7 @@ class BothEngines {
       const render::PingRequest request{T_world_sonar, scene.settings, 0, 1};
       const std::vector<float> gpu = timed(gpu_, request, found.gpu_s);
       found.by_gpu =
-          found.by_gpu && gpu_.engine() == render::EngineKind::gpu && gpu_.last_statistics().passes > 0;
+          found.by_gpu && gpu_.engine() == render::EngineKind::gpu && gpu_.last_statistics().gpu.passes > 0;
       const std::vector<float> cpu = timed(cpu_, request, found.cpu_s);
       for (std::size_t i = 0; i < cpu.size(); ++i) {
         const auto echo = static_cast<double>(cpu[i]), off = static_cast<double>(gpu[i]) - echo;

@@ -64,8 +64,8 @@ TEST_F(PingsInFlight, AreThoseOfEachHeadAlone) {
     EXPECT_EQ(renderer.render_echo(ping.request, ping.head).intensity, alone(ping)) << ping.head;
     const render::PingStatistics& statistics = renderer.last_statistics();
     if (ping.head != 4 && ping.head != 6) {
-      EXPECT_GE(statistics.passes, 1U) << ping.head;
-      EXPECT_LE(statistics.synchronisations, statistics.passes + 1) << ping.head;
+      EXPECT_GE(statistics.gpu.passes, 1U) << ping.head;
+      EXPECT_LE(statistics.gpu.synchronisations, statistics.gpu.passes + 1) << ping.head;
       EXPECT_GT(statistics.samples, 0U) << ping.head;
     }
   }
@@ -118,7 +118,7 @@ TEST_F(PingsInFlight, StayTheGpusBesideOneThatItCannotHold) {
     EXPECT_EQ(renderer.render_echo(ping.request, ping.head).intensity,
               alone.render_echo(ping.request, ping.head).intensity)
         << ping.head;
-    EXPECT_EQ(renderer.last_statistics().passes > 0, ping.head == 0) << ping.head;
+    EXPECT_EQ(renderer.last_statistics().gpu.passes > 0, ping.head == 0) << ping.head;
   }
   EXPECT_EQ(renderer.engine(), EngineKind::gpu);
 }

@@ -36,7 +36,7 @@ TEST_F(GpuEngineTest, MakesTheImagesOfTheCpu) {
     SonarRenderer cpu(scene.world, {EngineKind::cpu});
     const std::vector<float> of_gpu = gpu.render_echo(scene.request()).intensity;
     EXPECT_EQ(gpu.engine(), EngineKind::gpu);
-    EXPECT_GT(gpu.last_statistics().passes, 0U) << "the CPU made it";
+    EXPECT_GT(gpu.last_statistics().gpu.passes, 0U) << "the CPU made it";
     EXPECT_LE(rms_difference(of_gpu, cpu.render_echo(scene.request()).intensity), 1e-3);
   }
 }
@@ -51,9 +51,9 @@ TEST_F(GpuEngineTest, WaitsOnceAndReadsTheImage) {
     const std::vector<float> image = renderer.render_echo(request).intensity;
     const PingStatistics& statistics = renderer.last_statistics();
     if (ping == 2) {
-      EXPECT_EQ(statistics.synchronisations, 1U);
-      EXPECT_LE(statistics.bytes_read_back, image.size() * sizeof(float) + 65536);
-      EXPECT_GT(statistics.bytes_read_back, image.size() * sizeof(float));
+      EXPECT_EQ(statistics.gpu.synchronisations, 1U);
+      EXPECT_LE(statistics.gpu.bytes_read_back, image.size() * sizeof(float) + 65536);
+      EXPECT_GT(statistics.gpu.bytes_read_back, image.size() * sizeof(float));
     }
   }
 }

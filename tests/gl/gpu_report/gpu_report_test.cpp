@@ -61,7 +61,7 @@ TEST_F(GpuReportTest, CountsWhatTheGeometrySays) {
                                  {render::EngineKind::gpu});
   renderer.render_echo({render::Pose{}, settings});
   const render::PingStatistics& ping = renderer.last_statistics();
-  const render::GpuWork& work = ping.gpu_work;
+  const render::GpuWork& work = ping.gpu.work;
   EXPECT_EQ(work.triangles, 1U);
   EXPECT_EQ(work.entries, beams * 1U);
   EXPECT_EQ(work.rounds, 1U);
@@ -73,11 +73,11 @@ TEST_F(GpuReportTest, CountsWhatTheGeometrySays) {
   // Place; two for lists; things; 12 rounds that see and 11 between them that refine; pieces, patches, bin,
   // sums.
   EXPECT_EQ(work.dispatches, 31U);
-  EXPECT_EQ(ping.synchronisations, 1U);
+  EXPECT_EQ(ping.gpu.synchronisations, 1U);
   constexpr std::uint64_t image_bytes = 4ULL * beams * lines;
-  EXPECT_GE(ping.bytes_read_back, image_bytes);
-  EXPECT_LE(ping.bytes_read_back, image_bytes + 100);
-  EXPECT_TRUE(ping.gpu_stages_ms.empty());  // nobody has asked for them
+  EXPECT_GE(ping.gpu.bytes_read_back, image_bytes);
+  EXPECT_LE(ping.gpu.bytes_read_back, image_bytes + 100);
+  EXPECT_TRUE(ping.gpu.stages_ms.empty());  // nobody has asked for them
 }
 
 }  // namespace

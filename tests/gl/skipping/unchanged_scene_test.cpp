@@ -36,7 +36,7 @@ TEST_P(UnchangedScene, EchoIsMadeOnceAndNotCopied) {
   const EchoImage& second = renderer.render_echo(small_request());
   EXPECT_EQ(skipped(renderer), 1u);
   EXPECT_EQ(renderer.last_statistics().samples, 0u);
-  EXPECT_EQ(renderer.last_statistics().visibility_s, 0.0);
+  EXPECT_EQ(renderer.last_statistics().seconds.visibility, 0.0);
   EXPECT_EQ(&first, &second);
   EXPECT_EQ(second.intensity, before);
 }

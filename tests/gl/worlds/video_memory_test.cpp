@@ -138,12 +138,12 @@ class BoundedAndUnbounded {
   void expect_same_image(const PingRequest& request) {
     const EchoImage image = bounded_.render_echo(request);
     const PingStatistics& statistics = bounded_.last_statistics();
-    EXPECT_GT(statistics.video_memory_bytes, 0U);
-    EXPECT_LE(statistics.video_memory_bytes, bound_bytes_);
-    uploaded_bytes_ += statistics.bytes_uploaded;
+    EXPECT_GT(statistics.gpu.video_memory_bytes, 0U);
+    EXPECT_LE(statistics.gpu.video_memory_bytes, bound_bytes_);
+    uploaded_bytes_ += statistics.gpu.bytes_uploaded;
     EXPECT_EQ(image.intensity, unbounded_->render_echo(request).intensity);
     EXPECT_GT(*std::max_element(image.intensity.begin(), image.intensity.end()), 0.0F);
-    unbounded_bytes_ = std::max(unbounded_bytes_, unbounded_->last_statistics().video_memory_bytes);
+    unbounded_bytes_ = std::max(unbounded_bytes_, unbounded_->last_statistics().gpu.video_memory_bytes);
   }
 
   std::uint64_t uploaded_bytes() const { return uploaded_bytes_; }
@@ -265,9 +265,9 @@ TEST_F(VideoMemoryOfWorlds, OfTenMillionTrianglesStaysBounded) {
     const EchoImage& image = renderer.render_echo(request);
     EXPECT_GT(*std::max_element(image.intensity.begin(), image.intensity.end()), 0.0F);
     const PingStatistics& statistics = renderer.last_statistics();
-    EXPECT_LE(statistics.video_memory_bytes, bound_mib * mib);
-    EXPECT_GT(statistics.bytes_uploaded, 0U);
-    uploaded_bytes += statistics.bytes_uploaded;
+    EXPECT_LE(statistics.gpu.video_memory_bytes, bound_mib * mib);
+    EXPECT_GT(statistics.gpu.bytes_uploaded, 0U);
+    uploaded_bytes += statistics.gpu.bytes_uploaded;
     if (first.empty()) {
       first = image.intensity;
     } else if (yaw_deg == 0) {

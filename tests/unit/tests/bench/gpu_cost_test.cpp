@@ -15,14 +15,14 @@ const GpuCard& h200() {
 // 1000 slices of 200 segments in 5 rounds, 100,000 patches, a million range bins.
 render::PingStatistics round_numbers() {
   render::PingStatistics ping;
-  ping.gpu_work.dispatches = 31;
-  ping.gpu_work.rounds = 5;
-  ping.gpu_work.slices = 1000;
-  ping.gpu_work.segments = 200'000;
-  ping.gpu_work.additions = 1'000'000;
+  ping.gpu.work.dispatches = 31;
+  ping.gpu.work.rounds = 5;
+  ping.gpu.work.slices = 1000;
+  ping.gpu.work.segments = 200'000;
+  ping.gpu.work.additions = 1'000'000;
   ping.samples = 100'000;
-  ping.bytes_read_back = 4'000'000;
-  ping.synchronisations = ping.passes = 1;
+  ping.gpu.bytes_read_back = 4'000'000;
+  ping.gpu.synchronisations = ping.gpu.passes = 1;
   return ping;
 }
 
@@ -48,7 +48,7 @@ TEST(GpuCost, PredictsWhatOneComputesByHand) {
 
 TEST(GpuCost, AtomicsAndMemoryMayTakeLonger) {
   render::PingStatistics ping = round_numbers();
-  ping.gpu_work.additions = 79'200'000;  // a millisecond at 40 a clock
+  ping.gpu.work.additions = 79'200'000;  // a millisecond at 40 a clock
   EXPECT_NEAR(predict(ping, h200(), 0.1).at("bin.comp"), 1, 1e-9);
   GpuCard card = h200();
   card.memory_gb_per_s = 0.1;  // 60 MB at 0.06 GB/s
@@ -58,8 +58,8 @@ TEST(GpuCost, AtomicsAndMemoryMayTakeLonger) {
 // Counts of an instrumented engine `cpu` for `docking`, and its 4.7e9 lane instructions.
 TEST(GpuCost, HasTheInstructionsOfTheDockingStation) {
   render::PingStatistics ping;
-  ping.gpu_work.slices = 5868;
-  ping.gpu_work.segments = 5868ULL * 360;
+  ping.gpu.work.slices = 5868;
+  ping.gpu.work.segments = 5868ULL * 360;
   ping.samples = 786'000;
   GpuCard card = h200();
   card.lanes = card.clock_ghz = 1;  // a nanosecond for each instruction
