@@ -33,7 +33,7 @@ struct LoadedConfig {
 
 /// Reads and checks a configuration: loads no world and opens no socket. Relative paths are resolved against
 /// the configuration's folder.
-/// @param types the permitted types of heads
+/// @param types the permitted types of heads, from server/devices/types, on which this room must not depend
 /// @throws ConfigError with every problem of the file.
 LoadedConfig load_config(const std::filesystem::path& file, std::span<const HeadType* const> types);
 

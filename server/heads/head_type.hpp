@@ -22,8 +22,9 @@ struct Identity {
   bool of_type = true;  ///< heads of different types may share it; false: they may not
 };
 
-/// One object for each type of device, without state. A head of the configuration points to its type; its
-/// `device` holds the settings that this type has read.
+/// The part of a type of device that the configuration reads, because the configuration must not depend on
+/// devices; DeviceType is the whole. One object for each type of device, without state. A head of the
+/// configuration points to its type; its `device` holds the settings that this type has read.
 class HeadType {
  public:
   HeadType() = default;
