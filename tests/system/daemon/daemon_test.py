@@ -434,6 +434,17 @@ class Descriptors(DaemonCase):
         self.assertEqual(daemon.wait(PATIENCE_S), 0)
 
 
+class Defect(DaemonCase):
+    def test_a_refusal_that_no_code_foresees(self):
+        """The kernel refuses epoll, as the profile of a sandbox may: no error of sonard covers this."""
+        refusing = ["strace", "-f", "-qq", "-o", os.devnull, "-e", "inject=epoll_create1:error=EPERM"]
+        done = subprocess.run([*refusing, *self.configuration()], capture_output=True, text=True, timeout=START_S, check=False)
+        if "ptrace" in done.stderr.lower() and done.returncode == 1:  # forbidden, or by LeakSanitizer
+            self.skipTest("processes cannot be traced here")
+        self.assertEqual(done.returncode, 70, done.stderr)
+        self.assertRegex(done.stderr, "(?m)^defect: epoll: Operation not permitted$")
+
+
 class Exhaustion(DaemonCase):
     """If descriptors, threads or memory run out at the start, the daemon prints the reason; otherwise it serves."""
 
