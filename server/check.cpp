@@ -255,7 +255,7 @@ void Check::report_cost(const HeadConfig& head, double ms, std::size_t triangles
 
 void Check::check_world() {
   try {
-    report_.world = std::make_shared<const render::World>(read_world(config_));
+    report_.world = std::make_shared<const render::World>(read_world(config_.world));
     const render::World& world = *report_.world;
     for (const std::string& line : world.warnings) {
       warning("world.file", line);
@@ -295,8 +295,8 @@ void Check::check_world() {
     } catch (const render::RequestError&) {
       // Bad sampling; check_head() reports it.
     }
-    if (!config_.vehicle_model.empty()) {
-      report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.vehicle_model));
+    if (!config_.world.vehicle_model.empty()) {
+      report_.summary.push_back(fmt::format("vehicle  model {} of the world", config_.world.vehicle_model));
     }
   } catch (const render::WorldError& error) {
     for (const std::string& line : error.warnings) {

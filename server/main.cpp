@@ -139,8 +139,8 @@ LoadedConfig load_and_log(const CommandLine& arguments, const std::string& text)
     set_log(arguments.log_level.empty() ? "info" : arguments.log_level, arguments.log_format);
   }
   LoadedConfig loaded = load_config(arguments.config, text, head_types());
-  const std::string level{spdlog::level::to_string_view(spdlog_level(loaded.config.log_level)).data()};
-  const std::string format = loaded.config.log_format == LogFormat::json ? "json" : "text";
+  const std::string level{spdlog::level::to_string_view(spdlog_level(loaded.config.log.level)).data()};
+  const std::string format = loaded.config.log.format == LogFormat::json ? "json" : "text";
   set_log(arguments.log_level.empty() ? level : arguments.log_level,
           arguments.log_format.empty() ? format : arguments.log_format);
   spdlog::info("sonard " SONARD_BUILD_INFO ": {}", arguments.config.string());

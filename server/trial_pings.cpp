@@ -28,8 +28,9 @@ constexpr int bearings = 12;  // of a scanning head
 
 /// The vehicle's own model at the vehicle's pose; empty without a model.
 std::vector<PosedBody> own_model(const DaemonConfig& config, const render::Pose& T_world_vehicle) {
-  return config.vehicle_model.empty() ? std::vector<PosedBody>{}
-                                      : std::vector<PosedBody>{{config.vehicle_model, T_world_vehicle}};
+  return config.world.vehicle_model.empty()
+             ? std::vector<PosedBody>{}
+             : std::vector<PosedBody>{{config.world.vehicle_model, T_world_vehicle}};
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ std::vector<Finding> TrialPings::ping(std::size_t head, const render::Pose& T_wo
                       .range_m = usual_settings(settings).range.max_range_m(),
                       .sees_surface = seen.sees_surface,
                       .echo_over_floor = seen.echo_over_floor,
-                      .vehicle_model = config_.vehicle_model,
+                      .vehicle_model = config_.world.vehicle_model,
                       .hides_vehicle = settings.hides_vehicle});
 }
 
@@ -97,11 +98,11 @@ std::string TrialPings::view(std::size_t head, const std::optional<render::Pose>
     return looks;
   }
   const render::SonarSettings usual = usual_settings(settings);
-  return fmt::format(
-      "{}; {}", looks,
-      bed_text(view_of_bed(world_, moved, config_.vehicle_model, *T_world_vehicle * settings.T_vehicle_sonar,
-                           usual.aperture, usual.range.max_range_m()),
-               usual.range.max_range_m()));
+  return fmt::format("{}; {}", looks,
+                     bed_text(view_of_bed(world_, moved, config_.world.vehicle_model,
+                                          *T_world_vehicle * settings.T_vehicle_sonar, usual.aperture,
+                                          usual.range.max_range_m()),
+                              usual.range.max_range_m()));
 }
 
 }  // namespace sonard::server

@@ -24,19 +24,29 @@ namespace sonard::server {
 enum class LogLevel { trace, debug, info, warn, error };
 enum class LogFormat { text, json };
 
-struct DaemonConfig {
-  std::filesystem::path file;  ///< the configuration file itself
-  LogLevel log_level = LogLevel::info;
-  LogFormat log_format = LogFormat::text;
-  std::filesystem::path world_file;  ///< SDF; empty: open water, see `open_water`
-  bool open_water = false;           ///< whether the world may be without a surface
-  bool skips_missing_files = false;  ///< of the world
-  int world_max_triangles = 50'000'000;
+/// The program's log.
+struct LogConfig {
+  LogLevel level = LogLevel::info;
+  LogFormat format = LogFormat::text;
+};
+
+/// The world around the heads.
+struct WorldConfig {
+  std::filesystem::path file;  ///< SDF; empty: open water, see `open_water`
+  bool open_water = false;     ///< whether the world may be without a surface
+  bool skips_missing_files = false;
+  int max_triangles = 50'000'000;
   /// The world's place on Earth; replaces the place in the world file.
   std::optional<render::GeographicOrigin> origin;
   /// The body of the world that is the vehicle and moves with it. If empty: no body, or the one with the
   /// sonars that give the mounts of the heads (resolve_mounts() sets it).
   std::string vehicle_model;
+};
+
+struct DaemonConfig {
+  std::filesystem::path file;  ///< the configuration file itself
+  LogConfig log;
+  WorldConfig world;
   render::EngineKind engine = render::EngineKind::automatic;
   render::GpuOptions gpu;
   render::SkipSwitches skip;  ///< what the renderer may leave out (docs/skipping.md)

@@ -100,40 +100,40 @@ YAML::Node parse_yaml(const std::filesystem::path& file, const std::string& text
   }
 }
 
-void read_log(YamlSection& section, LogLevel& level, LogFormat& format) {
-  section.choice("level", level,
+void read_log(YamlSection& section, LogConfig& log) {
+  section.choice("level", log.level,
                  {{"trace", LogLevel::trace},
                   {"debug", LogLevel::debug},
                   {"info", LogLevel::info},
                   {"warn", LogLevel::warn},
                   {"error", LogLevel::error}},
                  "minimum severity; `--log-level` overrides it");
-  section.choice("format", format, {{"text", LogFormat::text}, {"json", LogFormat::json}},
+  section.choice("format", log.format, {{"text", LogFormat::text}, {"json", LogFormat::json}},
                  "`json`: [an object per line](deploy.md#logs-for-programs)");
 }
 
-void read_world(YamlSection& section, const std::filesystem::path& folder, DaemonConfig& config) {
-  section.path("file", config.world_file, folder, "SDF file of the world ([worlds.md](worlds.md))");
+void read_world(YamlSection& section, const std::filesystem::path& folder, WorldConfig& world) {
+  section.path("file", world.file, folder, "SDF file of the world ([worlds.md](worlds.md))");
   section.default_is("file", "**required**, unless `empty` is true");
   section.boolean(
-      "empty", config.open_water,
+      "empty", world.open_water,
       "true: the world may have no surface, as in open water. Images then contain only noise and water "
       "clutter. Without `file`, the world is only water. `world: empty` is short for `world: {empty: true}`");
-  if (!config.open_water && !section.describing()) {
+  if (!world.open_water && !section.describing()) {
     section.require("file", "an SDF world; for open water, empty: true");
   }
-  section.choice("missing", config.skips_missing_files, {{"error", false}, {"skip", true}},
+  section.choice("missing", world.skips_missing_files, {{"error", false}, {"skip", true}},
                  "missing files: `error` stops, `skip` omits meshes and includes with a warning");
-  section.integer("max_triangles", config.world_max_triangles, 1, 2'000'000'000,
+  section.integer("max_triangles", world.max_triangles, 1, 2'000'000'000,
                   "maximum number of triangles, counting each use of a mesh");
-  section.text("vehicle_model", config.vehicle_model,
+  section.text("vehicle_model", world.vehicle_model,
                "model that is the vehicle; its frame is the vehicle frame. Poses of this body in the stream "
                "have no effect");
   section.default_is("vehicle_model",
                      "the model with the sonars of `mount.from_world`; no model if no head has `from_world`");
   section.section("origin", "position of (0, 0, 0) on Earth ([worlds.md](worlds.md#place-on-earth))",
                   [&](YamlSection& inner) {
-                    render::GeographicOrigin& origin = config.origin.emplace();
+                    render::GeographicOrigin& origin = world.origin.emplace();
                     inner.require("latitude_deg", "degrees, WGS 84, north is positive");
                     inner.require("longitude_deg", "degrees, WGS 84, east is positive");
                     inner.number("latitude_deg", origin.latitude_deg, Range::from(-90.0, 90.0),
@@ -250,12 +250,12 @@ void read_document(YamlSection& root, std::span<const HeadType* const> types, Da
   HeadContext context;
   context.folder = config.file.parent_path();
   root.section("log", "level and format of the log",
-               [&](YamlSection& section) { read_log(section, config.log_level, config.log_format); });
+               [&](YamlSection& section) { read_log(section, config.log); });
   root.require("world", "a mapping with the world's file, or `empty` for open water");
   const std::string_view word = root.word("world");
   const bool is_open_water = word == "empty";
   if (is_open_water || root.describing()) {
-    root.choice("world", config.open_water, {{"empty", true}},
+    root.choice("world", config.world.open_water, {{"empty", true}},
                 "scene around the vehicle; `empty` is open water");
   }
   if (!is_open_water && !word.empty()) {
@@ -264,7 +264,7 @@ void read_document(YamlSection& root, std::span<const HeadType* const> types, Da
                                      in_quotes(word)));
   } else if (!is_open_water) {
     root.section("world", "scene around the vehicle; `empty` is open water",
-                 [&](YamlSection& section) { read_world(section, context.folder, config); });
+                 [&](YamlSection& section) { read_world(section, context.folder, config.world); });
   }
   root.choice("engine", config.engine,
               {{"auto", render::EngineKind::automatic},

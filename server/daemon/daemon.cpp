@@ -193,7 +193,7 @@ Daemon::Daemon(const DaemonConfig& config, const render::World& world, const Ren
                                 config.skip,
                                 playback_,
                                 recorder_.get(),
-                                config.vehicle_model,
+                                config.world.vehicle_model,
                                 page_.get(),
                                 &world};
     try {
@@ -527,22 +527,22 @@ void Daemon::end(int exit_code) {
 
 }  // namespace
 
-render::World read_world(const DaemonConfig& config) {
-  if (config.world_file.empty()) {
+render::World read_world(const WorldConfig& config) {
+  if (config.file.empty()) {
     render::World open_water;
     open_water.name = "open_water";
     open_water.origin = config.origin;
     return open_water;
   }
   render::World world = render::load_world(
-      config.world_file, render::model_folders_from_environment(),
+      config.file, render::model_folders_from_environment(),
       config.skips_missing_files ? render::MissingFiles::skip : render::MissingFiles::error, config.origin,
-      static_cast<std::size_t>(config.world_max_triangles));
+      static_cast<std::size_t>(config.max_triangles));
   if (world.triangle_count() == 0 && !config.open_water) {
     throw render::WorldError(
         {fmt::format("{}: the world has no triangles (expected a surface that reflects sound; for open "
                      "water, write `world: empty`, or add `empty: true` beside `file`)",
-                     config.world_file.string())},
+                     config.file.string())},
         world.warnings);
   }
   return world;
@@ -550,9 +550,9 @@ render::World read_world(const DaemonConfig& config) {
 
 render::World load_world_of(DaemonConfig& config) {
   try {
-    render::World world = read_world(config);
+    render::World world = read_world(config.world);
     if (const std::string missing = render::missing_from_reader_jail();
-        !missing.empty() && !config.world_file.empty()) {
+        !missing.empty() && !config.world.file.empty()) {
       spdlog::warn("world {}: {}", world.name, missing);
     }
     for (const std::string& warning : world.warnings) {

@@ -18,7 +18,7 @@ class Playback;
 
 /// Reads the world of a configuration.
 /// @throws render::WorldError, also if the world has no triangles and is not declared open water
-render::World read_world(const DaemonConfig& config);
+render::World read_world(const WorldConfig& config);
 
 /// Reads the world and resolves configuration values that depend on it (resolve_mounts()). Logs warnings and
 /// ignored parts of the world.

@@ -37,14 +37,14 @@ class MountResolver {
   MountResolver(DaemonConfig& config, const render::World& world) : config_(config), world_(world) {}
 
   std::vector<ConfigProblem> take() {
-    if (!config_.vehicle_model.empty() && world_.find_body(config_.vehicle_model) == nullptr) {
-      problem("world.vehicle_model", fmt::format("the world has no model '{}'", config_.vehicle_model));
+    if (!config_.world.vehicle_model.empty() && world_.find_body(config_.world.vehicle_model) == nullptr) {
+      problem("world.vehicle_model", fmt::format("the world has no model '{}'", config_.world.vehicle_model));
     }
     for (std::size_t i = 0; i < config_.heads.size(); ++i) {
       mount(i);
     }
     for (std::size_t i = 0; i < config_.heads.size(); ++i) {
-      if (config_.heads[i].hides_vehicle && config_.vehicle_model.empty()) {
+      if (config_.heads[i].hides_vehicle && config_.world.vehicle_model.empty()) {
         problem(
             fmt::format("heads[{}].hides_vehicle", i),
             "the world has no model of the vehicle (expected world.vehicle_model, or a mount from_world)");
@@ -84,16 +84,16 @@ class MountResolver {
   }
 
   void carry(const std::string& key, const render::WorldSonar& sonar) {
-    if (config_.vehicle_model.empty()) {
-      config_.vehicle_model = sonar.body;
-    } else if (config_.vehicle_model != sonar.body) {
+    if (config_.world.vehicle_model.empty()) {
+      config_.world.vehicle_model = sonar.body;
+    } else if (config_.world.vehicle_model != sonar.body) {
       problem(key, fmt::format("{} is on model '{}', but the vehicle is '{}' (expected one vehicle)",
-                               sonar.path, sonar.body, config_.vehicle_model));
+                               sonar.path, sonar.body, config_.world.vehicle_model));
     }
   }
 
   void resolve_inputs() {
-    const WorldOfPoses world{config_.vehicle_model, world_.origin};
+    const WorldOfPoses world{config_.world.vehicle_model, world_.origin};
     for (std::shared_ptr<const PoseInput>& input : config_.poses.inputs) {
       if (auto resolved = input->in_world(world, problems_)) {
         input = std::move(resolved);

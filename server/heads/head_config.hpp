@@ -31,7 +31,7 @@ struct HeadConfig {
   render::Pose T_vehicle_sonar;  ///< mount
   /// The sonar of the world that gives the mount (resolve_mounts() reads it); empty: no such sonar.
   std::string mount_from_world;
-  bool hides_vehicle = false;  ///< whether its images leave out DaemonConfig::vehicle_model
+  bool hides_vehicle = false;  ///< whether its images leave out WorldConfig::vehicle_model
   /// All values of a ping that the device itself does not set.
   render::SonarSettings acoustics;
   /// Whether a faster preset than the one of `acoustics` is used while pings cannot be made at the requested

@@ -39,7 +39,7 @@ void FrameFindings::add(const std::string& frame, const FrameView& view) {
                                             .range_m = view.range_m,
                                             .sees_surface = view.sees_surface,
                                             .echo_over_floor = view.echo_over_floor,
-                                            .vehicle_model = config_.vehicle_model,
+                                            .vehicle_model = config_.world.vehicle_model,
                                             .hides_vehicle = head_.hides_vehicle})) {
     auto cause = std::ranges::find(causes_, finding.code, &Cause::code);
     if (cause == causes_.end()) {

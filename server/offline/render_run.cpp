@@ -255,7 +255,7 @@ std::unique_ptr<FrameSource> make_frames(const std::vector<HeadConfig>& heads, s
 render::World world_without_hidden(DaemonConfig& config, std::size_t head) {
   render::World world = load_world_of(config);
   for (render::Body& body : world.bodies) {
-    if (config.heads[head].hides_vehicle && body.name == config.vehicle_model) {
+    if (config.heads[head].hides_vehicle && body.name == config.world.vehicle_model) {
       body.parts.clear();
     }
   }
@@ -267,10 +267,10 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       options_(options),
       head_(chosen_head(loaded, options.head)),
       world_(world_without_hidden(config_, head_)),
-      trajectory_(
-          with_rests(trajectory_with_bodies(options, world_,
-                                            config_.heads[head_].hides_vehicle ? "" : config_.vehicle_model),
-                     options)),
+      trajectory_(with_rests(
+          trajectory_with_bodies(options, world_,
+                                 config_.heads[head_].hides_vehicle ? "" : config_.world.vehicle_model),
+          options)),
       renderer_(world_, tested(renderer_options(config_))),
       truth_(options.truth ? std::make_unique<BodyTruth>(world_, renderer_options(config_)) : nullptr),
       frames_(make_frames(config_.heads, head_, trajectory_, options, truth_.get())),
@@ -315,7 +315,7 @@ void RenderRun::choose_engine() {
 std::string RenderRun::manifest() const {
   Json json{{"program", app_name},
             {"config_crc32", fmt::format("{:08x}", crc_of(config_.file))},
-            {"world_crc32", fmt::format("{:08x}", crc_of(config_.world_file))},
+            {"world_crc32", fmt::format("{:08x}", crc_of(config_.world.file))},
             {"trajectory_crc32", fmt::format("{:08x}", crc_of(options_.trajectory))},
             {"axes", options_.axes == pose::Axes::ned_frd ? "ned_frd" : "enu_flu"},
             {"bearings", "positive to port"},  // formerly to starboard; must not mix in one folder

@@ -38,7 +38,7 @@ struct PoseSourceType {
 
 /// Values of the world that an input may need.
 struct WorldOfPoses {
-  std::string vehicle_model;                       ///< DaemonConfig::vehicle_model
+  std::string vehicle_model;                       ///< WorldConfig::vehicle_model
   std::optional<render::GeographicOrigin> origin;  ///< the world's place on Earth
 };
 

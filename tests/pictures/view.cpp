@@ -113,7 +113,7 @@ View configured_view(const std::string& config, double range_m, double time_s, d
   const server::DaemonConfig daemon = load(config);
   const Vehicle vehicle(daemon.poses);
   View view;
-  view.world = render::load_world(daemon.world_file);
+  view.world = render::load_world(daemon.world.file);
   const double sound_speed_mps = daemon.water.sound_speed_mps;
   const server::HeadConfig& head = daemon.heads.front();
   if (head.type == &server::gemini_type()) {

@@ -88,7 +88,7 @@ std::vector<render::Pose> own_poses(const DaemonConfig& config, const render::Wo
       add_poses(pose::load_trajectory(folder / demo.second["trajectory"].as<std::string>()), more, poses);
     }
   }
-  if (const render::Body* vehicle = world.find_body(config.vehicle_model); vehicle != nullptr) {
+  if (const render::Body* vehicle = world.find_body(config.world.vehicle_model); vehicle != nullptr) {
     poses.push_back(vehicle->T_world_body);
   }
   return poses;
@@ -122,11 +122,11 @@ ConfigScene scene_of(const DaemonConfig& config, const HeadConfig& head, const r
   ConfigScene scene;
   scene.name = config.file.filename().string() + ": " + head.name;
   scene.types = {std::string(head.type->name())};
-  scene.world_file = config.world_file;
+  scene.world_file = config.world.file;
   scene.options = server::renderer_options(config);
-  if (!config.vehicle_model.empty()) {
+  if (!config.world.vehicle_model.empty()) {
     const render::Pose out_of_sight{{0, 0, -1e6}, {1, 0, 0, 0}};
-    scene.bodies = {{config.vehicle_model, head.hides_vehicle ? out_of_sight : T_world_vehicle}};
+    scene.bodies = {{config.world.vehicle_model, head.hides_vehicle ? out_of_sight : T_world_vehicle}};
   }
   const render::PingRequest ping = server::usual_ping(head, T_world_vehicle);
   scene.settings = ping.settings;
@@ -148,10 +148,10 @@ ConfigScenes config_scenes(int more_poses, int bearings) {
   std::vector<DaemonConfig> configs;
   for (const fs::path& file : configurations()) {
     DaemonConfig config = load(file);
-    if (!all.worlds.contains(config.world_file)) {
-      all.worlds[config.world_file] = server::read_world(config);
+    if (!all.worlds.contains(config.world.file)) {
+      all.worlds[config.world.file] = server::read_world(config.world);
     }
-    if (!server::resolve_mounts(config, all.worlds[config.world_file]).empty()) {
+    if (!server::resolve_mounts(config, all.worlds[config.world.file]).empty()) {
       throw std::runtime_error(file.string() + ": the world does not give the mounts");
     }
     configs.push_back(std::move(config));
@@ -159,18 +159,18 @@ ConfigScenes config_scenes(int more_poses, int bearings) {
 
   std::map<fs::path, render::Pose> first_poses;
   for (const DaemonConfig& config : configs) {
-    if (const auto poses = own_poses(config, all.worlds[config.world_file], 0); !poses.empty()) {
-      first_poses.emplace(config.world_file, poses.front());
+    if (const auto poses = own_poses(config, all.worlds[config.world.file], 0); !poses.empty()) {
+      first_poses.emplace(config.world.file, poses.front());
     }
   }
 
   for (const DaemonConfig& config : configs) {
-    std::vector<render::Pose> poses = own_poses(config, all.worlds[config.world_file], more_poses);
+    std::vector<render::Pose> poses = own_poses(config, all.worlds[config.world.file], more_poses);
     if (poses.empty()) {
-      if (!first_poses.contains(config.world_file)) {
+      if (!first_poses.contains(config.world.file)) {
         throw std::runtime_error(config.file.string() + ": no configuration gives a pose in its world");
       }
-      poses.push_back(first_poses[config.world_file]);
+      poses.push_back(first_poses[config.world.file]);
     }
     for (const HeadConfig& head : config.heads) {
       for (const render::Pose& T_world_vehicle : poses) {

@@ -50,8 +50,8 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   const LoadedConfig loaded = load(minimal_config);
   const DaemonConfig& config = loaded.config;
   EXPECT_THAT(loaded.warning_lines(), IsEmpty());
-  EXPECT_EQ(config.log_level, LogLevel::info);
-  EXPECT_EQ(config.world_file, folder_ / "world.sdf");
+  EXPECT_EQ(config.log.level, LogLevel::info);
+  EXPECT_EQ(config.world.file, folder_ / "world.sdf");
   EXPECT_EQ(config.engine, render::EngineKind::automatic);
   ASSERT_TRUE(config.poses.T_world_vehicle_initial);
   EXPECT_EQ(config.poses.T_world_vehicle_initial->position_m, glm::dvec3(1, 2, 3));
@@ -176,7 +176,7 @@ TEST_F(Loader, ResolvesPathsAgainstTheFolderOfTheFile) {
       "world: {file: /somewhere/else.sdf}\n"
       "poses: {trajectory: {file: sub/t.csv, loop: true, speed: 2, axes: ned_frd}}\n" +
       minimal_config.substr(minimal_config.find("heads:")) + "    dump: {directory: pings}\n");
-  EXPECT_EQ(loaded.config.world_file, "/somewhere/else.sdf");
+  EXPECT_EQ(loaded.config.world.file, "/somewhere/else.sdf");
   const auto* trajectory = settings_of<TrajectoryInput>(loaded.config.poses);
   ASSERT_NE(trajectory, nullptr);
   EXPECT_EQ(trajectory->file, folder_ / "sub/t.csv");
@@ -389,16 +389,16 @@ TEST_F(Loader, TakesOpenWaterForAWorld) {
   const std::string rest = minimal_config.substr(minimal_config.find("poses:"));
   for (const char* world : {"world: empty\n", "world: {empty: true}\n"}) {
     const LoadedConfig loaded = load(world + rest);
-    EXPECT_TRUE(loaded.config.open_water) << world;
-    EXPECT_EQ(loaded.config.world_file, "") << world;
+    EXPECT_TRUE(loaded.config.world.open_water) << world;
+    EXPECT_EQ(loaded.config.world.file, "") << world;
     EXPECT_THAT(loaded.warning_lines(), IsEmpty());
   }
   const DaemonConfig both =
       load("world: {file: world.sdf, empty: true, origin: {latitude_deg: 1, longitude_deg: 2}}\n" + rest)
           .config;
-  EXPECT_TRUE(both.open_water);
-  EXPECT_EQ(both.world_file, folder_ / "world.sdf");
-  EXPECT_FALSE(load(minimal_config).config.open_water);
+  EXPECT_TRUE(both.world.open_water);
+  EXPECT_EQ(both.world.file, folder_ / "world.sdf");
+  EXPECT_FALSE(load(minimal_config).config.world.open_water);
 }
 
 TEST_F(Loader, LeavesTheVehicleOfGazeboToTheWorld) {

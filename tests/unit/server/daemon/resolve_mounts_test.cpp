@@ -56,7 +56,7 @@ TEST_F(ResolveMounts, ChangesNothingThatIsNotAskedOfIt) {
   add_gazebo({"boat", {"harbour"}});
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar, render::Pose{});
-  EXPECT_EQ(config_.vehicle_model, "");
+  EXPECT_EQ(config_.world.vehicle_model, "");
   EXPECT_EQ(vehicle_of_gazebo().name, "boat");
   EXPECT_THAT(vehicle_of_gazebo().parents, ElementsAre("harbour"));
 }
@@ -70,7 +70,7 @@ TEST_F(ResolveMounts, MountsHeadsAndFindsTheVehicle) {
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(config_.heads[0].T_vehicle_sonar.position_m, glm::dvec3(1, 2, 3));
   EXPECT_EQ(config_.heads[1].T_vehicle_sonar.position_m, glm::dvec3(0, 0, 1));
-  EXPECT_EQ(config_.vehicle_model, "rov");
+  EXPECT_EQ(config_.world.vehicle_model, "rov");
   EXPECT_EQ(vehicle_of_gazebo().name, "rov");
 }
 
@@ -99,7 +99,7 @@ TEST_F(ResolveMounts, WantsOneSonarOfTheRightTypeOnOneVehicle) {
 }
 
 TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
-  config_.vehicle_model = "boat";
+  config_.world.vehicle_model = "boat";
   EXPECT_THAT(take(), ElementsAre(is_problem("world.vehicle_model", "no model 'boat'")));
   config_ = {};
   add_gemini("");
@@ -107,7 +107,7 @@ TEST_F(ResolveMounts, WantsAVehicleThatIsThere) {
   add_gazebo({});
   EXPECT_THAT(take(), ElementsAre(is_problem("heads[0].hides_vehicle", "expected world.vehicle_model"),
                                   is_problem("poses.gazebo.vehicle", "expected the name of an entity")));
-  config_.vehicle_model = "rov";
+  config_.world.vehicle_model = "rov";
   EXPECT_THAT(take(), IsEmpty());
   EXPECT_EQ(vehicle_of_gazebo().name, "rov");
 }
