@@ -21,8 +21,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text/percent_decoding.hpp"
 #include "renderer/scene/collada_for_assimp.hpp"
-#include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/local_file.hpp"
 #include "renderer/scene/obj_for_assimp.hpp"
 
@@ -60,7 +60,7 @@ class WorldFiles : public Assimp::DefaultIOSystem {
       names.push_back(name.substr(absolute + 1));
     }
     if (name.starts_with(folder_)) {
-      names.push_back(folder_ + unescaped(name.substr(folder_.size())));
+      names.push_back(folder_ + percent_decoded(name.substr(folder_.size())));
     }
     for (const std::string& possible : names) {
       std::error_code error;

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "common/text/lower_case.hpp"
+#include "common/text/percent_decoding.hpp"
 #include "renderer/scene/uri_resolver.hpp"
 
 namespace sonard::render {
@@ -26,7 +28,7 @@ std::vector<std::string> segments_of(std::string_view path) {
   while (!path.empty()) {
     const std::size_t end = std::min(path.find('/'), path.size());
     if (end > 0) {
-      segments.push_back(unescaped(path.substr(0, end)));
+      segments.push_back(percent_decoded(path.substr(0, end)));
     }
     path.remove_prefix(std::min(end + 1, path.size()));
   }
@@ -75,28 +77,6 @@ std::optional<fs::path> newest_version(const fs::path& model) {
 }
 
 }  // namespace
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
-
-std::string unescaped(std::string_view text) {
-  std::string plain;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned code = 0;
-    if (text[i] == '%' && i + 2 < text.size() &&
-        std::from_chars(text.data() + i + 1, text.data() + i + 3, code, 16).ptr == text.data() + i + 3) {
-      plain += static_cast<char>(code);
-      i += 2;
-    } else {
-      plain += text[i];
-    }
-  }
-  return plain;
-}
 
 std::optional<FuelUri> parse_fuel_uri(std::string_view uri) {
   for (const std::string_view scheme : {"https://", "http://", "fuel://"}) {

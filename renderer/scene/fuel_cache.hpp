@@ -20,11 +20,6 @@ struct FuelUri {
 /// Decodes escapes like %20; nullopt if the URI is not a model of Fuel.
 std::optional<FuelUri> parse_fuel_uri(std::string_view uri);
 
-std::string lower_case(std::string_view text);
-
-/// Decodes escapes like %20; other text, "%zz" among it, stays.
-std::string unescaped(std::string_view text);
-
 /// The folder of the model, or its file, in $GZ_FUEL_CACHE_PATH, $IGN_FUEL_CACHE_PATH, ~/.gz/fuel or
 /// ~/.ignition/fuel.
 /// @throws MissingFile with the folders searched and the command that downloads the model

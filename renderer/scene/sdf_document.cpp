@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
+#include "common/text/lower_case.hpp"
 #include "common/text/printable.hpp"
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/grouped_warnings.hpp"

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "common/text/edit_distance.hpp"
-#include "renderer/scene/fuel_cache.hpp"
+#include "common/text/lower_case.hpp"
 #include "renderer/scene/materials.hpp"
 
 namespace sonard::render {

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "common/text/lower_case.hpp"
 #include "common/text/printable.hpp"
 #include "renderer/scene/fuel_cache.hpp"
 #include "renderer/scene/local_file.hpp"

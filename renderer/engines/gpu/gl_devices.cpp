@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <string_view>
 #include <tuple>
@@ -11,17 +10,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/text/lower_case.hpp"
 #include "renderer/errors.hpp"
 
 namespace sonard::render {
 
 namespace {
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 std::string list_of(const std::vector<GlDevice>& devices) {
   return devices.empty() ? "EGL lists no device" : fmt::format("{}", fmt::join(describe(devices), "; "));
