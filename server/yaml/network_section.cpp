@@ -14,7 +14,7 @@ namespace sonard::server {
 namespace {
 
 constexpr TextForm serial_endpoint_form{"an address and port such as 127.0.0.1:4001", endpoint_form.type,
-                                        endpoint_form.schema};
+                                        endpoint_form.schema, true};
 
 /// Socket is SerialTcpConfig or SerialUdpConfig.
 template <typename Socket>

@@ -16,7 +16,7 @@ namespace sonard::server {
 
 inline constexpr TextForm endpoint_form{
     "an address and port such as 127.0.0.1:14600", "address:port",
-    R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}$")"};
+    R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}:[0-9]{1,5}$")", true};
 
 inline constexpr std::string_view address_schema =
     R"("type": "string", "pattern": "^[0-9]{1,3}(\\.[0-9]{1,3}){3}$")";

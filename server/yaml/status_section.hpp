@@ -12,10 +12,10 @@
 
 namespace sonard::server {
 
-inline constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema};
+inline constexpr TextForm address_form{"an IPv4 address such as 127.0.0.2", "address", address_schema, true};
 inline constexpr TextForm own_address_form{
     "an IPv4 address such as 127.0.0.2, or an interface of this machine such as eth0", "address or interface",
-    R"("type": "string")"};
+    R"("type": "string")", true};
 inline constexpr TextForm netmask_form{
     "a netmask such as 255.255.255.0, or an interface of this machine such as eth0", "netmask or interface",
     R"("type": "string")"};

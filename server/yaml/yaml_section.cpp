@@ -89,11 +89,11 @@ std::string ipv6_text(std::string_view value, std::string_view expected) {
                      expected);
 }
 
-/// The interface of this machine that `value` names, alone or before a port, if the key needs an address.
-std::optional<OwnAddress> interface_in_place_of_address(std::string_view value, std::string_view expected) {
+/// The interface of this machine that `value` names, alone or before a port.
+std::optional<OwnAddress> interface_named(std::string_view value) {
   const auto own = parse_own_address(value.substr(0, value.find(':')));
   const bool named = own && !own->interface.empty() && own->trouble.empty();
-  return named && expected.find("address") != std::string_view::npos ? own : std::nullopt;
+  return named ? own : std::nullopt;
 }
 
 std::string interface_text(std::string_view value, std::string_view expected, const OwnAddress& own) {
@@ -620,10 +620,11 @@ std::optional<std::size_t> YamlSection::problem(const SourcePosition& at, std::s
   return findings_.problems.size() - 1;
 }
 
-void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected) {
+void YamlSection::report_bad_value(std::string_view key, std::string_view value, std::string_view expected,
+                                   bool is_address) {
   if (is_ipv6(value)) {
     report(key, ipv6_text(value, expected));
-  } else if (const auto own = interface_in_place_of_address(value, expected)) {
+  } else if (const auto own = is_address ? interface_named(value) : std::nullopt) {
     report(key, interface_text(value, expected, *own));
   } else {
     report(key, fmt::format("{} is not understood (expected {})", in_quotes(value), expected));
@@ -741,7 +742,7 @@ std::optional<std::size_t> YamlSection::word_index(std::string_view key,
   if (found == words.end()) {
     const std::string_view meant = closest_word(*word, words);
     if (meant.empty()) {
-      report_bad_value(key, *word, expected);
+      report_bad_value(key, *word, expected, false);
     } else {
       report(key, fmt::format("{} is not understood, did you mean '{}'? (expected {})", in_quotes(*word),
                               meant, expected));

@@ -56,6 +56,7 @@ struct TextForm {
   std::string_view expected;  ///< for error messages: "an IPv4 address such as 127.0.0.2"
   std::string_view type;      ///< for people: "address"; for a list "addresses"
   std::string_view schema;    ///< as KeyReference::schema
+  bool is_address = false;    ///< whether the text begins with an address
 };
 
 /// For YamlSection::parsed() and parsed_list(): accepts any text but an empty one.
@@ -170,7 +171,7 @@ class YamlSection {
       if (const std::optional<Value> value = parse(*word)) {
         out = *value;
       } else {
-        report_bad_value(key, *word, form.expected);
+        report_bad_value(key, *word, form.expected, form.is_address);
         return false;
       }
       return true;
@@ -230,7 +231,9 @@ class YamlSection {
   /// The index of the added problem; nothing if `path` has a problem already or the file has too many.
   std::optional<std::size_t> problem(const SourcePosition& at, std::string path, std::string message,
                                      bool of_network = false);
-  void report_bad_value(std::string_view key, std::string_view value, std::string_view expected);
+  /// @param is_address TextForm::is_address
+  void report_bad_value(std::string_view key, std::string_view value, std::string_view expected,
+                        bool is_address);
   void report_unknown(const Entry& entry);
   std::optional<double> number_of(const YAML::Node& node, const SourcePosition& at, const std::string& path,
                                   const Range& range);

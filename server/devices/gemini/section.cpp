@@ -14,9 +14,9 @@ namespace {
 
 constexpr double minute_ms = 60'000.0;
 constexpr TextForm bind_form{"an address of this machine, or 0.0.0.0 for all of them", "address",
-                             address_schema};
+                             address_schema, true};
 constexpr TextForm trigger_form{"an address and port such as 127.0.0.1:14700", endpoint_form.type,
-                                endpoint_form.schema};
+                                endpoint_form.schema, true};
 
 void read_identity(YamlSection& section, GeminiConfig& config) {
   // 0 means "not set" and 1 is reserved for production: clients send nothing to either ID

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double minute_ms = 60'000.0;
 constexpr TextForm discovery_form{"an address and port such as 0.0.0.0:30303", endpoint_form.type,
-                                  endpoint_form.schema};
-constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address", address_schema};
+                                  endpoint_form.schema, true};
+constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address", address_schema, true};
 constexpr TextForm mac_form{"six hexadecimal octets such as 54:10:ec:12:34:56", "six octets", mac_schema};
 
 void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& config) {
