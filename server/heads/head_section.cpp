@@ -165,8 +165,7 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
   section.number("tvg_absorption_db_per_km", model.tvg.absorption_db_per_m, Range::from(0.0, 10'000.0),
                  "alpha of the TVG, one way, as the device assumes", 1000.0);
   section.default_is("tvg_absorption_db_per_km", "absorption of the water");
-  section.number("tvg_max_db", model.tvg.max_db, Range::from(0.0, 200.0),
-                 "maximum of the TVG; a Gemini reaches it at 37 m in the sea");
+  section.number("tvg_max_db", model.tvg.max_db, Range::from(0.0, 200.0), "maximum of the time-varying gain");
   section.number("gain_db", model.gain_db, level_db,
                  "output level of unit intensity after TVG, re full scale (80 dB if samples are decibels); "
                  "the client's gain is added");

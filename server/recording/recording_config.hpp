@@ -22,7 +22,7 @@ enum class RecordingSync {
 /// Logs of what the heads send and receive.
 struct RecordingConfig {
   std::filesystem::path directory;  ///< created if missing; used by one daemon at a time
-  bool glf = true;                  ///< of heads whose users know it (HeadType)
+  bool glf = true;                  ///< of heads whose type has this format
   bool mcap = true;
   bool mcap_wire_bytes = true;  ///< whether it holds the bytes of both directions
   bool mcap_foxglove = false;   ///< whether it holds images, poses and echoes for Foxglove

@@ -13,7 +13,8 @@ RecordingConfig read_recording(YamlSection& section, const std::filesystem::path
   section.require("directory", "a folder for the logs");
   section.path("directory", recording.directory, folder,
                "folder of the logs, created if missing; only one daemon at a time can use it");
-  section.boolean("glf", recording.glf, "writes a `.glf` for each head whose users work with such logs");
+  section.boolean("glf", recording.glf,
+                  "writes a `.glf` for each head of a type that has this format ([logs.md](logs.md))");
   section.boolean("mcap", recording.mcap,
                   "writes one MCAP file with images, poses, and the bytes of both directions");
   section.boolean("mcap_wire_bytes", recording.mcap_wire_bytes,
