@@ -90,7 +90,9 @@ bool leads_to_chunks(const Summary& summary, ByteView file) {
 
 Result<Reader, WireError> Reader::open(ByteView file) {
   const auto start = damaged_start(file);
-  if (auto summary = read_summary(file); summary && (!start || leads_to_chunks(*summary, file))) {
+  auto summary = read_summary(file);
+  const bool lists_no_chunk = summary && summary->chunks.empty();  // of an empty file, or without indexes
+  if (summary && !lists_no_chunk && (!start || leads_to_chunks(*summary, file))) {
     Reader reader{file, std::move(*summary)};
     if (start) {
       reader.damaged_.push_back(*start);
@@ -102,9 +104,10 @@ Result<Reader, WireError> Reader::open(ByteView file) {
   if (!section) {
     return section.error();
   }
-  Reader reader{file, std::move(section->summary)};
+  Reader reader{file,
+                std::move(lists_no_chunk && section->summary.chunks.empty() ? *summary : section->summary)};
   reader.finished_ = section->ended;
-  reader.lacks_summary_ = section->ended;
+  reader.lacks_summary_ = section->ended && !lists_no_chunk;
   reader.tail_size_ = section->ended ? 0 : file.size() - section->end;
   reader.stopped_by_ = section->error;
   reader.damaged_ = std::move(section->damaged);

@@ -59,8 +59,9 @@ class MessageCursor {
 };
 
 /// A file in memory or mapped into memory. Uses the summary of a finished file. Scans a file without a
-/// readable summary once and skips its damaged parts. Chunks may be compressed with Zstandard; attachments,
-/// metadata and unknown records are skipped. Views the file; threads may share it.
+/// readable summary, or without chunk indexes in it, once and skips its damaged parts. Chunks may be
+/// compressed with Zstandard; attachments, metadata and unknown records are skipped. Views the file; threads
+/// may share it.
 class Reader {
  public:
   /// Opens a file; an error if it does not begin as an MCAP file and holds no chunk.

@@ -95,6 +95,23 @@ TEST(McapReader, AFileWithoutMessagesIsWhole) {
   EXPECT_TRUE(all_of(reader->messages()).empty());
 }
 
+TEST(McapReader, ASummaryWithoutChunkIndexesIsRestoredFromTheData) {
+  const Bytes file = finished_file();
+  const auto section = scan_data_section(file);
+  ASSERT_TRUE(section);
+  Summary without_chunks = section->summary;
+  without_chunks.chunks.clear();
+  Bytes plain{file.begin(), file.begin() + static_cast<std::ptrdiff_t>(section->end)};
+  append(plain, make_end(without_chunks, plain.size(), 0));
+  ASSERT_EQ(read_summary(plain)->chunks.size(), 0U);
+  const auto reader = Reader::open(plain);
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE(reader->finished());
+  EXPECT_FALSE(reader->lacks_summary());
+  EXPECT_EQ(reader->summary(), section->summary);
+  EXPECT_EQ(all_of(reader->messages()), messages_in_order);
+}
+
 TEST(McapReader, RecordsOfLaterVersionsAreSkipped) {
   Bytes file = finished_file();
   const Bytes foreign{0x8F, 3, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
