@@ -100,7 +100,9 @@ spdlog::level::level_enum spdlog_level(LogLevel level) {
 
 /// Logs one line per event to stderr, in UTC.
 void start_log() {
-  auto logger = std::make_shared<spdlog::logger>("sonard", std::make_shared<StderrSink>());
+  const auto sink = std::make_shared<StderrSink>();
+  auto logger = std::make_shared<spdlog::logger>("sonard", sink);
+  logger->set_error_handler([sink](const std::string&) { sink->drop_line(); });
   spdlog::set_default_logger(std::move(logger));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %l %v", spdlog::pattern_time_type::utc);
 }

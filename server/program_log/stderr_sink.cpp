@@ -9,6 +9,8 @@
 
 #include <cerrno>
 #include <climits>
+#include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -43,19 +45,33 @@ StderrSink::~StderrSink() {
   }
 }
 
+void StderrSink::drop_line() {
+  const std::lock_guard lock(mutex_);
+  ++out_of_memory_;
+}
+
 void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
+  try {
+    write_line(message);
+  } catch (const std::bad_alloc&) {
+    ++out_of_memory_;
+  }
+}
+
+void StderrSink::write_line(const spdlog::details::log_msg& message) {
   const std::string payload = printable({message.payload.data(), message.payload.size()});
   spdlog::details::log_msg safe = message;
   safe.payload = payload;
   spdlog::memory_buf_t line;
   formatter_->format(safe, line);
-  std::string text = std::exchange(cut_, false) ? "\n" : "";
-  if (dropped_ > 0) {
+  std::string text = cut_ ? "\n" : "";
+  if (dropped_ + out_of_memory_ > 0) {
     text += dropped_text(message);
   }
   text.append(line.data(), line.size());
+  cut_ = false;
   if (write(text)) {
-    dropped_ = 0;
+    dropped_ = out_of_memory_ = 0;
   } else {
     ++dropped_;
   }
@@ -63,7 +79,11 @@ void StderrSink::sink_it_(const spdlog::details::log_msg& message) {
 
 /// Formatted like the lines around it.
 std::string StderrSink::dropped_text(const spdlog::details::log_msg& next) {
-  const std::string text = fmt::format("log: {} lines were dropped, because stderr was blocked", dropped_);
+  const char* const why = out_of_memory_ == 0 ? "stderr was blocked"
+                          : dropped_ == 0     ? "memory ran out"
+                                              : "stderr was blocked and memory ran out";
+  const std::string text =
+      fmt::format("log: {} lines were dropped, because {}", dropped_ + out_of_memory_, why);
   spdlog::memory_buf_t line;
   formatter_->format({next.time, {}, next.logger_name, spdlog::level::warn, text}, line);
   return {line.data(), line.size()};

@@ -3,6 +3,7 @@
 #include "server/program_log/peer_log.hpp"
 
 #include <memory>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@
 #include <gtest/gtest.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
+
+/// A value for whose text there is no memory.
+struct TooLong {};
+template <>
+struct fmt::formatter<TooLong> {
+  constexpr auto parse(format_parse_context& context) { return context.begin(); }
+  static format_context::iterator format(const TooLong&, format_context&) { throw std::bad_alloc(); }
+};
 
 namespace sonard::server {
 namespace {
@@ -47,6 +56,17 @@ TEST_F(PeerLogTest, LetsABurstThroughAndLeavesTheRestOut) {
   }
   ASSERT_EQ(lines->texts.size(), static_cast<std::size_t>(PeerLog::burst));
   EXPECT_EQ(lines->texts.back(), "client 9 came");
+}
+
+TEST_F(PeerLogTest, ALineWithoutMemoryIsDroppedAndCounted) {
+  log.warn("client {}", TooLong());
+  log.error("{}", TooLong());
+  EXPECT_TRUE(lines->texts.empty());
+  log.info("next");
+  log.info("last");
+  EXPECT_THAT(lines->texts,
+              testing::ElementsAre(
+                  "next (2 earlier lines were dropped: too many in a short time, or out of memory)", "last"));
 }
 
 TEST_F(PeerLogTest, SaysWithTheNextLineHowManyAreMissing) {

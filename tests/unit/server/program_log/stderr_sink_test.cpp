@@ -8,7 +8,10 @@
 
 #include <array>
 #include <cstdlib>
+#include <memory>
+#include <new>
 #include <string>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,6 +69,32 @@ TEST_P(StderrSinkTest, WritesLines) {
   logger.info("one");
   logger.info("two");
   EXPECT_EQ(ends.take(), "one\ntwo\n");
+}
+
+/// Has no memory for lines that begin with "long".
+struct LongLinesFail final : spdlog::formatter {
+  void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+    const std::string_view text(message.payload.data(), message.payload.size());
+    if (text.starts_with("long")) {
+      throw std::bad_alloc();
+    }
+    line.append(text.data(), text.data() + text.size());
+    line.push_back('\n');
+  }
+  std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<LongLinesFail>(); }
+};
+
+TEST_P(StderrSinkTest, LinesWithoutMemoryAreDroppedAndCounted) {
+  const auto sink = std::make_shared<StderrSink>(ends.write);
+  spdlog::logger logger("test", sink);
+  logger.set_formatter(std::make_unique<LongLinesFail>());
+  logger.info("long line");
+  logger.info("long line");
+  sink->drop_line();
+  EXPECT_EQ(ends.take(), "");
+  logger.info("next");
+  logger.info("last");
+  EXPECT_EQ(ends.take(), "log: 3 lines were dropped, because memory ran out\nnext\nlast\n");
 }
 
 TEST_P(StderrSinkTest, AReaderThatStopsBlocksNobodyAndIsToldWhatItMissed) {
