@@ -18,6 +18,8 @@ struct EchoRequest {
   Pose T_world_sonar;
   const SonarSettings& settings;
   bool open_water = false;  ///< fill MeanEcho::open_sr; only in mode `physical`
+  /// Factor per range bin; only if SonarSettings::directions is set, whose echoes have this loss.
+  const std::vector<float>* loss_of_bin = nullptr;
 };
 
 /// The echo as it arrives at the sonar, before array and pulse.
@@ -29,6 +31,7 @@ struct MeanEcho {
   /// [beam * lines + line], only if requested. Solid angle * elevation pattern, steradians, of the part of
   /// the beam that nothing blocks up to the middle of the line.
   std::vector<float> open_sr;
+  DirectionEchoes directions{};  ///< instead of the image, if SonarSettings::directions is set
 };
 
 /// One request, with the places for its results.

@@ -46,12 +46,14 @@ struct EchoImage {
   }
 };
 
-/// Output of the receiver, ready for the device to send: bin by bin, each from port to starboard.
+/// Output of the receiver, ready for the device to send: bin by bin, each from port to starboard. With
+/// SonarSettings::directions there are no bins.
 struct PingSamples {
   int beams = 0;
   int bins = 0;                    ///< range bins after range compression
   std::vector<std::uint8_t> u8;    ///< [bin * beams + beam], if the output has 8 bits
   std::vector<std::uint16_t> u16;  ///< [bin * beams + beam], if the output has 16 bits
+  DirectionEchoes directions{};    ///< only with SonarSettings::directions
 };
 
 struct PingRequest {

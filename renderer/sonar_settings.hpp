@@ -3,6 +3,7 @@
 #pragma once
 
 #include "renderer/aperture.hpp"
+#include "renderer/direction_grid.hpp"
 #include "renderer/model.hpp"
 #include "renderer/paper_model.hpp"
 #include "renderer/physical_model.hpp"
@@ -20,6 +21,9 @@ enum class OutputScale {
 
 struct SonarSettings {
   Aperture aperture;
+  /// Directions, each with the range of its strongest echo; if set, the result has these instead of an image.
+  /// `aperture` is then direction_aperture(), and two range bins are as long as the range resolution.
+  DirectionGrid directions;
   RangeBins range;
   Model model = Model::physical;
   PaperModel paper;

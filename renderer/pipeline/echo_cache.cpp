@@ -26,7 +26,8 @@ bool same_echo(const PhysicalModel& a, const PhysicalModel& b) {
 /// Whether both settings give the same mean echo.
 bool same_echo(const SonarSettings& a, const SonarSettings& b) {
   if (a.transmit != b.transmit || a.model != b.model || a.range.count != b.range.count ||
-      a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture) {
+      a.range.step_m != b.range.step_m || a.sampling != b.sampling || a.aperture != b.aperture ||
+      a.directions != b.directions) {
     return false;
   }
   return a.model == Model::physical ? same_echo(a.physical, b.physical)

@@ -12,6 +12,7 @@ namespace sonard::render {
 /// The last mean echo of a head, and its inputs (SkipRule::unchanged_scene).
 struct CachedEcho {
   EchoImage image;
+  DirectionEchoes directions;  ///< instead of the image, if the settings have directions
   SonarSettings settings;
   std::uint64_t seed = 0;
   SonarMotion motion;

@@ -19,6 +19,7 @@
 #include "renderer/multipath/multipath.hpp"
 #include "renderer/pipeline/echo_cache.hpp"
 #include "renderer/pipeline/ping_motion.hpp"
+#include "renderer/sample_grid/sample_grid.hpp"
 #include "renderer/scene/refracted_world.hpp"
 #include "renderer/scene/refraction.hpp"
 #include "renderer/scene/terrain_levels.hpp"
@@ -37,6 +38,12 @@ constexpr double longest_range_m = 1e5;
 
 void check(const SonarSettings& settings) {
   check_aperture(settings.aperture);
+  if (settings.directions.any()) {
+    check_directions(settings.directions);
+    if (needs_grid(settings) || settings.model != Model::physical) {
+      throw RequestError("directions: expected a preset in place of a grid of samples, and mode physical");
+    }
+  }
   const RangeBins& range = settings.range;
   if (range.count < 1 || range.count > most_range_bins) {
     throw RequestError("range: " + std::to_string(range.count) + " lines, expected 1 to " +
@@ -193,6 +200,25 @@ struct SonarRenderer::Impl {
     statistics.seconds.pulse = watch.lap();
   }
 
+  /// The strongest echoes of surfaces by direction. Neither the water nor mirrors add to them.
+  void render_directions(const PingRequest& request, int head, const Pose& T_world_sonar,
+                         DirectionEchoes& directions) {
+    const SonarSettings& settings = request.settings;
+    if (!settings.transmit) {
+      const auto pixels = static_cast<std::size_t>(settings.directions.columns * settings.directions.rows);
+      directions = {settings.directions.columns, settings.directions.rows, std::vector<float>(pixels),
+                    std::vector<float>(pixels)};
+      return;
+    }
+    bend_rays(settings);
+    follow_terrain(settings, {T_world_sonar, std::nullopt});
+    MeanEcho echo;
+    engine.image({T_world_sonar, settings, false, &loss_for(settings, head).of_line}, echo, statistics);
+    directions = std::move(echo.directions);
+    statistics.sees_surface =
+        std::ranges::any_of(directions.intensity, [](float intensity) { return intensity > 0; });
+  }
+
   /// The request to the engine; it refers to the settings.
   static EchoRequest engine_request(const SonarSettings& settings, const SonarMotion& motion) {
     return {motion.T_world_sonar, settings, has_volume_reverberation(settings)};
@@ -314,12 +340,13 @@ struct SonarRenderer::Impl {
     const SonarMotion motion = motion_of(request);
     const bool unchanged =
         skip.on(SkipRule::unchanged_scene) && cached_echoes[head].fits(request, motion, world_revision);
-    if (!request.settings.transmit || motion.at_end || unchanged || is_begun(head, request, motion)) {
+    if (request.settings.directions.any() || !request.settings.transmit || motion.at_end || unchanged ||
+        is_begun(head, request, motion)) {
       return nullptr;
     }
     PointSpread& spread = point_spreads[head];
     spread.prepare(request.settings, request.seed, head, skip, statistics.skipped);
-    CachedEcho made_of{{}, request.settings, request.seed, motion, world_revision};
+    CachedEcho made_of{{}, {}, request.settings, request.seed, motion, world_revision};
     return &begun
                 .emplace(head, Begun{std::move(made_of), spread.has_pattern()
                                                              ? PointSpread::sampled(request.settings)
@@ -403,14 +430,28 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int head
     return cached.image;
   }
   cached.world_revision = 0;  // until the image is complete
-  impl_->render_echo(request, head, motion, cached.image);
+  if (request.settings.directions.any()) {
+    impl_->render_directions(request, head, motion.T_world_sonar, cached.directions);
+  } else {
+    impl_->render_echo(request, head, motion, cached.image);
+  }
   cached.sees_surface = impl_->statistics.sees_surface;
   cached.keep_inputs(request, motion, impl_->world_revision);
   return cached.image;
 }
 
+const DirectionEchoes& SonarRenderer::render_directions(const PingRequest& request, int head) {
+  render_echo(request, head);
+  return impl_->cached_echoes[head].directions;
+}
+
 PingSamples SonarRenderer::render_ping(const PingRequest& request, int head) {
   const EchoImage& echo = render_echo(request, head);
+  if (request.settings.directions.any()) {
+    PingSamples samples;
+    samples.directions = impl_->cached_echoes[head].directions;
+    return samples;
+  }
   Stopwatch watch;
   PingSamples samples = impl_->receiver.receive(echo, request, head, impl_->workers);
   impl_->statistics.seconds.receiver = watch.lap();

@@ -51,6 +51,10 @@ class SonarRenderer {
   /// @throws RequestError, RendererError
   const EchoImage& render_echo(const PingRequest& request, int head = 0);
 
+  /// The same for settings with directions: the strongest echo of each, also without speckle and noise.
+  /// @throws RequestError, RendererError
+  const DirectionEchoes& render_directions(const PingRequest& request, int head = 0);
+
   /// Renders the samples of a ping. The bytes depend on the earlier requests of this head; with speckle
   /// `frozen` or `per_ping`, only on this request.
   /// @throws RequestError, RendererError; std::bad_alloc, after which the caller must forget() the head

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "renderer/binning/direction_echoes.hpp"
 #include "renderer/engines/cpu/slice_binner.hpp"
 #include "renderer/sample_grid/grid_binner.hpp"
 #include "renderer/scene/refracted_world.hpp"
@@ -87,6 +88,15 @@ void CpuEngine::image_by_slices(const EchoRequest& request, const BinningOptions
                                     slice_accuracy(settings.sampling, settings.model));
   statistics.seconds.visibility += watch.lap();
   statistics.skipped += slices_.skipped();
+  if (settings.directions.any()) {
+    const SeenPatches seen = see_patches(slices_, cells, workers_);
+    statistics.seconds.visibility += watch.lap();
+    echo.directions =
+        find_directions(seen, settings.directions, settings.range, *request.loss_of_bin, workers_);
+    statistics.samples += seen.patches.size();
+    statistics.seconds.binning += watch.lap();
+    return;
+  }
   BinningResult bins = bin_echoes(slices_, cells, settings.aperture, settings.range, options, workers_,
                                   std::move(echo.image.intensity));
   statistics.seconds.visibility += bins.shading_s;

@@ -123,4 +123,16 @@ BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const Sli
   return result;
 }
 
+SeenPatches see_patches(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
+                        WorkerPool& workers) {
+  Shading shading(slices);
+  const PatchesOfCells made = all_patches(shading, cells, workers);
+  SeenPatches seen;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    seen.patches.insert(seen.patches.end(), made[i].begin(), made[i].end());
+    seen.wedges.push_back({cells[i]->slice.azimuth_rad, seen.patches.size()});
+  }
+  return seen;
+}
+
 }  // namespace sonard::render

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "renderer/binning/binning.hpp"
+#include "renderer/binning/seen_patches.hpp"
 #include "renderer/engines/cpu/slice_sampler.hpp"
 #include "renderer/worker_pool.hpp"
 
@@ -16,5 +17,10 @@ namespace sonard::render {
 BinningResult bin_echoes(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
                          const Aperture& aperture, const RangeBins& range, const BinningOptions& options,
                          WorkerPool& workers, std::vector<float> memory);
+
+/// Shades slices; for sonars that measure directions.
+/// @param cells as for bin_echoes()
+SeenPatches see_patches(const SliceSampler& slices, const std::vector<const SliceCell*>& cells,
+                        WorkerPool& workers);
 
 }  // namespace sonard::render

@@ -67,6 +67,9 @@ void GpuEngine::images(std::span<const EchoJob> jobs) {
     }
     const BinningOptions options = binning_options(job.request, skip_, largest_response_);
     const SonarSettings& settings = job.request.settings;
+    if (settings.directions.any()) {
+      throw RequestError("directions come from the CPU");
+    }
     if (options.cone_aperture != nullptr || needs_grid(settings)) {
       image_by_grid(job, options);
     } else if (settings.sampling.within_facets) {
