@@ -22,6 +22,9 @@ struct Scan {
   bool operator==(const Scan&) const = default;
 };
 
+/// A scan for which no client has asked: of trial pings, and of a survey without options.
+inline constexpr Scan usual_scan{.start_mm = 0, .length_mm = 10'000, .gain = 3};
+
 /// The samples from which the head makes profile and distance: sample k covers [k, k + 1) * step_mm, in the
 /// head's own millimetres. A point of the profile has ten of them, or fewer far from a scan's start.
 struct Samples {

@@ -24,7 +24,9 @@ ping1d::Scan asked_of(const SurveyOptions& options) {
   taken.refuse("--bins", options.bins.has_value());
   taken.refuse("--step", options.step_deg.has_value());
   taken.refuse("--sector", !options.sector_deg.empty());
-  double range_m = 10.0, gain_percent = 50.0, sound_speed_mps = 1500.0;
+  double range_m = 1e-3 * ping1d::usual_scan.length_mm;
+  double gain_percent = 100.0 * ping1d::usual_scan.gain / ping1d::most_gain;
+  double sound_speed_mps = ping1d::usual_scan.sound_speed_mps();
   taken.take("--range", options.range_m, 1.0, 100.0, range_m);
   taken.take("--gain", options.gain_percent, 0.0, 100.0, gain_percent);
   taken.take("--sound-speed", options.sound_speed_mps, 1300.0, 1700.0, sound_speed_mps);

@@ -109,7 +109,7 @@ class Ping1dType final : public DeviceType {
   }
 
   PingJob usual_job(const HeadConfig& head) const override {
-    return ping1d::make_job({.length_mm = 30'000, .gain = 4}, device_settings<Ping1dConfig>(head).device);
+    return ping1d::make_job(ping1d::usual_scan, device_settings<Ping1dConfig>(head).device);
   }
 
   render::SonarSettings sonar_settings(const PingJob& job, const HeadConfig& head) const override {

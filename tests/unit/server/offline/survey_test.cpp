@@ -114,12 +114,19 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
     const std::vector<std::uint8_t> samples(static_cast<std::size_t>(job.bins()) * beams, 7);
     const PingRecord record = survey->record(3, samples);
     EXPECT_EQ(record.number, 3U);
-    EXPECT_EQ(record.samples, samples);
-    EXPECT_EQ(record.settings.bins, job.bins());
     EXPECT_EQ(record.settings.beams, static_cast<int>(beams));
-    EXPECT_NEAR(record.settings.bin_m, job.bin_m(), 1e-3 * job.bin_m());
-    if (type->name() != "gemini_720i") {  // a Gemini's pings lack the frequency
-      EXPECT_GT(record.settings.frequency_hz, 5e5);
+    if (type->name() == "ping1d") {  // sends 200 points of the samples (docs/protocols/ping1d.md)
+      EXPECT_EQ(record.settings.bins, 200);
+      EXPECT_EQ(record.samples, std::vector<std::uint8_t>(200, 7));
+      EXPECT_NEAR(200 * record.settings.bin_m, job.range_m(), 1e-3 * job.range_m());
+      EXPECT_EQ(record.settings.frequency_hz, 115e3);
+    } else {
+      EXPECT_EQ(record.samples, samples);
+      EXPECT_EQ(record.settings.bins, job.bins());
+      EXPECT_NEAR(record.settings.bin_m, job.bin_m(), 1e-3 * job.bin_m());
+      if (type->name() != "gemini_720i") {  // a Gemini's pings lack the frequency
+        EXPECT_GT(record.settings.frequency_hz, 5e5);
+      }
     }
     EXPECT_EQ(record.bearings_rad,
               type->scanning() ? std::vector<double>{job.bearing_rad} : survey->bearings_rad());
