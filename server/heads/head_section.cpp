@@ -176,7 +176,8 @@ void read_physical_model(YamlSection& section, double carrier_hz, bool scanning,
   section.number("noise_by_bearing_db", model.noise.by_bearing_db, Range::from(0.0, 60.0),
                  "scanning heads: difference of the noise between bearings");
   section.angle("bearing_jitter_deg", model.bearing_jitter_rad, Range::from(0.0, 10.0),
-                "scanning heads: standard deviation of the bearings of lines");
+                "scanning heads: standard deviation of the bearing at which a line takes its speckle; "
+                "echoes keep their bearing");
   if (!scanning) {
     for (const char* key : {"noise_by_bearing_db", "bearing_jitter_deg"}) {
       section.warn_if_given(key, "this head does not scan");

@@ -133,7 +133,8 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
 GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Tritech Gemini 720i ([protocols/gemini.md](protocols/gemini.md)). The x axis of its mount is the "
-      "acoustic axis, so the mount includes the down tilt of the head.");
+      "acoustic axis, so the mount includes the tilt of the bracket and the 10 degrees by which the device "
+      "tilts its beam down.");
   GeminiConfig config;
   apply_water(section, context, gemini::carrier_hz, head);
   config.device.water_sound_speed_mps = context.water_sound_speed_mps;
