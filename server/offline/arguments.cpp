@@ -56,7 +56,7 @@ void OfflineArguments::declare_run(CLI::App& app) {
       "--truth", options_.truth,
       "Also write the body with the strongest echo in each bin; this renders an echo for each body nearby");
   app.add_flag("--clean-png", options_.clean_pictures,
-               "Also write grey pictures without labels, of the samples (_grey.png) and of the fan "
+               "Also write grey pictures without lettering, of the samples (_grey.png) and of the fan "
                "(_fan.png); with --truth also their masks. The JSON gives bearing and range of each pixel");
   app.add_flag("--mcap", options_.mcap, "Also write a log with topics for Foxglove (docs/logs.md)");
   app.add_option("--picture-every", options_.picture_every, "Write a picture every N frames; 0: no pictures")
