@@ -33,8 +33,13 @@ endforeach()
 file(WRITE ${OUT} "// Written by cmake/embed_shaders.cmake.
 #pragma once
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"  // compilers need not take more than 65536 characters
+
 namespace sonard::render::shaders {
 
 ${texts}
 }  // namespace sonard::render::shaders
+
+#pragma GCC diagnostic pop
 ")
