@@ -37,7 +37,7 @@ PLACEHOLDERS = {"--log-format F": "--log-format json", "CONFIG": "configs/demo.y
 
 # Files from the text: name -> (document, index of the block among the blocks of that language).
 FILES = {"harbour.sdf": ("docs/worlds.md", "xml", 0), "harbour.yaml": ("docs/worlds.md", "yaml", 0),
-         "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 1)}
+         "wreck.sdf": ("docs/worlds.md", "xml", 1), "harbour.csv": ("docs/offline.md", "", 1), "pipeline.sh": ("docs/ci.md", "sh", 2)}
 # Files of the reader, and similar files of the repository.
 LIKE = {"my.yaml": "configs/gazebo.yaml", "survey.tum": "configs/trajectories/demo.csv",
         "dive.csv": "configs/trajectories/docking_demo.csv"}
