@@ -11,9 +11,10 @@
 
 namespace sonard::ping {
 
-/// Table of one message or of its fixed part (protocol/common/layout.hpp).
+/// Table of one message or of its fixed part (protocol/common/layout.hpp); empty for messages that are not
+/// common, or have only text.
 template <class Message>
-struct CommonLayout;
+struct CommonLayout {};
 
 template <>
 struct CommonLayout<GeneralRequest> : WholeLayout<10> {

@@ -11,22 +11,9 @@
 
 namespace sonard::ping1d {
 
-/// Table of one message or of its fixed part (protocol/common/layout.hpp).
+/// Table of one message or of its fixed part (protocol/common/layout.hpp); without `size` if it has none.
 template <class Message>
-struct Layout;
-
-template <>
-struct Layout<GeneralRequest> : CommonLayout<GeneralRequest> {};
-template <>
-struct Layout<SetCommonDeviceId> : CommonLayout<SetCommonDeviceId> {};
-template <>
-struct Layout<Ack> : CommonLayout<Ack> {};
-template <>
-struct Layout<Nack> : CommonLayout<Nack> {};
-template <>
-struct Layout<DeviceInformation> : CommonLayout<DeviceInformation> {};
-template <>
-struct Layout<ProtocolVersion> : CommonLayout<ProtocolVersion> {};
+struct Layout : CommonLayout<Message> {};
 
 /// Name of the value of a Single.
 constexpr std::string_view value_name(MessageId id) {

@@ -12,22 +12,9 @@
 
 namespace sonard::ping360 {
 
-/// Table of one message or of its fixed part (protocol/common/layout.hpp).
+/// Table of one message or of its fixed part (protocol/common/layout.hpp); without `size` if it has none.
 template <class Message>
-struct Layout;
-
-template <>
-struct Layout<GeneralRequest> : CommonLayout<GeneralRequest> {};
-template <>
-struct Layout<SetCommonDeviceId> : CommonLayout<SetCommonDeviceId> {};
-template <>
-struct Layout<Ack> : CommonLayout<Ack> {};
-template <>
-struct Layout<Nack> : CommonLayout<Nack> {};
-template <>
-struct Layout<DeviceInformation> : CommonLayout<DeviceInformation> {};
-template <>
-struct Layout<ProtocolVersion> : CommonLayout<ProtocolVersion> {};
+struct Layout : CommonLayout<Message> {};
 
 template <>
 struct Layout<SetDeviceId> : WholeLayout<10> {
