@@ -549,14 +549,11 @@ Result<DataSection, WireError> scan_data_section(ByteView file, OnDamage on_dama
     return on_damage == OnDamage::skip ? scan_without_magic(file)
                                        : WireError{WireErrorReason::bad_value, 0, "magic"};
   }
-  auto record = record_at(file, magic.size());
-  bool is_header = record && record->is(Opcode::header);
+  const auto record = record_at(file, magic.size());
+  const bool is_header = record && record->is(Opcode::header) && is_consistent(*record);
   if (!is_header && on_damage == OnDamage::stop) {
     return WireError{record ? WireErrorReason::bad_value : WireErrorReason::truncated, magic.size(),
                      "header"};
-  }
-  if (is_header && on_damage == OnDamage::skip) {
-    is_header = is_consistent(*record);  // the length of the header may be damaged
   }
   Scanner scanner{file, is_header ? record->end() : magic.size()};
   scanner.scan(on_damage);

@@ -411,6 +411,8 @@ def mcap_files():
     summary = schema + channel
     yield "no_end", data
     yield "cut", data[:-40]
+    header_size = len(head) - 17 + len(chunks) // 2  # the header seems to contain the first chunk
+    yield "header_over_a_chunk", magic + b"\1" + struct.pack("<Q", header_size) + head[17:] + chunks
     yield "compressed", head + packed_chunks
     growing = mcap_record(6, struct.pack("<QQQI", 70, 70, 35, 0) + mcap_string(b"") + struct.pack("<Q", 35) +
                           mcap_record(5, struct.pack("<HIQQ", 1, 2, 70, 70) + b"data"))
