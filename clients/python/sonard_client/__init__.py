@@ -22,13 +22,15 @@ if TYPE_CHECKING:
     from .gemini import Gemini
     from .log import read_log
     from .micron import Micron
+    from .oculus import Oculus
     from .ping import LoggedPing, NoHead, NoPing, Ping
+    from .ping360 import Ping360
 
-__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Ping", "PosePublisher", "encode_pose",
-           "read_log"]
+__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Oculus", "Ping", "Ping360",
+           "PosePublisher", "encode_pose", "read_log"]
 
 _MODULES = {"DamagedLog": "damage", "Gemini": "gemini", "LoggedPing": "ping", "Micron": "micron", "NoHead": "ping",
-            "NoPing": "ping", "Ping": "ping", "read_log": "log"}
+            "NoPing": "ping", "Oculus": "oculus", "Ping": "ping", "Ping360": "ping360", "read_log": "log"}
 
 
 def __getattr__(name: str) -> Any:

@@ -17,6 +17,8 @@ from .ping import Array, NoHead, NoPing, Ping
 
 REPORT_PORT, COMMAND_PORT = 52900, 52901  # 1.1
 LINE_RATE_HZ = 90422.0  # 6.7
+_FREQUENCY_HZ = 720e3  # the nominal one
+_BEAMWIDTH_RAD, _VERTICAL_BEAMWIDTH_RAD = math.radians(1), math.radians(20)
 STATUS, PING_HEAD, PING_LINE, PING_TAIL = 0x40, 0x41, 0x42, 0x43
 _BUFFER_BYTES = 16 << 20  # several pings; the kernel may give less
 _KEEP_ALIVE_S = 1.0  # the head forgets a client after 3 s (1.5)
@@ -272,4 +274,5 @@ class Gemini:
         bin_m = sound_speed_mps / (2 * LINE_RATE_HZ) * 2 ** ping.compression
         return Ping(samples=ping.samples(), ranges_m=(np.arange(ping.count) + 0.5) * bin_m,
                     bearings_rad=bearings_rad(ping.beams), transmit_us=ping.transmit_us,
-                    missing=ping.count - len(ping.lines))
+                    missing=ping.count - len(ping.lines), sound_speed_mps=sound_speed_mps, frequency_hz=_FREQUENCY_HZ,
+                    beamwidth_rad=_BEAMWIDTH_RAD, vertical_beamwidth_rad=_VERTICAL_BEAMWIDTH_RAD)

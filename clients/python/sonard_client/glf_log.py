@@ -186,7 +186,7 @@ def _ping(record: bytes, zone: Optional[tzinfo]) -> LoggedPing:
     row_m = sound_speed_mps / 2 / rows_hz
     return LoggedPing(samples=np.frombuffer(samples, np.uint8).reshape(rows, beams),
                       ranges_m=(first_row + np.arange(rows) + 0.5) * row_m, bearings_rad=bearings_rad, transmit_us=None,
-                      head=str(device), time_ns=_unix_ns(transmit_s, zone))
+                      sound_speed_mps=sound_speed_mps, head=str(device), time_ns=_unix_ns(transmit_s, zone))
 
 
 def _unix_ns(seconds: float, zone: Optional[tzinfo]) -> int:

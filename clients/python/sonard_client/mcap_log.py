@@ -435,7 +435,8 @@ def _multibeam_ping(image: _Fields) -> LoggedPing:
     image.text(16)
     position_m, quaternion_xyzw = _pose(image.content(15))
     return LoggedPing(samples=samples.reshape(rows, beams), ranges_m=_ranges_m(image.real(9), image.real(10), rows),
-                      bearings_rad=bearings_rad, transmit_us=None, head=image.text(1), time_ns=image.signed(4),
+                      bearings_rad=bearings_rad, transmit_us=None, sound_speed_mps=image.real(11),
+                      frequency_hz=image.real(13), head=image.text(1), time_ns=image.signed(4),
                       sonar_position_m=position_m, sonar_quaternion_xyzw=quaternion_xyzw)
 
 
@@ -449,7 +450,8 @@ def _scan_line(line: _Fields) -> LoggedPing:
     line.text(16)
     position_m, quaternion_xyzw = _pose(line.content(13))
     return LoggedPing(samples=bins[:, None], ranges_m=_ranges_m(line.real(7), line.real(8), bins.size),
-                      bearings_rad=np.array([bearing_rad]), transmit_us=None, head=line.text(1), time_ns=line.signed(4),
+                      bearings_rad=np.array([bearing_rad]), transmit_us=None, sound_speed_mps=line.real(9),
+                      frequency_hz=line.real(11), head=line.text(1), time_ns=line.signed(4),
                       sonar_position_m=position_m, sonar_quaternion_xyzw=quaternion_xyzw)
 
 

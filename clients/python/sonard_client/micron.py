@@ -12,7 +12,7 @@ from typing import Iterator, Optional
 
 import numpy as np
 
-from .ping import Array, NoHead, NoPing, Ping
+from .ping import Array, NoHead, NoPing, Ping, turn_of
 
 _TURN = 6400  # units of bearing (4)
 _AHEAD = 3200
@@ -21,6 +21,8 @@ _HEAD, _HOST = 2, 0xFF
 _SEND_VERSION, _SEND_USER_BLOCKS, _SEND_DATA, _HEAD_COMMAND = 23, 24, 25, 19
 _HEAD_DATA, _ALIVE = 2, 4
 _LINE_WAIT_S = 1.0
+_FREQUENCY_HZ = 700e3  # 10
+_BEAMWIDTH_RAD, _VERTICAL_BEAMWIDTH_RAD = math.radians(3), math.radians(35)
 _MISSES = 5
 
 
@@ -85,16 +87,7 @@ class Micron:
     def turn(self, range_m: float = 20.0, bins: int = 400, step_deg: float = 1.8, gain_percent: float = 50.0,
              sound_speed_mps: float = 1500.0) -> Ping:
         """The lines of one full turn, clockwise from the head's present bearing. `bearings_rad` has the bearing of each."""
-        lines: list[Ping] = []
-        turned = 0.0
-        for line in self.lines(range_m, bins, step_deg, gain_percent, sound_speed_mps):
-            if lines:
-                turned += (lines[-1].bearings_rad[0] - line.bearings_rad[0]) % (2 * math.pi)
-            if turned > 2 * math.pi - 1e-6:
-                break
-            lines.append(line)
-        return Ping(samples=np.hstack([line.samples for line in lines]), ranges_m=lines[0].ranges_m,
-                    bearings_rad=np.concatenate([line.bearings_rad for line in lines]), transmit_us=None)
+        return turn_of(self.lines(range_m, bins, step_deg, gain_percent, sound_speed_mps))
 
     def lines(self, range_m: float = 20.0, bins: int = 400, step_deg: float = 1.8, gain_percent: float = 50.0,
               sound_speed_mps: float = 1500.0, sector_rad: Optional[tuple[float, float]] = None) -> Iterator[Ping]:
@@ -123,7 +116,9 @@ class Micron:
             if struct.unpack_from("<H", frame, 33)[0] == interval and self._bins(frame).size == bins:
                 (units,) = struct.unpack_from("<H", frame, 40)
                 yield Ping(samples=self._bins(frame)[:, None], ranges_m=ranges_m,
-                           bearings_rad=np.array([_bearing_rad(units)]), transmit_us=None)
+                           bearings_rad=np.array([_bearing_rad(units)]), transmit_us=None,
+                           sound_speed_mps=sound_speed_mps, frequency_hz=_FREQUENCY_HZ, beamwidth_rad=_BEAMWIDTH_RAD,
+                           vertical_beamwidth_rad=_VERTICAL_BEAMWIDTH_RAD)
 
     @staticmethod
     def _bins(frame: bytes) -> Array:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """One ping of any sonar."""
 
+import math
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Iterable, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +29,8 @@ class Ping:
     bearings_rad  (beams,): 0 ahead, positive to port as in REP-103
     transmit_us   transmit time by the clock of the head since its start; None if the head does not send it
     missing       number of rows that never arrived; their samples are 0
+    sound_speed_mps, frequency_hz  speed of sound behind `ranges_m`, and frequency of the sound; 0: unknown
+    beamwidth_rad, vertical_beamwidth_rad  -3 dB widths of each beam; 0: unknown
     """
 
     samples: Array
@@ -35,6 +38,27 @@ class Ping:
     bearings_rad: Array
     transmit_us: Optional[int]
     missing: int = 0
+    sound_speed_mps: float = 0.0
+    frequency_hz: float = 0.0
+    beamwidth_rad: float = 0.0
+    vertical_beamwidth_rad: float = 0.0
+
+
+def turn_of(lines: Iterable[Ping]) -> Ping:
+    """Joins the lines of one clockwise turn, a column for each."""
+    joined: list[Ping] = []
+    turned = 0.0
+    for line in lines:
+        if joined:
+            turned += (joined[-1].bearings_rad[0] - line.bearings_rad[0]) % (2 * math.pi)
+        if turned > 2 * math.pi - 1e-6:
+            break
+        joined.append(line)
+    first = joined[0]
+    return Ping(np.hstack([line.samples for line in joined]), first.ranges_m,
+                np.concatenate([line.bearings_rad for line in joined]), None, sound_speed_mps=first.sound_speed_mps,
+                frequency_hz=first.frequency_hz, beamwidth_rad=first.beamwidth_rad,
+                vertical_beamwidth_rad=first.vertical_beamwidth_rad)
 
 
 def is_plausible_time(time_ns: int) -> bool:

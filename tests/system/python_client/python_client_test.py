@@ -28,8 +28,8 @@ sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system",
                                                              ("clients", "python"))]
 from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, read_log  # noqa: E402
-from sonard_client import gemini, micron  # noqa: E402
+from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping360, read_log  # noqa: E402
+from sonard_client import gemini, micron, oculus, ping360  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
@@ -49,15 +49,20 @@ heads:
 """
 
 
+def start(case, config, **values):
+    """A daemon that ends with the case."""
+    path = os.path.join(case.folder.name, "sonard.yaml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(config.format(world=WORLD, folder=case.folder.name, **values))
+    daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
+    case.addCleanup(daemon.kill)
+    daemon.wait_for_line("sonard ready", START_S)
+    return daemon
+
+
 class PythonClient(OwnMachine):
     def start(self, link="", position=(0, 0, 0)):
-        path = os.path.join(self.folder.name, "sonard.yaml")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD, folder=self.folder.name, position=list(position), link=link))
-        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
-        self.addCleanup(daemon.kill)
-        daemon.wait_for_line("sonard ready", START_S)
-        return daemon
+        return start(self, CONFIG, position=list(position), link=link)
 
     def expect_rendered(self, ping):
         """The renderer's output, bit by bit."""
@@ -256,12 +261,7 @@ class MicronBytes(unittest.TestCase):
 
 class MicronClient(OwnMachine):
     def start(self, duplex="full"):
-        path = os.path.join(self.folder.name, "sonard.yaml")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(MICRON_CONFIG.format(world=WORLD, folder=self.folder.name, duplex=duplex))
-        daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
-        self.addCleanup(daemon.kill)
-        daemon.wait_for_line("sonard ready", START_S)
+        start(self, MICRON_CONFIG, duplex=duplex)
 
     def test_a_turn_sees_the_sphere(self):
         self.start()
@@ -287,6 +287,123 @@ class MicronClient(OwnMachine):
     def test_a_head_that_is_not_there(self):
         with self.assertRaisesRegex(NoHead, "cannot connect to 127.0.0.1:4001"):
             Micron()
+
+
+OCULUS_CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+heads:
+  - name: bow
+    type: oculus
+    model: m750d
+    network: {{address: 127.0.0.3, netmask: 255.0.0.0, status: [127.0.0.1]}}
+"""
+PING360_CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+heads:
+  - name: bow
+    type: ping360
+    udp: [{{bind: 127.0.0.1:12345}}]
+"""
+
+
+class OculusBytes(unittest.TestCase):
+    """Uses fires that public clients sent, and pings that they read (tests/data/oculus/messages.json)."""
+
+    def test_a_fire_is_that_of_a_public_client(self):
+        theirs = example("oculus", "fire_liboculus_8_bit")
+        ours = oculus._fire(4.0, 50.0, 0.0, high_frequency=True, beams=512, bits=8, rate=0)
+        self.assertEqual(ours[:19] + theirs[19:21] + ours[21:45] + theirs[45:], theirs, "all but gamma, flags and salinity")
+        self.assertEqual(theirs[20] & ~0x04, ours[20], "this client adds a gain to each row")
+
+    def test_pings_have_the_fields_of_their_messages(self):
+        for version, start_us in ((1, 123456), (2, 12345678)):
+            with self.subTest(version):
+                message = messages("oculus")[f"ping_result_v{version}"]
+                result = message["fields"][f"result_v{version}"]
+                ping = oculus._ping(message["bytes"])
+                self.assertEqual(ping.samples.shape, (result["nRanges"], result["nBeams"]))
+                self.assertEqual(ping.samples.itemsize, 1 + result["dataSize"])
+                self.assertEqual((ping.frequency_hz, ping.sound_speed_mps), (result["frequency"], result["speedOfSoundUsed"]))
+                self.assertAlmostEqual(ping.ranges_m[-1], (result["nRanges"] - 0.5) * result["rangeResolution"])
+                bearings_cdeg = numpy.frombuffer(bytes.fromhex(message["fields"]["bearings"]), "<i2")
+                numpy.testing.assert_allclose(ping.bearings_rad, -numpy.radians(bearings_cdeg / 100))
+                rows = numpy.frombuffer(bytes.fromhex(message["fields"]["image"]), numpy.uint8).reshape(3, -1)
+                self.assertEqual(ping.samples.tobytes(), rows[:, 4 * (version == 1):].tobytes(), "version 1 has gains")
+                self.assertEqual(ping.transmit_us, start_us)
+                self.assertRaises(ValueError, oculus._ping, message["bytes"][:-1])
+
+
+class OculusClient(OwnMachine):
+    def test_it_sees_the_sphere(self):
+        start(self, OCULUS_CONFIG)
+        with Oculus() as sonar:
+            self.assertEqual(sonar.host, "127.0.0.3")
+            for settings, dtype, beams in (({}, numpy.uint8, 512), ({"bits": 16, "beams": 256}, numpy.uint16, 256)):
+                with self.subTest(settings):
+                    ping = sonar.ping(range_m=6, **settings)
+                    self.assertEqual((ping.samples.dtype, ping.samples.shape[1]), (dtype, beams))
+                    self.assertAlmostEqual(ping.ranges_m[-1], 6, delta=0.05)
+                    self.assertEqual((ping.frequency_hz, ping.sound_speed_mps), (750e3, 1500))
+                    row, beam = numpy.unravel_index(ping.samples.argmax(), ping.samples.shape)
+                    self.assertAlmostEqual(ping.ranges_m[row], math.hypot(3, 2) - 0.5, delta=0.1)
+                    self.assertAlmostEqual(ping.bearings_rad[beam], math.atan2(2, 3), delta=math.radians(9))
+            ping = sonar.ping(range_m=6, high_frequency=True)
+            self.assertEqual((ping.frequency_hz, ping.bearings_rad[0]), (1.2e6, math.radians(35)))
+
+    def test_a_head_that_is_not_there(self):
+        with self.assertRaisesRegex(NoHead, "no status on UDP port 52102 within 0.5 s"):
+            Oculus(patience_s=0.5)
+        with self.assertRaisesRegex(NoHead, "cannot connect to 127.0.0.3:52100"):
+            Oculus("127.0.0.3")
+
+
+class Ping360Bytes(unittest.TestCase):
+    """Uses frames that public clients sent and read (tests/data/ping360/messages.json)."""
+
+    def test_frames(self):
+        theirs = example("ping360", "transducer")
+        self.assertEqual(ping360._frame(ping360._TRANSDUCER, theirs[8:-2]), theirs)
+        answer = example("ping360", "device_data")
+        stream = bytearray(b"BBRxx\0\0" + answer + b"junkB" + answer[:9])
+        self.assertEqual(list(ping360._frames(stream)), [(2300, answer[8:-2])])
+        stream += answer[9:]
+        self.assertEqual(list(ping360._frames(stream)), [(2300, answer[8:-2])])
+        damaged = bytearray(answer)
+        damaged[12] ^= 1
+        self.assertEqual(list(ping360._frames(damaged)), [])
+
+    def test_only_an_answer_with_these_settings_is_one(self):
+        payload = example("ping360", "device_data")[8:-2]
+        self.assertTrue(ping360._answers(payload, (1, 200, 11, 88, 750, 8)))
+        self.assertFalse(ping360._answers(payload, (1, 202, 11, 88, 750, 8)))
+        self.assertFalse(ping360._answers(payload[:-1], (1, 200, 11, 88, 750, 8)))
+
+
+class Ping360Client(OwnMachine):
+    def test_a_turn_sees_the_sphere(self):
+        start(self, PING360_CONFIG)
+        with Ping360() as sonar:
+            turn = sonar.turn(range_m=6, bins=600, step_deg=3.6)
+            lines = sonar.lines(range_m=6, step_deg=0.1, gain_percent=100)
+            self.assertAlmostEqual(math.degrees(sum(next(lines).bearings_rad[0] for _ in range(2))), -0.9)
+            with self.assertRaisesRegex(ValueError, "refuses message 2601: gain_setting out of range"):
+                next(sonar.lines(gain_percent=150))
+        self.assertEqual(turn.samples.shape, (600, 100))
+        self.assertAlmostEqual(turn.ranges_m[-1], 6, delta=0.1)
+        steps = numpy.diff(turn.bearings_rad) % (2 * math.pi)
+        self.assertLess(abs(steps - (2 * math.pi - math.radians(3.6))).max(), 1e-9, "clockwise, all round")
+        far = turn.samples[100:]  # behind its own ringing
+        row, line = numpy.unravel_index(far.argmax(), far.shape)
+        self.assertAlmostEqual(turn.ranges_m[100 + row], math.hypot(3, 2) - 0.5, delta=0.1)
+        self.assertAlmostEqual(turn.bearings_rad[line], math.atan2(2, 3), delta=math.radians(9))
+
+    def test_a_head_that_is_not_there(self):
+        with self.assertRaisesRegex(NoHead, "no answer from 127.0.0.1:12345 within 0.5 s"):
+            Ping360(patience_s=0.5)
 
 
 def main():
