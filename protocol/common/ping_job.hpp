@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "protocol/common/directions.hpp"
+
 namespace sonard {
 
 /// Time on any monotonic clock that the caller chooses; only differences matter.
@@ -47,6 +49,9 @@ struct PingJob {
   bool sixteen_bit = false;   ///< requested width of the samples; false: 8 bits
   int mode = 0;               ///< ping mode, for heads with several; each device type has its own numbering
   int beams = 0;  ///< for heads whose number of beams a client can choose; 0: set by the device type
+  /// If set, the answer has the range in each direction and no image. Two native bins are then as long as the
+  /// range resolution of the pulse.
+  Directions directions{};
   /// A sample is proportional to the amplitude to this power; > 0. A client may choose it.
   double amplitude_exponent = 1.0;
 
@@ -82,12 +87,14 @@ struct SensorReadings {
 };
 
 /// The rendered samples of a job: PingJob::bins() times the number of beams, bin after bin from near to far,
-/// each bin from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others.
+/// each bin from port to starboard. `u16` is filled for 16-bit jobs, `u8` for all others, `directions`
+/// instead of both if the job asks for directions.
 struct PingImage {
   std::uint64_t number = 0;  ///< PingJob::number
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
   std::optional<SensorReadings> readings = {};  ///< at the transmit time; nullopt: not known
+  DirectionRanges directions = {};
 };
 
 /// The ping that a head begins at the next NextPingDue.
