@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/npy/npy_file.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
@@ -9,7 +8,7 @@
 
 namespace sonard::npy {
 
-static_assert(std::endian::native == std::endian::little, "samples of 16 bits are taken as they are");
+static_assert(std::endian::native == std::endian::little, "samples are taken as they are");
 
 namespace {
 
@@ -17,6 +16,7 @@ constexpr std::string_view magic("\x93NUMPY\x01\x00", 8);
 constexpr std::size_t preamble_bytes = 10;  // magic, and the length of the header
 constexpr std::string_view eight_bit = "|u1";
 constexpr std::string_view sixteen_bit_le = "<u2";
+constexpr std::string_view float_le = "<f4";
 
 template <class Sample>
 std::string_view as_text(const std::vector<Sample>& samples) {
@@ -49,10 +49,15 @@ std::string header(std::string_view dtype, int rows, int columns) {
 }
 
 std::string encode(const Table& table) {
-  assert(std::max(table.u8.size(), table.u16.size()) ==
+  assert(table.u8.size() + table.u16.size() + table.f32.size() ==
          static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.columns));
-  std::string file = header(table.u16.empty() ? eight_bit : sixteen_bit_le, table.rows, table.columns);
-  file += table.u16.empty() ? as_text(table.u8) : as_text(table.u16);
+  const std::string_view dtype = !table.f32.empty()  ? float_le
+                                 : table.u16.empty() ? eight_bit
+                                                     : sixteen_bit_le;
+  std::string file = header(dtype, table.rows, table.columns);
+  for (const std::string_view samples : {as_text(table.u8), as_text(table.u16), as_text(table.f32)}) {
+    file += samples;
+  }
   return file;
 }
 
@@ -64,21 +69,24 @@ Result<Table, std::string> parse(std::string_view file) {
       static_cast<unsigned char>(file[8]) + 256U * static_cast<unsigned char>(file[9]);
   const std::string text(file.substr(preamble_bytes, header_bytes));
   static const std::regex form(
-      R"(\{'descr': '(\|u1|<u2)', 'fortran_order': False, 'shape': \((\d+), (\d+)\), \}\s*)");
+      R"(\{'descr': '(\|u1|<u2|<f4)', 'fortran_order': False, 'shape': \((\d+), (\d+)\), \}\s*)");
   std::smatch parts;
   if (text.size() < header_bytes || !std::regex_match(text, parts, form)) {
-    return std::string("is not a table of 8-bit or 16-bit samples");
+    return std::string("is not a table of 8-bit, 16-bit or float samples");
   }
   if (parts.length(2) > 9 || parts.length(3) > 9) {
     return std::string("has too many samples");
   }
-  Table table{std::stoi(parts[2]), std::stoi(parts[3]), {}, {}};
+  Table table{std::stoi(parts[2]), std::stoi(parts[3]), {}, {}, {}};
   const auto count = static_cast<std::size_t>(table.rows) * static_cast<std::size_t>(table.columns);
   if (count == 0) {
     return std::string("has no samples");
   }
   file.remove_prefix(preamble_bytes + header_bytes);
-  if (!(parts.str(1) == eight_bit ? fill(table.u8, file, count) : fill(table.u16, file, count))) {
+  const std::string dtype = parts.str(1);
+  if (!(dtype == eight_bit        ? fill(table.u8, file, count)
+        : dtype == sixteen_bit_le ? fill(table.u16, file, count)
+                                  : fill(table.f32, file, count))) {
     return std::string("does not have the number of samples in its header");
   }
   return table;

@@ -11,19 +11,20 @@
 
 namespace sonard::npy {
 
-/// A table of unsigned samples, row after row: in `u16` if it is not empty, else in `u8`.
+/// A table of samples, row after row, in the one list that is not empty.
 struct Table {
   int rows = 0;
   int columns = 0;
   std::vector<std::uint8_t> u8;
   std::vector<std::uint16_t> u16;
+  std::vector<float> f32{};
 
   bool operator==(const Table&) const = default;
 };
 
 /// The bytes before the samples: magic, version, length of the header, and a Python literal padded so that
 /// the samples begin at a multiple of 64.
-/// @param dtype "|u1" or "<u2"
+/// @param dtype "|u1", "<u2" or "<f4"
 /// @param rows, columns shape of the samples that follow, row by row
 std::string header(std::string_view dtype, int rows, int columns);
 

@@ -30,6 +30,13 @@ TEST(NpyFile, SixteenBitSamplesAreLittleEndian) {
   EXPECT_EQ(file.substr(128), std::string("\x02\x01\xFE\xFF", 4));
 }
 
+TEST(NpyFile, FloatsAreLittleEndian) {
+  const std::string file = encode({2, 1, {}, {}, {1.0F, -2.5F}});
+  ASSERT_EQ(file.size(), 128U + 8U);
+  EXPECT_NE(file.find("'descr': '<f4', 'fortran_order': False, 'shape': (2, 1)"), std::string::npos);
+  EXPECT_EQ(file.substr(128), std::string("\x00\x00\x80\x3F\x00\x00\x20\xC0", 8));
+}
+
 TEST(NpyFile, SamplesBeginAtAMultipleOf64WhateverTheShape) {
   for (int rows = 1; rows < 2'000'000'000 / 10; rows *= 10) {
     const std::string text = header("|u1", rows, 7);
@@ -43,6 +50,8 @@ TEST(NpyFile, SamplesBeginAtAMultipleOf64WhateverTheShape) {
 TEST(NpyFile, ReadsBackWhatItWrote) {
   const Table wide{1, 2, {}, {0x0102, 0xFFFE}};
   EXPECT_EQ(*parse(encode(wide)), wide);
+  const Table ranges{1, 3, {}, {}, {0.0F, 2.75F, -1e-9F}};
+  EXPECT_EQ(*parse(encode(ranges)), ranges);
   EXPECT_EQ(*parse(eight_bit_file()), (Table{2, 3, {0, 1, 2, 253, 254, 255}, {}}));
 }
 
