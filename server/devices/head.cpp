@@ -13,6 +13,7 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "server/devices/device_type.hpp"
+#include "server/devices/directions.hpp"
 #include "server/devices/head_diagnosis.hpp"
 #include "server/devices/head_log.hpp"
 #include "server/devices/head_poses.hpp"
@@ -546,8 +547,9 @@ bool Head::Impl::render(const PingJob& job) {
             self->diagnosis.look(self->clock.now(), *self->newest, *of_ping, result.statistics.sees_surface,
                                  result.statistics.echo_over_floor);
           });
-          self->happen(PingRendered{{number, std::move(result.samples.u8), std::move(result.samples.u16),
-                                     sensor_readings(of_ping->T_world_sonar, self->water_surface_z_m)}});
+          self->happen(
+              PingRendered{image_of(number, std::move(result.samples),
+                                    sensor_readings(of_ping->T_world_sonar, self->water_surface_z_m))});
         } else {
           self->happen(PingNotRendered{number});
         }

@@ -12,7 +12,8 @@
 namespace sonard::server {
 
 /// CRC-32 (zlib's polynomial) of the samples in wire order, before any run-length coding: line after line,
-/// port to starboard; 16-bit samples most significant byte first.
+/// port to starboard; 16-bit samples most significant byte first. Ranges and intensities of directions as in
+/// their file.
 std::uint32_t samples_crc32(const render::PingSamples& samples);
 
 /// Writes each ping of one head as a NumPy file, <head>-<ping number, 8 digits>.npy, shape (lines, beams),
@@ -20,6 +21,7 @@ std::uint32_t samples_crc32(const render::PingSamples& samples);
 ///
 ///     number,id,transmit_us,lines,beams,crc32,pose_ns
 ///
+/// The file of a ping with directions has shape (2 rows, columns) and dtype <f4: ranges, then intensities.
 /// `id` is the ping ID (number modulo 256), `crc32` is samples_crc32() in hexadecimal. Used only by the
 /// render thread. A file that cannot be written is logged once and has no other effect.
 class PingDump {

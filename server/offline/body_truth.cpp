@@ -121,6 +121,9 @@ render::SonarRenderer& BodyTruth::renderer_of(std::size_t body) {
 }
 
 std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& request) {
+  if (request.settings.directions.any()) {
+    throw render::RequestError("directions: the truth of bodies has range bins, which this ping has not");
+  }
   render::PingRequest alone = request;
   alone.settings = truth_settings(request.settings);
   const render::RangeBins& range = request.settings.range;

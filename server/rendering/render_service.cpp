@@ -52,7 +52,8 @@ void make_sure_of_room(const render::PingSamples& samples) {
   }
   constexpr std::size_t at_least_bytes = 4 << 20;
   constexpr std::size_t copies = 12;
-  const std::size_t bytes = at_least_bytes + copies * (samples.u8.size() + 2 * samples.u16.size());
+  const std::size_t bytes = at_least_bytes + copies * (samples.u8.size() + 2 * samples.u16.size() +
+                                                       8 * samples.directions.range_m.size());
   void* volatile room = std::malloc(bytes);  // volatile: so that the allocation is not optimised away
   if (room == nullptr) {
     throw std::bad_alloc();

@@ -66,6 +66,20 @@ inline std::uint8_t fake_sample(std::uint64_t ping_number, int line, int beam) {
                                    static_cast<std::uint64_t>(beam));
 }
 
+/// The ranges of a ping grow from port to starboard and from the lowest row up, from ping to ping, too.
+inline render::DirectionEchoes fake_directions(const render::PingRequest& request) {
+  const render::DirectionGrid& grid = request.settings.directions;
+  render::DirectionEchoes echoes{grid.columns, grid.rows, {}, {}};
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      echoes.range_m.push_back(1.0F +
+                               0.01F * static_cast<float>(fake_sample(request.ping_number, row, column)));
+      echoes.intensity.push_back(1e-4F / echoes.range_m.back());
+    }
+  }
+  return echoes;
+}
+
 class FakeRenderer final : public server::PingRenderer {
  public:
   explicit FakeRenderer(std::shared_ptr<FakeRendererControl> control) : control_(std::move(control)) {}
@@ -86,6 +100,11 @@ class FakeRenderer final : public server::PingRenderer {
     }
     control_->record(request);
     render::PingSamples samples;
+    if (request.settings.directions.any()) {
+      samples.directions = fake_directions(request);
+      ++control_->pings;
+      return samples;
+    }
     samples.beams = request.settings.aperture.beam_count();
     samples.bins = request.settings.range.output_count();
     for (int line = 0; line < samples.bins; ++line) {

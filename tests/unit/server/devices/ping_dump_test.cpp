@@ -6,8 +6,11 @@
 #include <iterator>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
+
+#include "protocol/npy/npy_file.hpp"
 
 namespace sonard::server {
 namespace {
@@ -77,6 +80,19 @@ TEST_F(PingDumpTest, FolderThatCannotBeMadeIsAnErrorThatNamesIt) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find(folder.string()), std::string::npos);
   }
+}
+
+TEST_F(PingDumpTest, WritesRangesAndIntensitiesOfDirections) {
+  PingDump dump(folder, "bow");
+  render::PingSamples samples;
+  samples.directions = {3, 2, {1, 2, 3, 4, 5, 6}, {.1F, .2F, .3F, .4F, .5F, .6F}};
+  dump.write({}, samples);
+  const auto table = npy::parse(contents(folder / "bow-00000000.npy"));
+  ASSERT_TRUE(table);
+  EXPECT_EQ(*table, (npy::Table{4, 3, {}, {}, {1, 2, 3, 4, 5, 6, .1F, .2F, .3F, .4F, .5F, .6F}}));
+  samples.directions.intensity[5] = 0;
+  EXPECT_EQ(contents(folder / "bow.csv").find(fmt::format(",{:08x},", samples_crc32(samples))),
+            std::string::npos);
 }
 
 }  // namespace
