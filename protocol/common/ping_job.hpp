@@ -2,6 +2,7 @@
 // One ping as the device requests it from the renderer. The device decides the time and the settings.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -75,13 +76,17 @@ struct PingJob {
   double range_m() const { return native_bins * native_bin_m; }
 };
 
-/// Readings of a head's attitude and depth sensors at one time. A head without these sensors ignores them.
+/// Readings of a head's sensors of attitude, depth and motion at one time. A head without these sensors
+/// ignores them.
 struct SensorReadings {
   double heading_rad = 0.0;  ///< of the head's x axis, clockwise from north (world y axis); [0, 2 pi)
   double pitch_rad = 0.0;    ///< positive: nose up; [-pi/2, pi/2]
   double roll_rad = 0.0;     ///< positive: starboard side down; [-pi, pi]
   std::optional<double>
       depth_m;  ///< below the water surface, negative above it; nullopt: the world has no water surface
+  /// Unit quaternion from the axes of the head to those of the world (x east, y north, z up).
+  std::array<double, 4> orientation_wxyz{1.0, 0.0, 0.0, 0.0};
+  std::array<double, 3> velocity_mps{};  ///< of the head over ground, in its axes
 
   bool operator==(const SensorReadings&) const = default;
 };

@@ -22,7 +22,8 @@ SocketTrouble trouble_of(const SocketError& error, const DeviceType& type) {
 }
 
 // If the head looks straight up or down, heading and roll are not distinct: roll is then 0.
-SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m) {
+SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m,
+                               const glm::dvec3& velocity_mps) {
   constexpr double vertical = 1e-6;
   constexpr double turn = 2 * std::numbers::pi;
   const glm::dvec3 ahead = T_world_mount.orientation * glm::dvec3(1, 0, 0);
@@ -37,6 +38,9 @@ SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<
   if (water_surface_z_m) {
     readings.depth_m = *water_surface_z_m - T_world_mount.position_m.z;
   }
+  const glm::dquat& q = T_world_mount.orientation;
+  readings.orientation_wxyz = {q.w, q.x, q.y, q.z};
+  readings.velocity_mps = {velocity_mps.x, velocity_mps.y, velocity_mps.z};
   return readings;
 }
 

@@ -61,7 +61,7 @@ class DeviceType : public HeadType {
   virtual bool scanning() const = 0;
   /// False for a head whose one beam always looks along the axis of its mount.
   virtual bool turns() const { return scanning(); }
-  /// True if the head has attitude or depth sensors: it receives SensorsRead.
+  /// True if the head has sensors of attitude, depth or motion: it receives SensorsRead.
   virtual bool has_sensors() const { return false; }
 
   /// All counters of such a device, with value 0 (docs/events.md).
@@ -108,7 +108,9 @@ SocketTrouble trouble_of(const SocketError& error, const DeviceType& type);
 
 /// Readings of a head's sensors if its mount has this pose.
 /// @param water_surface_z_m height of the surface in the world frame; nullopt: the world has no surface
-SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m);
+/// @param velocity_mps PosesUsed::sonar_velocity_mps
+SensorReadings sensor_readings(const render::Pose& T_world_mount, std::optional<double> water_surface_z_m,
+                               const glm::dvec3& velocity_mps = glm::dvec3{0.0});
 
 /// Azimuth in the sonar frame, as the renderer has it, of a bearing of the device (docs/frames-and-units.md).
 constexpr double azimuth_rad(double bearing_rad) {

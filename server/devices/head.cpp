@@ -101,7 +101,7 @@ struct Head::Impl : std::enable_shared_from_this<Head::Impl> {
   void send(std::vector<Outgoing> messages);
   void record(TimePoint now, PingRecord ping);
   void sense(TimePoint now);
-  void read_sensors(TimePoint now, const render::Pose& T_world_mount);
+  void read_sensors(TimePoint now, TimePoint present, const render::Pose& T_world_mount);
   void note_water(TimePoint now, const std::optional<render::Pose>& T_world_mount);
   void feed(TimePoint now);
   bool next_ping_is_due(TimePoint now);
@@ -444,14 +444,15 @@ void Head::Impl::sense(TimePoint now) {
   const std::optional<render::Pose> T_world_mount = poses.T_world_mount(present);
   note_water(now, T_world_mount);
   if (T_world_mount && type.has_sensors()) {
-    read_sensors(now, *T_world_mount);
+    read_sensors(now, present, *T_world_mount);
   }
 }
 
-void Head::Impl::read_sensors(TimePoint now, const render::Pose& T_world_mount) {
-  const SensorReadings present = sensor_readings(T_world_mount, water_surface_z_m);
-  if (std::exchange(readings, present) != present) {
-    step(now, SensorsRead{present});
+void Head::Impl::read_sensors(TimePoint now, TimePoint present, const render::Pose& T_world_mount) {
+  const SensorReadings read =
+      sensor_readings(T_world_mount, water_surface_z_m, poses.mount_velocity_mps(present));
+  if (std::exchange(readings, read) != read) {
+    step(now, SensorsRead{read});
   }
 }
 
@@ -547,9 +548,9 @@ bool Head::Impl::render(const PingJob& job) {
             self->diagnosis.look(self->clock.now(), *self->newest, *of_ping, result.statistics.sees_surface,
                                  result.statistics.echo_over_floor);
           });
-          self->happen(
-              PingRendered{image_of(number, std::move(result.samples),
-                                    sensor_readings(of_ping->T_world_sonar, self->water_surface_z_m))});
+          self->happen(PingRendered{image_of(number, std::move(result.samples),
+                                             sensor_readings(of_ping->T_world_sonar, self->water_surface_z_m,
+                                                             of_ping->sonar_velocity_mps))});
         } else {
           self->happen(PingNotRendered{number});
         }

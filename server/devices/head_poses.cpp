@@ -63,6 +63,7 @@ std::optional<PosesUsed> HeadPoses::at(TimePoint time) const {
   const render::Pose& T_world_vehicle = vehicle->T_world_vehicle;
   PosesUsed poses{time, T_world_vehicle, T_world_vehicle * config_.T_vehicle_sonar, history_.bodies_at(time)};
   poses.stamp_ns = history_.stamp_at(time);
+  poses.sonar_velocity_mps = mount_velocity_mps(time);
   if (!vehicle_model_.empty()) {
     std::erase_if(poses.bodies, [&](const PosedBody& body) { return body.name == vehicle_model_; });
     if (!config_.hides_vehicle) {
@@ -75,6 +76,14 @@ std::optional<PosesUsed> HeadPoses::at(TimePoint time) const {
 std::optional<render::Pose> HeadPoses::T_world_mount(TimePoint time) const {
   const std::optional<PoseEstimate> vehicle = history_.at(time);
   return vehicle ? std::optional(vehicle->T_world_vehicle * config_.T_vehicle_sonar) : std::nullopt;
+}
+
+glm::dvec3 HeadPoses::mount_velocity_mps(TimePoint time) const {
+  const pose::Velocity twist = history_.twist_at(time);
+  const pose::Vec3 &linear = twist.linear_mps, &angular = twist.angular_radps;
+  const render::Pose& mount = config_.T_vehicle_sonar;
+  const glm::dvec3 of_arm = glm::cross(glm::dvec3(angular.x, angular.y, angular.z), mount.position_m);
+  return glm::conjugate(mount.orientation) * (glm::dvec3(linear.x, linear.y, linear.z) + of_arm);
 }
 
 }  // namespace sonard::server

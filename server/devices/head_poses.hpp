@@ -47,6 +47,8 @@ class HeadPoses {
   std::optional<PosesUsed> at(TimePoint time) const;
   /// PosesUsed::T_world_sonar at that time.
   std::optional<render::Pose> T_world_mount(TimePoint time) const;
+  /// PosesUsed::sonar_velocity_mps at that time.
+  glm::dvec3 mount_velocity_mps(TimePoint time) const;
   /// The body that the images of this head do not show; empty: they show all bodies.
   std::string hidden_body() const { return config_.hides_vehicle ? vehicle_model_ : ""; }
 

@@ -116,6 +116,10 @@ std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
   return estimate;
 }
 
+pose::Velocity PoseHistory::twist_at(TimePoint time) const {
+  return vehicle_.empty() ? pose::Velocity{} : vehicle_.twist_at(stamp_at(time), limit_.count());
+}
+
 std::optional<StalePose> PoseHistory::stale_at(TimePoint time) const {
   if (vehicle_.empty() || stale_policy_ != StalePolicy::silence) {
     return std::nullopt;

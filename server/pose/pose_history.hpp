@@ -83,6 +83,10 @@ class PoseHistory {
   /// the newest is too old and the policy is `silence`.
   std::optional<PoseEstimate> at(TimePoint time) const;
 
+  /// The vehicle's twist at a time for which at() has a pose, in its own frame; see PoseTrack::twist_at().
+  /// Zero before the first pose.
+  pose::Velocity twist_at(TimePoint time) const;
+
   /// The newest pose if at() refuses it because it is too old.
   std::optional<StalePose> stale_at(TimePoint time) const;
 

@@ -45,6 +45,12 @@ class PoseTrack {
   /// twist. Before the oldest point: the pose of that point.
   pose::Transform at(std::int64_t time_ns, std::int64_t limit_ns) const;
 
+  /// The twist at a time, in the body's frame; the track must not be empty. Between two points: of their
+  /// twists, or else of the motion from one to the other. After the newest point: its twist, or else that of
+  /// the last two points if they are at most `limit_ns` apart; 0 after `limit_ns`. A body that was moved, as
+  /// in at(), has no twist.
+  pose::Velocity twist_at(std::int64_t time_ns, std::int64_t limit_ns) const;
+
   /// The earliest time, from `time_ns` on, that is at a point or between two points at most `gap_ns` apart;
   /// nullopt: after the newest point. The track must not be empty.
   std::optional<std::int64_t> known_from(std::int64_t time_ns, std::int64_t gap_ns) const;

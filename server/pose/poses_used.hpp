@@ -20,7 +20,8 @@ struct PosesUsed {
   std::vector<PosedBody> bodies;  ///< moved by poses so far
   /// Of the mount when the last echo returns; nullopt: not known.
   std::optional<render::Pose> T_world_sonar_at_end{};
-  std::int64_t stamp_ns = 0;  ///< of the transmission, on the clock of the poses
+  std::int64_t stamp_ns = 0;           ///< of the transmission, on the clock of the poses
+  glm::dvec3 sonar_velocity_mps{0.0};  ///< of the mount over ground, in its axes
 };
 
 }  // namespace sonard::server

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "server/devices/device_type.hpp"
+#include "server/devices/head_poses.hpp"
 #include "tests/support/degree.hpp"
 
 namespace sonard::server {
@@ -68,6 +69,29 @@ TEST(SensorReadings, DepthIsBelowTheSurface) {
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), 5.0).depth_m, 25.0);
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, 1.5}), 0.0).depth_m, -1.5);
   EXPECT_EQ(sensor_readings(turned(0, 0, 0, {1, 2, -20}), std::nullopt).depth_m, std::nullopt);
+}
+
+TEST(SensorReadings, HaveTheOrientationAndTheVelocityOfTheMount) {
+  const render::Pose T_world_mount = turned(3, 5, 30);
+  const SensorReadings readings = sensor_readings(T_world_mount, std::nullopt, {1, 2, 3});
+  const glm::dquat& q = T_world_mount.orientation;
+  EXPECT_EQ(readings.orientation_wxyz, (std::array{q.w, q.x, q.y, q.z}));
+  EXPECT_EQ(readings.velocity_mps, (std::array{1.0, 2.0, 3.0}));
+}
+
+// The vehicle goes ahead with 1 m/s and turns to port with 0.5 rad/s. The mount is 2 m ahead and looks down.
+TEST(SensorReadings, VelocityOfTheMountHasThatOfItsArm) {
+  HeadConfig head;
+  head.T_vehicle_sonar = turned(0, 90, 0, {2, 0, 0});
+  PoseHistory history({});
+  pose::PoseSample sample;
+  sample.twist = pose::Velocity{{1, 0, 0}, {0, 0, 0.5}};
+  history.insert(sample, TimePoint{});
+  const HeadPoses poses(head, history, "");
+  const glm::dvec3 expected{0, 1, 1};  // down, to port, ahead
+  EXPECT_LT(glm::distance(poses.mount_velocity_mps(TimePoint{}), expected), 1e-12);
+  ASSERT_TRUE(poses.at(TimePoint{}));
+  EXPECT_LT(glm::distance(poses.at(TimePoint{})->sonar_velocity_mps, expected), 1e-12);
 }
 
 }  // namespace

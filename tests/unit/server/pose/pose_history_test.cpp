@@ -312,5 +312,51 @@ TEST(PoseTrack, KeepsTheNewestPoints) {
   EXPECT_EQ(track.newest().time_ns, 990);
 }
 
+glm::dvec3 speed_at(const PoseHistory& history, double time_ms) {
+  const pose::Vec3 v = history.twist_at(ours(time_ms)).linear_mps;
+  return {v.x, v.y, v.z};
+}
+
+TEST(PoseHistory, TwistIsThatOfThePosesWhereTheyHaveOne) {
+  PoseHistory history{config()};
+  EXPECT_EQ(speed_at(history, 0), glm::dvec3(0));
+  for (const int k : {0, 1}) {
+    PoseSample sample = at_x(100 * k, 0);
+    sample.twist = pose::Velocity{{1.0 + k, 0, 2}, {0, 0, 3}};
+    insert(history, sample);
+  }
+  EXPECT_NEAR(speed_at(history, 25).x, 1.25, 1e-6);
+  EXPECT_EQ(speed_at(history, 300), glm::dvec3(2, 0, 2)) << "past the newest pose";
+  EXPECT_EQ(history.twist_at(ours(300)).angular_radps.z, 3.0);
+  EXPECT_EQ(speed_at(history, 301), glm::dvec3(0)) << "past the extrapolation limit";
+}
+
+// 2 m/s to the east while the vehicle turns to port by 1 rad/s.
+TEST(PoseHistory, TwistIsTheMotionBetweenPosesWithoutOneInTheFrameOfTheVehicle) {
+  PoseHistory history{config()};
+  for (const int k : {0, 1, 2}) {
+    PoseSample sample = at_x(100 * k, 0.2 * k);
+    sample.T_world_vehicle.orientation = yaw(0.1 * k);
+    insert(history, sample);
+  }
+  const glm::dvec3 between = speed_at(history, 150);
+  EXPECT_NEAR(between.x, 2 * std::cos(0.15), 1e-6);
+  EXPECT_NEAR(between.y, -2 * std::sin(0.15), 1e-6);
+  EXPECT_NEAR(history.twist_at(ours(150)).angular_radps.z, 1.0, 1e-9);
+  const glm::dvec3 after = speed_at(history, 250);
+  EXPECT_NEAR(after.x, 2 * std::cos(0.2), 1e-6);
+  EXPECT_NEAR(after.y, -2 * std::sin(0.2), 1e-6);
+}
+
+TEST(PoseHistory, TwistIsZeroWhereAVehicleWasMovedAndAfterAPause) {
+  PoseHistory history{config()};
+  insert(history, at_x(0, 0));
+  insert(history, at_x(100, 50));
+  EXPECT_EQ(speed_at(history, 50), glm::dvec3(0));
+  EXPECT_EQ(speed_at(history, 100), glm::dvec3(0));
+  insert(history, at_x(1000, 51));
+  EXPECT_EQ(speed_at(history, 1000), glm::dvec3(0));
+}
+
 }  // namespace
 }  // namespace sonard::server
