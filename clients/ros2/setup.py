@@ -4,7 +4,7 @@ from setuptools import setup
 setup(
     name="sonard_ros2",
     version="0.1.0",
-    packages=["sonard_ros2"],
+    packages=["sonard_ros2", "sonard_ros2.heads"],
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/sonard_ros2"]),
         ("share/sonard_ros2", ["package.xml"]),

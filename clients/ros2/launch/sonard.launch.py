@@ -13,7 +13,7 @@ from sonard_ros2 import parameters
 
 
 def _argument(parameter):
-    return DeclareLaunchArgument(parameter.name, default_value=str(parameter.default), description=parameter.meaning)
+    return DeclareLaunchArgument(parameter.name, default_value=parameter.default_text(), description=parameter.meaning)
 
 
 def _value(parameter):
@@ -23,13 +23,13 @@ def _value(parameter):
 
 
 def _node(executable, its_parameters):
-    values = {parameter.name: _value(parameter) for parameter in its_parameters}
+    values = {parameter.name: _value(parameter) for parameter in (parameters.USE_SIM_TIME, *its_parameters)}
     return Node(package="sonard_ros2", executable=executable, name=executable, output="screen", parameters=[values])
 
 
 def generate_launch_description():
     return LaunchDescription([
-        *map(_argument, parameters.POSE_BRIDGE + parameters.SONAR_BRIDGE),
+        *map(_argument, (parameters.USE_SIM_TIME, *parameters.POSE_BRIDGE, *parameters.SONAR_BRIDGE)),
         _node("pose_bridge", parameters.POSE_BRIDGE),
         _node("sonar_bridge", parameters.SONAR_BRIDGE),
     ])

@@ -15,10 +15,13 @@ from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from rclpy.time import Time
 from sonard_client import PosePublisher
+from sonard_client.ros2_messages import transform
 from std_msgs.msg import Header
-from tf2_ros import Buffer, TransformException, TransformListener
+from tf2_ros import Buffer, TransformBroadcaster, TransformException, TransformListener
 
 from . import parameters
+from .messages import message
+from .parameter import declare
 from .running import run
 
 _COMPLAINT_EVERY_S = 10.0
@@ -38,9 +41,11 @@ class PoseBridge(Node):
 
     def __init__(self) -> None:
         super().__init__("pose_bridge")
-        self._options = parameters.declare(self, parameters.POSE_BRIDGE)
+        self._options = declare(self, parameters.POSE_BRIDGE)
         self._poses = PosePublisher(self._options.host, self._options.port)
         self._last_stamp_ns: Optional[int] = None  # used for source tf
+        publishes = self._options.publish_tf and self._options.source != "tf"
+        self._broadcaster = TransformBroadcaster(self) if publishes else None
         # Best effort with a short queue fits the quality of service of any publisher, and an old pose is useless.
         if self._options.source == "odometry":
             self.create_subscription(Odometry, self._options.topic, self._on_odometry, qos_profile_sensor_data)
@@ -94,6 +99,10 @@ class PoseBridge(Node):
             self._poses.send(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, self._options.axes)
         except (OSError, ValueError) as error:
             self._complain(str(error))
+            return
+        if self._broadcaster:
+            self._broadcaster.sendTransform(message(transform(time_ns, header.frame_id, self._options.base_frame, position_m,
+                                                              quaternion_xyzw)))
 
     def _complain(self, why: str) -> None:
         self.get_logger().error(f"no pose is sent: {why}", throttle_duration_sec=_COMPLAINT_EVERY_S)

@@ -3,25 +3,32 @@
 
     ros2 run sonard_ros2 sonar_bridge --ros-args -p type:=gemini -p range_m:=20.0
 
-Pings of a Gemini are published on `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `image` (sensor_msgs/Image),
-lines of a Micron on `scan` (sensor_msgs/LaserScan).
+Topics: `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `points` (sensor_msgs/PointCloud2) of each ping or line;
+`image` (sensor_msgs/Image), and `scan` (sensor_msgs/LaserScan) of a scanning head, of each ping or turn; `calibration`
+(sensor_msgs/CameraInfo) of the image when it changes, for late subscribers, too.
 """
 
+import math
 import threading
 import traceback
 
-from builtin_interfaces.msg import Time as Stamp
 from marine_acoustic_msgs.msg import ProjectedSonarImage
 from rclpy.node import Node
-from rclpy.time import Time
-from sensor_msgs.msg import Image, LaserScan
-from sonard_client import Gemini, Micron, NoHead, NoPing, Ping
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
+from sonard_client import NoHead, NoPing, Ping
+from sonard_client import ros2_messages as contents
+from sonard_client.turn import TurnCollector
 from tf2_ros import StaticTransformBroadcaster
 
-from . import messages, parameters
+from . import parameters
+from .heads import HEADS
+from .messages import message
+from .parameter import declare
 from .running import run
 
 _QUEUE = 5  # messages; reliable, which fits any subscriber
+_LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _RETRY_S = 1.0
 _COMPLAINT_EVERY_S = 10.0
 _END_S = 1.0
@@ -32,22 +39,24 @@ class SonarBridge(Node):
 
     def __init__(self) -> None:
         super().__init__("sonar_bridge")
-        self._options = parameters.declare(self, parameters.SONAR_BRIDGE)
-        self._beams_frame_id = f"{self._options.frame_id}_beams"
-        if self._options.device:
-            self.get_logger().warning(f"parameter device is now type: use type:={self._options.device}")
-        if (self._options.device or self._options.type) == "gemini":
-            self._sonar = self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE)
-            self._image = self.create_publisher(Image, "image", _QUEUE)
-            self._broadcaster = StaticTransformBroadcaster(self)
-            self._broadcaster.sendTransform(messages.beams_frame(self.get_clock().now().to_msg(), self._options.frame_id,
-                                                                 self._beams_frame_id))
-            talk = self._talk_to_gemini
-        else:
-            self._scan = self.create_publisher(LaserScan, "scan", _QUEUE)
-            talk = self._talk_to_micron
+        self._options = options = declare(self, parameters.SONAR_BRIDGE)
+        if options.device:
+            self.get_logger().warning(f"parameter device is now type: use type:={options.device}")
+        self._head = HEADS[options.device or options.type]
+        self._echoes = contents.EchoFilter(options.threshold_percent, options.min_range_m)
+        self._turn = TurnCollector(math.radians(options.step_deg)) if self._head.IS_SCANNING else None
+        self._turn_ns = None  # stamp of the last turn
+        self._topics = {"sonar": self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE),
+                        "points": self.create_publisher(PointCloud2, "points", _QUEUE),
+                        "image": self.create_publisher(Image, "image", _QUEUE)}
+        if self._turn:
+            self._topics["scan"] = self.create_publisher(LaserScan, "scan", _QUEUE)
+        self._calibration = self.create_publisher(CameraInfo, "calibration", _LATCHED)
+        self._calibrated = None  # parameters of the published calibration
+        self._broadcaster = StaticTransformBroadcaster(self)
+        self._broadcaster.sendTransform([message(one) for one in self._static_transforms()])
         self._ended = threading.Event()
-        self._thread = threading.Thread(target=self._talk, args=(talk,), daemon=True)
+        self._thread = threading.Thread(target=self._talk, daemon=True)
         self._thread.start()
 
     def destroy_node(self) -> None:
@@ -56,11 +65,19 @@ class SonarBridge(Node):
         self._thread.join(_END_S)
         super().destroy_node()
 
-    def _talk(self, talk) -> None:
+    def _static_transforms(self) -> list:
+        options, now_ns = self._options, self.get_clock().now().nanoseconds
+        transforms = [contents.beams_transform(now_ns, options.frame_id)]
+        if options.parent_frame:
+            transforms.append(contents.transform(now_ns, options.parent_frame, options.frame_id, options.mount_position_m,
+                                                 contents.quaternion_xyzw(options.mount_rpy_deg)))
+        return transforms
+
+    def _talk(self) -> None:
         """Retries until the end, because heads may restart."""
         while self._running():
             try:
-                talk()
+                self._pass_on_pings()
             except (NoHead, NoPing, OSError) as error:
                 self._complain(str(error))
             except Exception:  # a fault of this program; without this line, the node would seem to work
@@ -75,37 +92,45 @@ class SonarBridge(Node):
         if self._running():
             self.get_logger().error(f"no ping is published: {why}", throttle_duration_sec=_COMPLAINT_EVERY_S)
 
-    def _talk_to_gemini(self) -> None:
-        options = self._options
-        with Gemini(options.sonar_id or None, options.local or None) as head:
-            self._say_found(f"Gemini {head.status.sonar_id} at {head.status.address}")
-            for ping in head.pings(options.interval_s, options.range_m, options.gain_percent, options.sound_speed_mps,
-                                   options.compression, options.bits):
+    def _pass_on_pings(self) -> None:
+        with self._head.connected(self._options) as (name, pings):
+            if self._running():
+                self.get_logger().info(f"pings of {name}")
+            for ping in pings:
                 if not self._running():
                     return
-                stamp = self._transmit_stamp(ping)
-                self._sonar.publish(messages.projected_sonar_image(ping, stamp, self._beams_frame_id, options.sound_speed_mps))
-                self._image.publish(messages.image(ping, stamp, options.frame_id))
+                self._pass_on(ping, self._transmit_ns(ping))
 
-    def _talk_to_micron(self) -> None:
-        options = self._options
-        with Micron(options.micron_host, options.micron_port) as head:
-            self._say_found(f"Micron at {options.micron_host}:{options.micron_port}")
-            for line in head.lines(options.range_m, options.bins, options.step_deg, options.gain_percent,
-                                   options.sound_speed_mps):
-                if not self._running():
-                    return
-                self._scan.publish(messages.line_scan(line, self._transmit_stamp(line), options.frame_id))
+    def _pass_on(self, ping: Ping, time_ns: int) -> None:
+        frame_id = self._options.frame_id
+        self._offer("sonar", contents.projected_sonar_image, ping, time_ns, frame_id)
+        self._offer("points", contents.points, ping, time_ns, frame_id, self._echoes)
+        picture = self._turn.add(ping) if self._turn else ping
+        if picture is None:
+            return
+        self._calibrate(contents.calibration(picture, time_ns, frame_id))
+        self._offer("image", contents.image, picture, time_ns, frame_id)
+        if self._turn:
+            seconds = 0.0 if self._turn_ns is None else (time_ns - self._turn_ns) * 1e-9
+            self._offer("scan", contents.scan, picture, time_ns, frame_id, self._echoes, seconds)
+            self._turn_ns = time_ns
 
-    def _say_found(self, head: str) -> None:
-        if self._running():
-            self.get_logger().info(f"pings of {head}")
+    def _offer(self, topic: str, make, *arguments) -> None:
+        """Makes and publishes a message if somebody listens."""
+        if self._topics[topic].get_subscription_count():
+            self._topics[topic].publish(message(make(*arguments)))
 
-    def _transmit_stamp(self, ping: Ping) -> Stamp:
+    def _calibrate(self, calibration: contents.Content) -> None:
+        parameters_of_image = calibration.fields["height"], calibration.fields["d"].tobytes()
+        if parameters_of_image != self._calibrated:
+            self._calibration.publish(message(calibration))
+            self._calibrated = parameters_of_image
+
+    def _transmit_ns(self, ping: Ping) -> int:
         """The transmit time as a client can estimate it: now, less the travel time of sound to the last bin and back. The
         delay of the network is not known."""
         travel_ns = round(2e9 * float(ping.ranges_m[-1]) / self._options.sound_speed_mps)
-        return Time(nanoseconds=max(0, self.get_clock().now().nanoseconds - travel_ns)).to_msg()
+        return max(0, self.get_clock().now().nanoseconds - travel_ns)
 
 
 def main() -> int:

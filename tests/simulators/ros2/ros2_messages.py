@@ -7,6 +7,8 @@ import sys
 from array import array
 from types import ModuleType
 
+import numpy
+
 # Types and fields, and constants, of the interfaces of ROS 2 (Humble to Jazzy) and of marine_acoustic_msgs.
 DEFINITIONS = {
     "builtin_interfaces/Time": "int32 sec; uint32 nanosec",
@@ -28,18 +30,31 @@ DEFINITIONS = {
     "sensor_msgs/LaserScan": "std_msgs/Header header; float32 angle_min; float32 angle_max; float32 angle_increment;"
                              "float32 time_increment; float32 scan_time; float32 range_min; float32 range_max;"
                              "float32[] ranges; float32[] intensities",
+    "sensor_msgs/PointField": "INT8 = 1; UINT8 = 2; INT16 = 3; UINT16 = 4; INT32 = 5; UINT32 = 6; FLOAT32 = 7; FLOAT64 = 8;"
+                              "string name; uint32 offset; uint8 datatype; uint32 count",
+    "sensor_msgs/PointCloud2": "std_msgs/Header header; uint32 height; uint32 width; sensor_msgs/PointField[] fields;"
+                               "bool is_bigendian; uint32 point_step; uint32 row_step; uint8[] data; bool is_dense",
+    "sensor_msgs/RegionOfInterest": "uint32 x_offset; uint32 y_offset; uint32 height; uint32 width; bool do_rectify",
+    "sensor_msgs/CameraInfo": "std_msgs/Header header; uint32 height; uint32 width; string distortion_model; float64[] d;"
+                              "float64[9] k; float64[9] r; float64[12] p; uint32 binning_x; uint32 binning_y;"
+                              "sensor_msgs/RegionOfInterest roi",
     "marine_acoustic_msgs/PingInfo": "float32 frequency; float32 sound_speed; float32[] tx_beamwidths; float32[] rx_beamwidths",
     "marine_acoustic_msgs/SonarImageData": "DTYPE_UINT8 = 0; DTYPE_UINT16 = 2; bool is_bigendian; uint32 dtype;"
                                            "uint32 beam_count; uint8[] data",
     "marine_acoustic_msgs/ProjectedSonarImage": "std_msgs/Header header; marine_acoustic_msgs/PingInfo ping_info;"
                                                 "geometry_msgs/Vector3[] beam_directions; float32[] ranges;"
                                                 "marine_acoustic_msgs/SonarImageData image",
-    # Only the fields that the nodes use.
-    "rcl_interfaces/ParameterDescriptor": "string name; uint8 type; string description; bool read_only; bool dynamic_typing",
+    "rcl_interfaces/FloatingPointRange": "float64 from_value; float64 to_value; float64 step",
+    "rcl_interfaces/IntegerRange": "int64 from_value; int64 to_value; uint64 step",
+    "rcl_interfaces/ParameterDescriptor": "string name; uint8 type; string description; string additional_constraints;"
+                                          "bool read_only; bool dynamic_typing;"
+                                          "rcl_interfaces/FloatingPointRange[] floating_point_range;"
+                                          "rcl_interfaces/IntegerRange[] integer_range",
 }
 
 CLASSES = {}
-_INTEGERS = {"int32": (-2**31, 2**31 - 1), "uint8": (0, 255), "uint32": (0, 2**32 - 1)}
+_INTEGERS = {"int32": (-2**31, 2**31 - 1), "uint8": (0, 255), "uint32": (0, 2**32 - 1), "int64": (-2**63, 2**63 - 1),
+             "uint64": (0, 2**64 - 1)}
 _ARRAYS = {"uint8": "B", "float32": "f", "float64": "d"}
 _PLAIN = {"string": "", "bool": False, "float32": 0.0, "float64": 0.0, **dict.fromkeys(_INTEGERS, 0)}
 
@@ -57,6 +72,8 @@ def _check(kind, value, name):
 
 
 def _initial(kind):
+    if kind.endswith("]") and not kind.endswith("[]"):
+        return numpy.zeros(int(kind[kind.index("[") + 1:-1]))  # of float64
     if kind.endswith("[]"):
         code = _ARRAYS.get(kind[:-2])
         return array(code) if code else []
@@ -67,6 +84,8 @@ def _field(kind, name):
     slot = "_" + name
 
     def assign(self, value):
+        if kind.endswith("]") and not kind.endswith("[]"):
+            raise AssertionError(f"{name} is of type {kind}, which no test needs")
         if kind.endswith("[]"):
             code = _ARRAYS.get(kind[:-2])
             if isinstance(value, array):

@@ -27,8 +27,31 @@ class TransformException(Exception):
     pass
 
 
-class InvalidParameterTypeException(Exception):
+class ParameterException(Exception):
     pass
+
+
+class InvalidParameterTypeException(ParameterException):
+    pass
+
+
+class InvalidParameterValueException(ParameterException):
+    pass
+
+
+class Policy:
+    """The names of a policy of quality of service."""
+
+    def __init__(self, *names):
+        self.__dict__.update({name: name for name in names})
+
+
+Durability, Reliability = Policy("TRANSIENT_LOCAL", "VOLATILE"), Policy("RELIABLE", "BEST_EFFORT")
+
+
+class QoSProfile:
+    def __init__(self, *, depth, reliability, durability):
+        self.depth, self.reliability, self.durability = depth, reliability, durability
 
 
 class Ros:
@@ -41,8 +64,11 @@ class Ros:
     def reset(self, **parameters):
         self.parameters = parameters
         self.published, self.log, self.subscriptions, self.timers, self.transforms = {}, [], {}, [], {}
+        self.qualities = {}  # of the published topics
+        self.ignored = set()  # published topics without a subscriber
+        self.simulated_ns = 0  # of /clock, for use_sim_time
         self.live_nodes = 0
-        self.declared = {}
+        self.declared, self.descriptors = {}, {}
         self.stopped.clear()
 
     def add(self, topic, message):
@@ -89,6 +115,9 @@ class Publisher:
     def __init__(self, kind, topic):
         self._kind, self._topic = kind, topic
 
+    def get_subscription_count(self):
+        return int(self._topic not in ros.ignored)
+
     def publish(self, message):
         assert not ros.stopped.is_set(), "publish() after shutdown"
         assert isinstance(message, self._kind), f"{self._topic} is of {self._kind}"
@@ -116,9 +145,13 @@ class Node:
         assert isinstance(descriptor, CLASSES["rcl_interfaces/ParameterDescriptor"])
         assert name not in ros.declared, f"{name} is declared twice"
         ros.declared[name] = default
+        ros.descriptors[name] = descriptor
         value = ros.parameters.get(name, default)
         if type(value) is not type(default) and not descriptor.dynamic_typing:
             raise InvalidParameterTypeException(f"{name} is {value!r}, expected {type(default)}")
+        for limits in {int: descriptor.integer_range, float: descriptor.floating_point_range}.get(type(value), ()):
+            if value < limits.from_value or value > limits.to_value:  # NaN passes, as in rclpy
+                raise InvalidParameterValueException(f"{value} is not within {limits.from_value:g} to {limits.to_value:g}")
         return SimpleNamespace(value=value)
 
     def create_subscription(self, kind, topic, callback, qos):
@@ -126,13 +159,15 @@ class Node:
 
     def create_publisher(self, kind, topic, qos):
         ros.published.setdefault(topic, [])
+        ros.qualities[topic] = qos
         return Publisher(kind, topic)
 
     def create_timer(self, period_s, callback):
         ros.timers.append((period_s, callback))
 
     def get_clock(self):
-        return SimpleNamespace(now=lambda: Time(nanoseconds=time.time_ns()))
+        simulated = ros.parameters.get("use_sim_time", False)
+        return SimpleNamespace(now=lambda: Time(nanoseconds=ros.simulated_ns if simulated else time.time_ns()))
 
     def get_logger(self):
         return Logger()
@@ -149,12 +184,19 @@ class Buffer:
         return ros.transforms[target_frame, source_frame]
 
 
-class StaticTransformBroadcaster:
-    def __init__(self, node):
-        self._publisher = node.create_publisher(CLASSES["geometry_msgs/TransformStamped"], "/tf_static", 1)
+class TransformBroadcaster:
+    TOPIC = "/tf"
 
-    def sendTransform(self, transform):  # noqa: N802: as tf2_ros has it
-        self._publisher.publish(transform)
+    def __init__(self, node):
+        self._publisher = node.create_publisher(CLASSES["geometry_msgs/TransformStamped"], self.TOPIC, 1)
+
+    def sendTransform(self, transforms):  # noqa: N802: as tf2_ros has it
+        for transform in transforms if isinstance(transforms, list) else [transforms]:
+            self._publisher.publish(transform)
+
+
+class StaticTransformBroadcaster(TransformBroadcaster):
+    TOPIC = "/tf_static"
 
 
 def _init(args=None):
@@ -225,9 +267,11 @@ _install(
     rclpy={"init": _init, "spin": _spin, "try_shutdown": ros.stopped.set},
     rclpy__node={"Node": Node}, rclpy__time={"Time": Time},
     rclpy__executors={"ExternalShutdownException": ExternalShutdownException},
-    rclpy__qos={"qos_profile_sensor_data": SENSOR_DATA},
+    rclpy__exceptions={"ParameterException": ParameterException},
+    rclpy__qos={"qos_profile_sensor_data": SENSOR_DATA, "QoSProfile": QoSProfile, "DurabilityPolicy": Durability,
+                "ReliabilityPolicy": Reliability},
     tf2_ros={"Buffer": Buffer, "TransformException": TransformException, "TransformListener": lambda buffer, node: None,
-             "StaticTransformBroadcaster": StaticTransformBroadcaster},
+             "StaticTransformBroadcaster": StaticTransformBroadcaster, "TransformBroadcaster": TransformBroadcaster},
     launch={"LaunchDescription": LaunchDescription},
     launch__actions={"DeclareLaunchArgument": DeclareLaunchArgument},
     launch__substitutions={"LaunchConfiguration": LaunchConfiguration},

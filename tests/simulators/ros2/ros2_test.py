@@ -9,10 +9,13 @@ The world is a sphere of 0.5 m at (3, 2, 0), tests/data/system/sphere_to_port.sd
 
 import argparse
 import ast
+import dataclasses
+import glob
 import importlib.util
 import math
 import os
 import re
+import shutil
 import signal
 import sys
 import time
@@ -24,13 +27,18 @@ import numpy
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
-sys.path[:0] = [HERE, os.path.join(SOURCE, "tests", "system", "gemini")]
+sys.path[:0] = [HERE, os.path.join(SOURCE, "tests", "system", "gemini"), os.path.join(SOURCE, "tests", "support")]
 
+import pcapng_reader  # noqa: E402
+import wire_pings  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
 from ros2_messages import CLASSES  # noqa: E402
-from ros2_stand_ins import SENSOR_DATA, InvalidParameterTypeException, Time, ros  # noqa: E402
+from ros2_stand_ins import SENSOR_DATA, Time, ros  # noqa: E402
 from sonard_client import Ping  # noqa: E402
-from sonard_ros2 import messages, parameters, running  # noqa: E402
+from sonard_client import ros2_messages as contents  # noqa: E402
+from sonard_client.turn import TurnCollector  # noqa: E402
+from sonard_ros2 import parameters, running  # noqa: E402
+from sonard_ros2.messages import message  # noqa: E402
 from sonard_ros2.pose_bridge import PoseBridge  # noqa: E402
 from sonard_ros2.sonar_bridge import SonarBridge  # noqa: E402
 
@@ -56,6 +64,16 @@ MICRON = """
     type: micron
     serial: {tcp: [{bind: 127.0.0.1:4001}]}
 """
+OCULUS = """
+    type: oculus
+    model: m750d
+    network: {address: 127.0.0.3, netmask: 255.0.0.0, status: [127.0.0.1]}
+"""
+PING360 = """
+    type: ping360
+    udp: [{bind: 127.0.0.1:12345}]
+"""
+HEADS = {"gemini": GEMINI, "oculus": OCULUS, "micron": MICRON, "ping360": PING360}
 
 
 def make(full_name, **fields):
@@ -110,16 +128,20 @@ class StandIns(unittest.TestCase):
 
 
 class Messages(unittest.TestCase):
+    TIME_NS = 5 * 10**9 + 6
+
     def setUp(self):
-        self.stamp = make("builtin_interfaces/Time", sec=5, nanosec=6)
         self.ping = Ping(samples=numpy.array([[1, 2, 3], [4, 5, 6]], numpy.uint8), ranges_m=numpy.array([0.5, 1.5]),
-                         bearings_rad=numpy.radians([30, 0, -30]), transmit_us=7)
-        self.wide = Ping(samples=self.ping.samples * numpy.uint16(256) + numpy.uint16(9), ranges_m=self.ping.ranges_m,
-                         bearings_rad=self.ping.bearings_rad, transmit_us=7)
+                         bearings_rad=numpy.radians([30, 0, -30]), transmit_us=7, sound_speed_mps=1480, frequency_hz=720e3,
+                         beamwidth_rad=math.radians(1), vertical_beamwidth_rad=math.radians(20))
+        self.wide = dataclasses.replace(self.ping, samples=self.ping.samples * numpy.uint16(256) + numpy.uint16(9))
+
+    def made(self, maker, ping, *more):
+        return message(maker(ping, self.TIME_NS, "sonar", *more))
 
     def test_projected_sonar_image(self):
-        message = messages.projected_sonar_image(self.ping, self.stamp, "beams", 1480)
-        self.assertEqual((message.header.frame_id, message.header.stamp.sec), ("beams", 5))
+        message = self.made(contents.projected_sonar_image, self.ping)
+        self.assertEqual((message.header.frame_id, message.header.stamp.sec, message.header.stamp.nanosec), ("sonar_beams", 5, 6))
         # Port, ahead, starboard; y is to starboard.
         for direction, expected in zip(message.beam_directions, ((0, -0.5, 0.8660), (0, 0, 1), (0, 0.5, 0.8660))):
             numpy.testing.assert_allclose((direction.x, direction.y, direction.z), expected, atol=1e-4)
@@ -128,32 +150,80 @@ class Messages(unittest.TestCase):
         numpy.testing.assert_allclose(message.ping_info.tx_beamwidths, [0.34907] * 3, atol=1e-5)
         numpy.testing.assert_allclose(message.ping_info.rx_beamwidths, [0.01745] * 3, atol=1e-5)
         self.assertEqual((message.image.dtype, message.image.beam_count, list(message.image.data)), (0, 3, [1, 2, 3, 4, 5, 6]))
-        image = messages.projected_sonar_image(self.wide, self.stamp, "beams", 1480).image
+        image = self.made(contents.projected_sonar_image, self.wide).image
         self.assertEqual((image.dtype, image.beam_count, image.is_bigendian), (2, 3, False))
         self.assertEqual(list(image.data), [9, 1, 9, 2, 9, 3, 9, 4, 9, 5, 9, 6])
 
+    def test_what_is_not_known_is_left_out(self):
+        info = self.made(contents.projected_sonar_image, Ping(self.ping.samples, self.ping.ranges_m, self.ping.bearings_rad, None)).ping_info
+        self.assertEqual((info.frequency, info.sound_speed, len(info.tx_beamwidths), len(info.rx_beamwidths)), (0, 0, 0, 0))
+
     def test_frame_of_the_beams(self):
-        transform = messages.beams_frame(self.stamp, "sonar", "sonar_beams")
+        transform = message(contents.beams_transform(self.TIME_NS, "sonar"))
         self.assertEqual((transform.header.frame_id, transform.child_frame_id), ("sonar", "sonar_beams"))
         for axis, expected in (((0, 0, 1), (1, 0, 0)), ((1, 0, 0), (0, 0, 1)), ((0, 1, 0), (0, -1, 0))):
             with self.subTest(axis):
                 numpy.testing.assert_allclose(rotated(transform.transform.rotation, axis), expected, atol=1e-12)
 
+    def test_a_mount_turns_as_in_the_configuration(self):
+        """docs/frames-and-units.md: pitch down, yaw to port, roll with starboard down, in the order Rz Ry Rx."""
+        for rpy_deg, axis, expected in (((0, 20, 0), (1, 0, 0), (0.9397, 0, -0.3420)), ((0, 0, 90), (1, 0, 0), (0, 1, 0)),
+                                        ((90, 0, 0), (0, -1, 0), (0, 0, -1)), ((90, 0, 90), (0, 1, 0), (0, 0, 1)),
+                                        ((0, 90, 90), (0, 0, 1), (0, 1, 0)), ((30, 40, 50), (1, 0, 0), (0.4924, 0.5868, -0.6428))):
+            with self.subTest(rpy_deg):
+                x, y, z, w = contents.quaternion_xyzw(rpy_deg)
+                numpy.testing.assert_allclose(rotated(make("geometry_msgs/Quaternion", x=x, y=y, z=z, w=w), axis), expected, atol=1e-4)
+
     def test_image(self):
-        message = messages.image(self.ping, self.stamp, "sonar")
+        message = self.made(contents.image, self.ping)
         self.assertEqual((message.height, message.width, message.step, message.encoding), (2, 3, 3, "mono8"))
         self.assertEqual(list(message.data), [1, 2, 3, 4, 5, 6])
-        message = messages.image(self.wide, self.stamp, "sonar")
+        message = self.made(contents.image, self.wide)
         self.assertEqual((message.height, message.width, message.step, message.encoding), (2, 3, 6, "mono16"))
         self.assertEqual((message.is_bigendian, list(message.data[:4])), (0, [9, 1, 9, 2]))
 
-    def test_line_scan(self):
-        line = Ping(samples=self.ping.samples[:, :1], ranges_m=self.ping.ranges_m, bearings_rad=numpy.array([0.25]),
-                    transmit_us=None)
-        message = messages.line_scan(line, self.stamp, "sonar")
-        self.assertEqual((message.angle_min, message.angle_max, message.angle_increment), (0.25, 0.25, 0))
-        self.assertEqual((message.range_min, message.range_max), (0, 2))
-        self.assertEqual((list(message.ranges), list(message.intensities)), ([0.5, 1.5], [1, 4]))
+    def test_calibration(self):
+        message = self.made(contents.calibration, self.ping)
+        self.assertEqual((message.height, message.width, message.distortion_model, message.k[0]), (2, 3, "sonar_polar", 0))
+        numpy.testing.assert_allclose(message.d, [0.5, 1, 1480, 720e3, *self.ping.bearings_rad])
+
+    def test_points(self):
+        message = self.made(contents.points, self.ping, contents.EchoFilter(100 * 2 / 255, 1.0))
+        self.assertEqual([(field.name, field.offset, field.datatype, field.count) for field in message.fields],
+                         [("x", 0, 7, 1), ("y", 4, 7, 1), ("z", 8, 7, 1), ("intensity", 12, 7, 1)])
+        self.assertEqual((message.height, message.width, message.point_step, message.row_step), (1, 3, 16, 48))
+        self.assertEqual((message.is_bigendian, message.is_dense), (False, True))
+        points = numpy.frombuffer(message.data, "<f4").reshape(-1, 4)
+        side, ahead = 1.5 * 0.5, 1.5 * math.sqrt(0.75)
+        numpy.testing.assert_allclose(points, [(ahead, side, 0, 4), (1.5, 0, 0, 5), (ahead, -side, 0, 6)], atol=1e-6)
+        self.assertEqual(self.made(contents.points, self.ping, contents.EchoFilter(100 * 2 / 255, 0.0)).width, 5)
+        zeros = dataclasses.replace(self.ping, samples=0 * self.ping.samples)
+        self.assertEqual(self.made(contents.points, zeros, contents.EchoFilter(0.0, 0.0)).width, 0)
+
+    def test_scan(self):
+        samples = numpy.array([[9, 9, 0, 9], [1, 7, 2, 0], [5, 6, 0, 0]], numpy.uint8)
+        turn = dataclasses.replace(self.ping, samples=samples, ranges_m=numpy.array([0.5, 1.5, 2.5]),
+                                   bearings_rad=numpy.radians([180, 90, 0, -90]))
+        message = self.made(contents.scan, turn, contents.EchoFilter(100 * 2 / 255, 1.0), 8.5)
+        numpy.testing.assert_allclose((message.angle_min, message.angle_max, message.angle_increment),
+                                      (-math.pi / 2, math.pi, math.pi / 2))
+        self.assertEqual((message.range_min, message.range_max, message.scan_time), (1, 3, 8.5))
+        self.assertEqual((list(message.ranges), list(message.intensities)), ([math.inf, 1.5, 1.5, 2.5], [0, 2, 7, 5]))
+
+    def test_lines_become_turns(self):
+        for step_deg, columns, bearings_deg in ((90, 4, [180, 90, 0, -90]), (120, 3, [120, 0, -120])):
+            with self.subTest(step_deg):
+                collector = TurnCollector(math.radians(step_deg))
+                lines = [dataclasses.replace(self.ping, samples=numpy.full((2, 1), 1 + number, numpy.uint8),
+                                             bearings_rad=numpy.radians([-number * step_deg + 1]))
+                         for number in range(columns)]
+                turns = [collector.add(line) for line in lines]
+                self.assertEqual(turns[:-1], [None] * (columns - 1))
+                numpy.testing.assert_allclose(numpy.degrees(turns[-1].bearings_rad), bearings_deg)
+                for number in range(columns):
+                    column = min(range(columns), key=lambda one: abs(
+                        (math.radians(-number * step_deg) - turns[-1].bearings_rad[one] + 1) % math.tau - 1))
+                    self.assertEqual(turns[-1].samples[:, column].tolist(), [1 + number] * 2)
 
 
 class Parameters(unittest.TestCase):
@@ -165,15 +235,31 @@ class Parameters(unittest.TestCase):
     def test_what_is_refused(self):
         self.refused(PoseBridge, "source is 'gps', expected odometry or pose or tf", source="gps")
         self.refused(PoseBridge, "axes is 'flu', expected enu_flu or ned_frd", axes="flu")
-        self.refused(PoseBridge, "port is 0, expected a number from 1 to 65535", port=0)
-        self.refused(SonarBridge, "type is 'oculus', expected gemini or micron", type="oculus")
-        self.refused(SonarBridge, "device is 'oculus', expected gemini or micron", device="oculus")
+        self.refused(PoseBridge, "^parameter port, UDP port .*: 0 is not within 1 to 65535", port=0)
+        self.refused(SonarBridge, "type is 'sidescan', expected gemini or micron or oculus or ping360", type="sidescan")
+        self.refused(SonarBridge, "device is 'sidescan', expected gemini or micron or oculus or ping360", device="sidescan")
+        self.refused(SonarBridge, "^parameter range_m, range .* metres: 0.5 is not within 1 to 150", range_m=0.5)
+        self.refused(SonarBridge, "range_m is 151, expected a number from 1 to 150", range_m=151)
+        self.refused(SonarBridge, "mount_rpy_deg is .0, 20., expected 3 numbers", mount_rpy_deg=[0, 20])
+        self.refused(SonarBridge, "mount_rpy_deg is .*, expected 3 numbers", mount_rpy_deg=[0, 20, math.nan])
+        self.refused(SonarBridge, "mount_rpy_deg is 20, expected 3 numbers", mount_rpy_deg=20)
         self.refused(SonarBridge, "range_m is far, expected a number from 1 to 150", range_m="far")
         self.refused(SonarBridge, "gain_percent is nan", gain_percent=math.nan)
         self.refused(SonarBridge, "bits is '12', expected 8 or 16", bits=12)
-        ros.reset(world_frame=3)
-        with self.assertRaises(InvalidParameterTypeException):
-            PoseBridge()
+        self.refused(PoseBridge, "^parameter world_frame, the frame of sonard's world: ", world_frame=3)
+
+    def test_descriptors(self):
+        ros.reset()
+        for node in (PoseBridge(), SonarBridge()):
+            self.addCleanup(node.destroy_node)
+        for parameter in parameters.POSE_BRIDGE + parameters.SONAR_BRIDGE:
+            with self.subTest(parameter.name):
+                descriptor = ros.descriptors[parameter.name]
+                self.assertEqual((descriptor.description, descriptor.read_only), (parameter.meaning, True))
+                limits = [(one.from_value, one.to_value) for one in [*descriptor.floating_point_range, *descriptor.integer_range]]
+                self.assertEqual(limits, [(parameter.lowest, parameter.highest)] if parameter.lowest is not None else [])
+                self.assertEqual(len(descriptor.integer_range), limits != [] and type(parameter.default) is int)
+        self.assertEqual(ros.descriptors["type"].additional_constraints, "gemini or micron or oculus or ping360")
 
     def test_a_whole_number_for_one_with_decimals(self):
         ros.reset(range_m=30, type="micron")
@@ -186,13 +272,13 @@ class Parameters(unittest.TestCase):
         node = SonarBridge()
         self.addCleanup(node.destroy_node)
         self.assertIn(("warning", "parameter device is now type: use type:=micron"), ros.log)
-        self.assertEqual(list(ros.published), ["scan"])
+        self.assertIn("scan", ros.published)
 
     def test_the_page_lists_them(self):
         with open(os.path.join(SOURCE, "docs", "simulators", "ros2.md"), encoding="utf-8") as file:
             rows = dict(re.findall(r"^\| `(\w+)` \| `?([^|`]*?)`? \|", file.read(), re.MULTILINE))
-        expected = {parameter.name: str(parameter.default) or "empty"
-                    for parameter in parameters.POSE_BRIDGE + parameters.SONAR_BRIDGE}
+        expected = {parameter.name: parameter.default_text() or "empty"
+                    for parameter in (parameters.USE_SIM_TIME, *parameters.POSE_BRIDGE, *parameters.SONAR_BRIDGE)}
         self.assertEqual(rows, expected)
 
 
@@ -205,8 +291,7 @@ class Stamps(unittest.TestCase):
         node.get_clock = lambda: SimpleNamespace(now=lambda: Time(nanoseconds=now_ns))
         ping = Ping(samples=numpy.zeros((2, 1), numpy.uint8), ranges_m=numpy.array([5.0, 15.0]),
                     bearings_rad=numpy.array([0.0]), transmit_us=None)
-        stamp = node._transmit_stamp(ping)
-        return stamp.sec, stamp.nanosec
+        return divmod(node._transmit_ns(ping), 10**9)
 
     def test_when_it_was_sent(self):
         self.assertEqual(self.stamp(7_000_000_000), (6, 980_000_000))
@@ -231,11 +316,12 @@ class PackageFiles(unittest.TestCase):
             kind().destroy_node()
             (values,) = node.parameters
             self.assertEqual({name: value.value.variable_name for name, value in values.items()},
-                             {name: name for name in ros.declared})
+                             {name: name for name in ["use_sim_time", *ros.declared]})
+            self.assertEqual((arguments["use_sim_time"], values["use_sim_time"].value_type), ("false", None))
             for name, default in ros.declared.items():
-                self.assertEqual(arguments.pop(name), str(default))
+                self.assertEqual(arguments.pop(name), str(default).lower() if isinstance(default, bool) else str(default))
                 self.assertEqual(values[name].value_type, str if isinstance(default, str) else None)
-        self.assertEqual(arguments, {}, "of no node")
+        self.assertEqual(list(arguments), ["use_sim_time"], "of no node")
 
     def test_package_xml_and_setup(self):
         root = xml.etree.ElementTree.parse(os.path.join(PACKAGE, "package.xml")).getroot()
@@ -249,6 +335,9 @@ class PackageFiles(unittest.TestCase):
         setup = {keyword.arg: ast.literal_eval(keyword.value) for node in ast.walk(ast.parse(text))
                  if isinstance(node, ast.Call) for keyword in node.keywords}
         self.assertEqual((setup["name"], setup["version"]), (root.findtext("name"), root.findtext("version")))
+        self.assertEqual({package.replace(".", os.sep) for package in setup["packages"]},
+                         {os.path.relpath(os.path.dirname(file), PACKAGE) for file in
+                          glob.glob(os.path.join(PACKAGE, "sonard_ros2", "**", "__init__.py"), recursive=True)})
         for _, files in setup["data_files"]:
             for file in files:
                 self.assertTrue(os.path.isfile(os.path.join(PACKAGE, file)), file)
@@ -261,7 +350,7 @@ class PackageFiles(unittest.TestCase):
         root = xml.etree.ElementTree.parse(os.path.join(PACKAGE, "package.xml")).getroot()
         named = {element.text for element in root.findall("exec_depend")}
         used = set()
-        for folder in ("sonard_ros2", "launch"):
+        for folder in ("sonard_ros2", os.path.join("sonard_ros2", "heads"), "launch"):
             for name in os.listdir(os.path.join(PACKAGE, folder)):
                 if name.endswith(".py"):
                     with open(os.path.join(PACKAGE, folder, name), encoding="utf-8") as file:
@@ -272,16 +361,17 @@ class PackageFiles(unittest.TestCase):
                         elif isinstance(node, ast.Import):
                             used.update(alias.name.split(".")[0] for alias in node.names)
         own = {"sonard_ros2", "sonard_client"} | set(sys.stdlib_module_names)
-        self.assertEqual(used - own, named - {"python3-numpy"})
+        self.assertEqual(used - own, named - {"python3-numpy"} | {"numpy"})
 
 
 class Ros2(OwnMachine):
     """Nodes in this process, and sonard as a second process."""
 
-    def start(self, head=GEMINI):
+    def start(self, head=GEMINI, more="", has_pose=False):
         path = os.path.join(self.folder.name, "sonard.yaml")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(CONFIG.format(world=WORLD) + head)
+            text = more + CONFIG.format(world=WORLD) + head
+            file.write(text.replace("poses: {", "poses: {initial: {position_m: [0, 0, 0]}, ") if has_pose else text)
         daemon = Program([os.path.join(PROGRAMS, "sonard"), "run", path], "sonard")
         self.addCleanup(daemon.kill)
         daemon.wait_for_line("sonard ready", START_S)
@@ -346,6 +436,106 @@ class Ros2(OwnMachine):
         self.assertEqual(image.data, message.image.data)
         transform, = ros.published["/tf_static"]
         self.assertEqual((transform.header.frame_id, transform.child_frame_id), ("bow", "bow_beams"))
+
+    def test_messages_are_what_was_on_the_wire(self):
+        for kind, head in HEADS.items():
+            with self.subTest(kind):
+                self.compare_with_the_wire(kind, head)
+
+    def compare_with_the_wire(self, kind, head):
+        shutil.rmtree(os.path.join(self.folder.name, "logs"), ignore_errors=True)
+        daemon = self.start(head, "recording: {directory: logs}\n", has_pose=True)
+        ros.reset(type=kind, range_m=6, step_deg=7.2, threshold_percent=20, min_range_m=0.8)
+        node, is_scanning = SonarBridge(), kind in ("micron", "ping360")
+        try:
+            ros.wait(lambda: len(ros.published["image"]) >= 2, 2 * PATIENCE_S)
+        finally:
+            node.destroy_node()
+        daemon.terminate(PATIENCE_S)
+        capture, = glob.glob(os.path.join(self.folder.name, "logs", "*.pcapng"))
+        wire = {}
+        for ping in wire_pings.PINGS[kind](pcapng_reader.read(capture)):
+            wire[ping.bearings_rad[0], ping.data()] = ping
+        for sonar, points in zip(ros.published["sonar"], ros.published["points"]):
+            bearings_rad = [math.atan2(-one.y, one.z) for one in sonar.beam_directions]
+            ping = min((one for (_, data), one in wire.items() if data == bytes(sonar.image.data)),
+                       key=lambda one: abs(one.bearings_rad[0] - bearings_rad[0]))
+            numpy.testing.assert_allclose(bearings_rad, ping.bearings_rad, atol=1e-6)
+            numpy.testing.assert_allclose(sonar.ranges, (numpy.arange(len(ping.rows)) + 0.5) * ping.row_m, rtol=1e-6)
+            self.assertEqual((sonar.image.beam_count, sonar.ping_info.sound_speed), (len(ping.rows[0]), 1500))
+            self.assertEqual(points.header.stamp.nanosec, sonar.header.stamp.nanosec)
+            self.compare_points(points, ping)
+        self.compare_turn(wire.values()) if is_scanning else self.compare_image()
+
+    def compare_points(self, points, ping):
+        expected = [(r * math.cos(bearing), r * math.sin(bearing), 0, sample) for row, samples in enumerate(ping.rows)
+                    for bearing, sample in zip(ping.bearings_rad, samples)
+                    if sample >= 51 and (r := (row + 0.5) * ping.row_m) >= 0.8]
+        numpy.testing.assert_allclose(numpy.frombuffer(points.data, "<f4").reshape(-1, 4), numpy.reshape(expected, (-1, 4)),
+                                      atol=1e-5)
+
+    def compare_image(self):
+        sonar, image, calibration = (ros.published[topic][-1] for topic in ("sonar", "image", "calibration"))
+        self.assertEqual(bytes(image.data), bytes(sonar.image.data))
+        self.expect_calibration(calibration, image, sonar.ranges)
+        numpy.testing.assert_allclose(calibration.d[4:], [math.atan2(-one.y, one.z) for one in sonar.beam_directions])
+
+    def compare_turn(self, wire):
+        """The first turn has each line of the wire in the column of its bearing. A line seen twice is as likely the first."""
+        image, scan, calibration = (ros.published[topic][0] for topic in ("image", "scan", "calibration"))
+        self.expect_calibration(calibration, image, ros.published["sonar"][0].ranges)
+        pixels = numpy.frombuffer(image.data, numpy.uint8).reshape(image.height, image.width)
+        self.assertEqual(image.width, 50)
+        numpy.testing.assert_allclose(numpy.diff(calibration.d[4:]), -math.radians(7.2))
+        numpy.testing.assert_allclose(scan.angle_min + scan.angle_increment * numpy.arange(50), calibration.d[4:][::-1], atol=1e-6)
+        for column, bearing_rad in enumerate(calibration.d[4:]):
+            lines = [ping for ping in wire if abs(math.remainder(ping.bearings_rad[0] - bearing_rad, math.tau)) < 1e-6]
+            line, = [ping for ping in lines if ping.data() == pixels[:, column].tobytes()][:1]
+            echoes = [(sample[0], -row) for row, sample in enumerate(line.rows) if sample[0] >= 51 and (row + 0.5) * line.row_m >= 0.8]
+            strongest, row = max(echoes, default=(0, -math.inf))
+            self.assertEqual(scan.intensities[49 - column], strongest)
+            self.assertAlmostEqual(scan.ranges[49 - column], (0.5 - row) * line.row_m, places=5)
+        self.assertAlmostEqual(scan.ranges[int(numpy.argmax(scan.intensities))], math.hypot(3, 2) - 0.5, delta=0.1)
+
+    def expect_calibration(self, calibration, image, ranges):
+        self.assertEqual((calibration.height, calibration.width, calibration.header.frame_id), (image.height, image.width, "sonar"))
+        first_m, step_m, sound_speed_mps, frequency_hz = calibration.d[:4]
+        numpy.testing.assert_allclose(first_m + step_m * numpy.arange(image.height), ranges, rtol=1e-5)
+        self.assertEqual((sound_speed_mps, frequency_hz), (1500, ros.published["sonar"][0].ping_info.frequency))
+        self.assertEqual(len(ros.published["calibration"]), 1, "it did not change")
+        self.assertEqual(ros.qualities["calibration"].durability, "TRANSIENT_LOCAL")
+
+    def test_nothing_is_made_for_nobody(self):
+        self.start(OCULUS, has_pose=True)
+        ros.reset(type="oculus", range_m=2)
+        ros.ignored = {"sonar", "image"}
+        self.addCleanup(SonarBridge().destroy_node)
+        ros.wait(lambda: len(ros.published["points"]) > 2, PATIENCE_S)
+        self.assertEqual((ros.published["sonar"], ros.published["image"]), ([], []))
+
+    def test_transforms(self):
+        self.nodes(PoseBridge, SonarBridge, publish_tf=True, base_frame="rov", parent_frame="rov", mount_position_m=[1, 2, 3],
+                   mount_rpy_deg=[0, 0, 90.0])
+        beams, mount = ros.published["/tf_static"]
+        self.assertEqual((mount.header.frame_id, mount.child_frame_id, beams.header.frame_id), ("rov", "sonar", "sonar"))
+        place = mount.transform.translation
+        self.assertEqual((place.x, place.y, place.z), (1, 2, 3))
+        numpy.testing.assert_allclose(rotated(mount.transform.rotation, (1, 0, 0)), (0, 1, 0), atol=1e-12)
+        ros.publish("/odom", odometry(4, 5, 90, time_ns=7 * 10**9 + 8))
+        ros.publish("/odom", odometry(4, 5, 90, frame_id="odom"))
+        vehicle, = ros.published["/tf"]
+        self.assertEqual((vehicle.header.frame_id, vehicle.child_frame_id, vehicle.header.stamp.sec), ("world", "rov", 7))
+        self.assertEqual((vehicle.transform.translation.x, vehicle.transform.translation.y), (4, 5))
+        numpy.testing.assert_allclose(rotated(vehicle.transform.rotation, (1, 0, 0)), (0, 1, 0), atol=1e-12)
+
+    def test_simulated_time(self):
+        self.start(OCULUS, has_pose=True)
+        ros.reset(type="oculus", range_m=2, use_sim_time=True)
+        ros.simulated_ns = 90 * 10**9
+        self.addCleanup(SonarBridge().destroy_node)
+        stamp = ros.wait(lambda: ros.published["sonar"][:1], PATIENCE_S)[0].header.stamp
+        self.assertEqual(stamp.sec, 89)
+        self.assertAlmostEqual(1e9 - stamp.nanosec, 2 * 2 / 1500 * 1e9, delta=1e5)
 
     def test_sixteen_bits(self):
         self.start()
@@ -412,14 +602,19 @@ class Ros2(OwnMachine):
         self.start(MICRON)
         self.nodes(PoseBridge, SonarBridge, type="micron", range_m=6, bins=300)
         ros.publish("/odom", odometry(0, 0, 0))
-        turn = ros.wait(lambda: ros.published["scan"][50:250] if len(ros.published["scan"]) >= 250 else None, 2 * PATIENCE_S)
-        steps = numpy.diff([line.angle_min for line in turn]) % (2 * math.pi)
+        turn = ros.wait(lambda: ros.published["sonar"][50:250] if len(ros.published["sonar"]) >= 250 else None, 2 * PATIENCE_S)
+
+        def bearing_rad(line):
+            direction, = line.beam_directions
+            return math.atan2(-direction.y, direction.z)
+
+        steps = numpy.diff([bearing_rad(line) for line in turn]) % (2 * math.pi)
         self.assertLess(abs(steps - (2 * math.pi - math.radians(1.8))).max(), 1e-5, "clockwise")
-        brightest = max(turn, key=lambda line: max(line.intensities))
-        self.assertEqual((len(brightest.ranges), brightest.angle_increment, brightest.header.frame_id), (300, 0, "sonar"))
-        self.assertAlmostEqual(brightest.range_max, 6, delta=0.1)
-        self.assertAlmostEqual(brightest.ranges[int(numpy.argmax(brightest.intensities))], math.hypot(3, 2) - 0.5, delta=0.1)
-        self.assertAlmostEqual(brightest.angle_min, math.atan2(2, 3), delta=math.radians(9))
+        brightest = max(turn, key=lambda line: max(line.image.data))
+        self.assertEqual((len(brightest.ranges), brightest.image.beam_count, brightest.header.frame_id), (300, 1, "sonar_beams"))
+        self.assertAlmostEqual(brightest.ranges[-1], 6, delta=0.1)
+        self.assertAlmostEqual(brightest.ranges[int(numpy.argmax(brightest.image.data))], math.hypot(3, 2) - 0.5, delta=0.1)
+        self.assertAlmostEqual(bearing_rad(brightest), math.atan2(2, 3), delta=math.radians(9))
 
     def comes_back(self, head, topic, **values):
         daemon = self.start(head)
@@ -436,8 +631,14 @@ class Ros2(OwnMachine):
     def test_a_gemini_comes_back(self):
         self.comes_back(GEMINI, "sonar")
 
+    def test_an_oculus_comes_back(self):
+        self.comes_back(OCULUS, "sonar", type="oculus")
+
+    def test_a_ping360_comes_back(self):
+        self.comes_back(PING360, "sonar", type="ping360")
+
     def test_a_micron_comes_back(self):
-        self.comes_back(MICRON, "scan", type="micron")
+        self.comes_back(MICRON, "points", type="micron")
 
     def test_no_head(self):
         self.nodes(SonarBridge)
@@ -488,9 +689,9 @@ class Ros2(OwnMachine):
             self.expect_end(program, signal_number)
 
     def test_a_wrong_parameter_ends_it(self):
-        program = self.node("sonar_bridge", "type=oculus")
+        program = self.node("sonar_bridge", "type=sidescan")
         self.assertEqual(program.wait(PATIENCE_S), 1)
-        self.assertEqual(program.output(), "parameter type is 'oculus', expected gemini or micron")
+        self.assertEqual(program.output(), "parameter type is 'sidescan', expected gemini or micron or oculus or ping360")
 
 
 def main():

@@ -9,7 +9,7 @@ SHELL = ("", "sh", "bash", "console", "shell")
 # A line of a block is a command if it begins with one of these. A block without such lines is output or a drawing.
 PROGRAMS = ("sonard", "sonarview", "posecast", "roscast", "./run", "./test", "build/", "tests/", "docker", "clients/", "configs/",
             "hooks/", "cmake", "ctest", "git", "sudo", "apt", "pip", "npm", "python3", "podman", "kubectl", "ip", "systemctl",
-            "mkdocs", "doxygen", "protoc", "ros2", "rosrun", "roslaunch", "rostopic", "colcon", "ign", "gz", "tshark", "tcpdump",
+            "mkdocs", "doxygen", "protoc", "ros2", "rosrun", "roslaunch", "rostopic", "rosdep", "colcon", "ign", "gz", "tshark", "tcpdump",
             "editcap", "wireshark", "curl", "socat", "nc", "ss", "sysctl", "unshare", "export", "for", "while", "cd", "cp", "ln",
             "mkdir", "kill", "cmp", "wait", "PYTHONPATH=", "SONARD", "chrt", "perf", "nvidia-smi", "qemu", "ffmpeg", "ethtool", "seed=",
             "umask", "chmod", "modprobe", "setcap", "source", ".", "xvfb-run", "world=", "set", "screen", "stty", "sim_vehicle.py")

@@ -125,7 +125,7 @@ RULES = [
     NotRun(r"(docker|kubectl|apt) .*|docker/.*|clients/examples/slurm/.*", "needs another host, a cluster or packages; tests/containers and tests/cluster run them"),
     NotRun(r"sudo .*", "needs sudo, and interfaces with these names; tests/system/gemini/link_test.py makes the same network"),
     NotRun(r"for n in 1 2; do\n.*", "needs the host's interface enp3s0"),
-    NotRun(r"(\S*roscast|roscore|rostopic|ros2|colcon|pip|ln|cd REPOSITORY) .*", "needs ROS; tests/simulators has rosmaster and stand-ins"),
+    NotRun(r"(\S*roscast|roscore|rostopic|rosdep|ros2|colcon|pip|ln|cd REPOSITORY) .*", "needs ROS; tests/simulators has rosmaster and stand-ins"),
     NotRun(r"sim_vehicle.py .*|set streamrate 50", "needs ArduPilot's simulator; tests/simulators has node-mavlink"),
     NotRun(r"tshark .*", "needs a capture with traffic of all heads; tests/logs runs it"),
     NotRun(r"protoc .*|cp clients/examples/stonefish/.*", "writes into the reader's simulator; tests/simulators builds these examples"),

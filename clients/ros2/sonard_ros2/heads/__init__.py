@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The heads that sonar_bridge is a client of: an adapter for each type. An adapter is a module with
+
+    PARAMETERS            the parameters that only this type has. Those for several types are in parameters.py
+    IS_SCANNING           whether a ping is one line of a turn
+    connected(options)    a context with the head: its name for the log, and an iterator of its pings (sonard_client.Ping).
+                          Raises NoHead, NoPing or OSError, after which the node tries again
+"""
+
+from . import gemini, micron, oculus, ping360
+
+HEADS = {"gemini": gemini, "micron": micron, "oculus": oculus, "ping360": ping360}
