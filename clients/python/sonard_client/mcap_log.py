@@ -13,21 +13,20 @@ from typing import Any, Iterator, Optional
 import numpy as np
 
 from .damage import warn, warn_of_bytes, warn_of_end
+from .mcap_format import (ATTACHMENT, CHANNEL, CHUNK, CHUNK_INDEX, DATA_END, FOOTER, HEADER, MAGIC, MESSAGE, MESSAGE_INDEX,
+                          METADATA, SCHEMA, STATISTICS, SUMMARY_OFFSET)
 from .ping import Array, LoggedPing, is_plausible_time
 
-MAGIC = b"\x89MCAP0\r\n"
-_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = 1, 2, 3, 4, 5, 6, 7, 8
-_ATTACHMENT, _STATISTICS, _METADATA, _SUMMARY_OFFSET, _DATA_END = 9, 11, 12, 14, 15
 _LAST_KNOWN = 15
 # Parts of a record's content: a number of bytes, or bytes after their length in 32 or 64 bits.
 _SIZED_32, _SIZED_64 = -4, -8
-_FORMS = {_HEADER: (_SIZED_32, _SIZED_32), _FOOTER: (20,), _SCHEMA: (2, _SIZED_32, _SIZED_32, _SIZED_32),
-          _CHANNEL: (4, _SIZED_32, _SIZED_32, _SIZED_32), _CHUNK: (28, _SIZED_32, _SIZED_64),
-          _MESSAGE_INDEX: (2, _SIZED_32), _CHUNK_INDEX: (32, _SIZED_32, 8, _SIZED_32, 16),
-          _ATTACHMENT: (16, _SIZED_32, _SIZED_32, _SIZED_64, 4), _STATISTICS: (42, _SIZED_32),
-          _METADATA: (_SIZED_32, _SIZED_32), _SUMMARY_OFFSET: (17,), _DATA_END: (4,)}
-_WITHOUT_MESSAGES = (_HEADER, _SCHEMA, _CHANNEL, _MESSAGE_INDEX, _DATA_END)
-_AFTER_DATA = (_FOOTER, _STATISTICS, _DATA_END)
+_FORMS = {HEADER: (_SIZED_32, _SIZED_32), FOOTER: (20,), SCHEMA: (2, _SIZED_32, _SIZED_32, _SIZED_32),
+          CHANNEL: (4, _SIZED_32, _SIZED_32, _SIZED_32), CHUNK: (28, _SIZED_32, _SIZED_64),
+          MESSAGE_INDEX: (2, _SIZED_32), CHUNK_INDEX: (32, _SIZED_32, 8, _SIZED_32, 16),
+          ATTACHMENT: (16, _SIZED_32, _SIZED_32, _SIZED_64, 4), STATISTICS: (42, _SIZED_32),
+          METADATA: (_SIZED_32, _SIZED_32), SUMMARY_OFFSET: (17,), DATA_END: (4,)}
+_WITHOUT_MESSAGES = (HEADER, SCHEMA, CHANNEL, MESSAGE_INDEX, DATA_END)
+_AFTER_DATA = (FOOTER, STATISTICS, DATA_END)
 # The start of a chunk with a known compression, of a schema of sonard, and of a message index below 16 MiB.
 _READABLE = re.compile(rb"\x06(?=.{36}(?:\x00{4}|\x04\x00{3}zstd|\x03\x00{3}lz4))|\x03(?=.{14}sonard\.log\.)"
                        rb"|\x07(?=.{3}\x00{5}.{5}\x00)", re.DOTALL)
@@ -66,12 +65,12 @@ class _Reader:
     def pings(self) -> Iterator[LoggedPing]:
         for kind, body in self._records():
             # Records in chunks have a checksum and come first, so they take precedence.
-            if kind == _SCHEMA and len(body) >= 6:
+            if kind == SCHEMA and len(body) >= 6:
                 self._schemas.setdefault(struct.unpack_from("<H", body)[0], _text(body, 2))
-            elif kind == _CHANNEL and len(body) >= 4:
+            elif kind == CHANNEL and len(body) >= 4:
                 number, schema = struct.unpack_from("<HH", body)
                 self._channels.setdefault(number, schema)
-            elif kind == _MESSAGE and len(body) >= 22:
+            elif kind == MESSAGE and len(body) >= 22:
                 (channel,) = struct.unpack_from("<H", body)
                 schema_name = self._schema_of(channel)
                 self._without_channel += channel not in self._channels
@@ -113,7 +112,7 @@ class _Reader:
                     end = max(end or 0, end_of_records)
                 elif end is None:
                     raise _Damaged("a length beyond the end")
-                elif data[at] == _CHUNK:
+                elif data[at] == CHUNK:
                     if not _sizes_agree(data, at):
                         raise _Damaged("the length of a chunk")
                     self._tell_lost_chunk()
@@ -124,7 +123,7 @@ class _Reader:
                 elif data[at] in _AFTER_DATA:
                     self._ended = True
                     return
-                elif data[at] == _MESSAGE_INDEX:
+                elif data[at] == MESSAGE_INDEX:
                     self._count_lost(data[at + 9: end])
                 else:
                     yield data[at], data[at + 9: end]
@@ -137,7 +136,7 @@ class _Reader:
         data, at = self._data, len(MAGIC)
         if bytes(data[:at]) == MAGIC:
             return at
-        if len(data) <= at or data[at] != _HEADER or not _has_form(data, at, _HEADER):
+        if len(data) <= at or data[at] != HEADER or not _has_form(data, at, HEADER):
             found = _next_readable(data, -1, None)
             if found is None:
                 raise ValueError(f"{self._path} is not an .mcap log, or none of its pings can be read")
@@ -187,12 +186,12 @@ def _end(data: Any, at: int) -> Optional[int]:
 
 def _sizes_agree(data: Any, at: int) -> bool:
     """Whether the record has the inner sizes of a chunk, for any type byte."""
-    return _has_form(data, at, _CHUNK)
+    return _has_form(data, at, CHUNK)
 
 
 def _is_cut_chunk(data: Any, at: int) -> bool:
     """Whether the file ends inside the chunk at `at`, whose sizes agree."""
-    if at + _FRONT_BYTES > len(data) or data[at] != _CHUNK or _end(data, at) is not None or _has_end(data):
+    if at + _FRONT_BYTES > len(data) or data[at] != CHUNK or _end(data, at) is not None or _has_end(data):
         return False
     (name,) = struct.unpack_from("<I", data, at + 37)
     return bool(at + 49 + name <= len(data) and struct.unpack_from("<Q", data, at + 1)[0] ==
@@ -212,12 +211,12 @@ def _has_form(data: Any, at: int, kind: int, end: Optional[int] = None) -> bool:
             place += -part + struct.unpack_from("<I" if part == _SIZED_32 else "<Q", data, place)[0]
         else:
             place += part
-    return place == end and (kind != _MESSAGE_INDEX or (end - at - 15) % 16 == 0)
+    return place == end and (kind != MESSAGE_INDEX or (end - at - 15) % 16 == 0)
 
 
 def _is_unknown(kind: int) -> bool:
     """Whether records of this kind are of a later version or of another program."""
-    return kind > _LAST_KNOWN or (kind not in _FORMS and kind not in (0, _MESSAGE))
+    return kind > _LAST_KNOWN or (kind not in _FORMS and kind not in (0, MESSAGE))
 
 
 def _leads_on(data: Any, at: int) -> bool:
@@ -230,7 +229,7 @@ def _leads_on(data: Any, at: int) -> bool:
         unknown = end is not None and _is_unknown(data[at])
         if end is None or not (unknown or _has_form(data, at, data[at])):
             return False
-        if not unknown and data[at] not in (_SCHEMA, _CHANNEL):
+        if not unknown and data[at] not in (SCHEMA, CHANNEL):
             return True
         at = end
     return True
@@ -242,7 +241,7 @@ def _looks_like_no_chunk(data: Any, at: int, end: Optional[int] = None) -> bool:
 
 def _was_chunk(data: Any, at: int) -> bool:
     """Whether an unreadable record is a chunk. Assumes that one bit is wrong, so its length or its type is right."""
-    return _sizes_agree(data, at) or (data[at] == _CHUNK and not _looks_like_no_chunk(data, at))
+    return _sizes_agree(data, at) or (data[at] == CHUNK and not _looks_like_no_chunk(data, at))
 
 
 def _held_no_message(data: Any, at: int, following: int) -> bool:
@@ -260,7 +259,7 @@ def _next_readable(data: Any, at: int, end: Optional[int]) -> Optional[int]:
         found = match.start()
         following = _end(data, found)
         if following is not None and _has_form(data, found, data[found]) and (
-                data[found] == _CHUNK or _leads_on(data, following)):
+                data[found] == CHUNK or _leads_on(data, following)):
             return found
     return None
 
@@ -287,7 +286,7 @@ def _split(data: bytes, has_crc: bool) -> list[tuple[int, bytes]]:
         end = _end(data, at)
         if end is None:
             raise _Damaged("a record beyond its chunk")
-        if not has_crc and data[at] != _MESSAGE and not (data[at] in (_SCHEMA, _CHANNEL) and _has_form(data, at, data[at])):
+        if not has_crc and data[at] != MESSAGE and not (data[at] in (SCHEMA, CHANNEL) and _has_form(data, at, data[at])):
             raise _Damaged(f"a record of type {data[at]} in a chunk")
         records.append((data[at], data[at + 9: end]))
         at = end
@@ -298,10 +297,10 @@ def _end_of_open_chunk(data: Any, at: int) -> Optional[int]:
     """The end of the last whole record of a chunk that is still being written: it has no checksum and no compression, and its
     length may be too short. None if there is no such chunk."""
     begin = at + _FRONT_BYTES
-    if begin > len(data) or data[at] != _CHUNK or struct.unpack_from("<II", data, at + 33) != (0, 0):
+    if begin > len(data) or data[at] != CHUNK or struct.unpack_from("<II", data, at + 33) != (0, 0):
         return None
     end = begin
-    while end < len(data) and data[end] in (_SCHEMA, _CHANNEL, _MESSAGE) and (following := _end(data, end)) is not None:
+    while end < len(data) and data[end] in (SCHEMA, CHANNEL, MESSAGE) and (following := _end(data, end)) is not None:
         end = following
     return end if end > begin else None
 
@@ -313,7 +312,7 @@ def _has_end(data: Any) -> bool:
 def _has_whole_summary(data: Any) -> bool:
     """Whether the file has an end and a summary with the right checksum, or says that it has no summary."""
     at = len(data) - len(MAGIC) - _FOOTER_BYTES
-    if not _has_end(data) or at < len(MAGIC) or data[at] != _FOOTER or not _has_form(data, at, _FOOTER):
+    if not _has_end(data) or at < len(MAGIC) or data[at] != FOOTER or not _has_form(data, at, FOOTER):
         return False
     start, _, crc = struct.unpack_from("<QQI", data, at + 9)
     if crc == 0:
