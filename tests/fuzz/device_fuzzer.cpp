@@ -49,12 +49,19 @@ void DeviceFuzzer::answer_job(bool rendered) {
   if (!job) {
     return;
   }
-  if (!rendered || job->bins() > most_bins()) {
+  if (!rendered || (job->bins() > most_bins() && !job->directions.any())) {
     step(PingNotRendered{job->number});
     return;
   }
   PingImage image;
   image.number = job->number;
+  if (job->directions.any()) {
+    const Directions& wanted = job->directions;
+    image.directions = {wanted.columns, wanted.rows, std::vector<float>(wanted.count(), 2.0F),
+                        std::vector<float>(wanted.count(), 1e-4F)};
+    step(PingRendered{std::move(image)});
+    return;
+  }
   const int per_bin = job->beams > 0 ? job->beams : beams();
   const auto samples = static_cast<std::size_t>(job->bins()) * static_cast<std::size_t>(per_bin);
   if (job->sixteen_bit && !job->record) {

@@ -22,9 +22,24 @@ inline std::uint8_t test_sample(std::uint64_t ping, std::size_t bin, std::size_t
   return static_cast<std::uint8_t>(ping * 31 + bin * 7 + beam);
 }
 
-/// An image of `bins` times `beams` test samples.
+/// Echoes from 1 m to 14 m; one direction in 16 has none.
+inline DirectionRanges test_directions(std::uint64_t ping, const Directions& wanted) {
+  DirectionRanges found{wanted.columns, wanted.rows, {}, {}};
+  for (std::size_t i = 0; i < wanted.count(); ++i) {
+    const std::uint8_t sample = test_sample(ping, i);
+    found.range_m.push_back(sample % 16 == 0 ? 0.0F : 1.0F + 0.05F * static_cast<float>(sample));
+    found.intensity.push_back(sample % 16 == 0 ? 0.0F : 1e-6F * static_cast<float>(sample));
+  }
+  return found;
+}
+
+/// An image of `bins` times `beams` test samples, or the directions that the job asks for.
 inline PingImage test_image(const PingJob& job, int bins, int beams = 1) {
   PingImage image{job.number, {}, {}};
+  if (job.directions.any()) {
+    image.directions = test_directions(job.number, job.directions);
+    return image;
+  }
   for (std::size_t bin = 0; bin < static_cast<std::size_t>(bins); ++bin) {
     for (std::size_t beam = 0; beam < static_cast<std::size_t>(beams); ++beam) {
       const std::uint8_t sample = test_sample(job.number, bin, beam);

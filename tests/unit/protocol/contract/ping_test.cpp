@@ -91,7 +91,11 @@ TEST_P(Pings, AnImageOfTheWrongSizeIsCountedAsFailedAndTheNextIsSent) {
         const auto size = static_cast<std::ptrdiff_t>(samples.size()) + excess;
         samples.resize(static_cast<std::size_t>(std::max<std::ptrdiff_t>(size, 0)));
       };
-      job.sixteen_bit ? resized(image.u16) : resized(image.u8);
+      if (job.directions.any()) {
+        resized(image.directions.range_m);
+      } else {
+        job.sixteen_bit ? resized(image.u16) : resized(image.u8);
+      }
       return image;
     };
     bench.request();
