@@ -11,6 +11,8 @@ micron/client/       scripts for fuzz_micron_client: what a head sends to a clie
 oculus/device/     scripts for fuzz_oculus_device: what clients send to a head
 oculus/client/       streams of a head
 ping360/           the same three for the Ping360
+sonar3d15/packets/ recordings, messages and blocks of Snappy
+sonar3d15/device/  scripts for fuzz_sonar3d15_device: requests of clients, and images
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
 mavlink/           datagrams of each message, signed, among others, broken
@@ -334,6 +336,42 @@ def ping1d_device_scripts():
     yield "played", script(PLAYS_BACK, say("continuous_start_profile"), 3 * (event(P360_FEED) + image))
 
 
+def sonar3d15_packets():
+    """The first byte is the kind: 0 recording, 1 message, 2 block of Snappy."""
+    packets = {name: message["bytes"] for name, message in sorted(messages("sonar3d15").items())}
+    for name, packet in packets.items():
+        yield name, bytes([2 if packet[3:4] == b"2" else 1]) + packet[8:-4]
+    whole = b"".join(packets.values())
+    yield "recording", b"\0" + whole
+    yield "damaged", b"\0" + whole[:100] + b"?RIP" + whole[100:-3]
+
+
+def sonar3d15_device_scripts():
+    """Kinds of events are those of the Oculus's script."""
+    def post(path, body, kind=OCULUS, delay=2):
+        head = f"POST /api/v1/integration/{path} HTTP/1.1\r\nContent-Length: {len(body)}\r\n\r\n"
+        return event(AS_IS | kind, head.encode() + body, delay)
+
+    def script(flags, *events):
+        return bytes([flags]) + event(OCULUS_CLIENT) + b"".join(events)
+
+    image = event(OCULUS_IMAGE, delay=100)
+    start = post("acoustics/enabled", b"true")
+    yield "shots", script(0, start, post("output/imu-batch/enabled", b"true"), 4 * image, post("acoustics/enabled", b"false"))
+    yield "settings", script(0, start, post("acoustics/mode", b'"high-frequency"'), post("acoustics/speed_of_sound", b"1450.5"),
+                             post("acoustics/range", b'{"min": 0.5, "max": 4.0}', OCULUS_OTHER), 4 * image)
+    yield "udp", script(0, start, *(post("udp", b'{"mode": "%s", "unicast_destination_ip": "10.0.0.1", "unicast_destination_port": 9}'
+                                         % mode) + image for mode in (b"unicast", b"disabled", b"multicast")))
+    yield "time", script(0, post("time/manual", b'{"now": "2026-01-01T00:00:00.5+01:00"}'), post("time/ntp", b'{"ntp_address": "a"}'),
+                         post("time/ntp/force-sync", b'{"timeout_seconds": 1}'), event(OCULUS, b"\x8c"), event(OCULUS, b"\x87"))
+    yield "wrong", script(0x10, post("acoustics/enabled", b'"enable"'), post("udp", b'{"mode": "disable"}'), post("nothing", b"{"),
+                          event(AS_IS | OCULUS, b"POST / HTTP/1.0\r\n\r\n"))
+    yield "too_hot", script(0x20, start, image)
+    yield "failed", script(4, event(OCULUS_FAILED), image)
+    yield "next_ping_due", script(2, start, 3 * (event(OCULUS_NEXT_DUE) + image))
+    yield "played", script(1, start, 3 * (event(OCULUS_FEED) + image))
+
+
 def glf_record(kind, body):
     return struct.pack("<cBIdBHHH", b"*", 2, 21 + len(body), 1479651753.25, kind, 1194, 100, 0) + body
 
@@ -589,6 +627,7 @@ def main():
                             ("oculus/device", oculus_device_scripts()), ("oculus/client", oculus_streams()),
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
                             ("ping360/client", ping360_client_scripts()), ("ping1d/device", ping1d_device_scripts()), ("ping1d/messages", ping1d_messages()),
+                            ("sonar3d15/packets", sonar3d15_packets()), ("sonar3d15/device", sonar3d15_device_scripts()),
                             ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
