@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets <-> messages of a Sonar 3D-15. Source: docs/protocols/sonar3d15.md 2. No state; any thread.
+// Packets <-> messages of a Sonar 3D-15. Source: protocol/sonar3d15/README.md 2. No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The settings of a head, and its HTTP interface, which reads and sets them. Source:
-// docs/protocols/sonar3d15.md 5.
+// protocol/sonar3d15/README.md 5.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Sonar 3D-15 as a pure state machine: input is bytes and time, output is messages and jobs.
-// Source: docs/protocols/sonar3d15.md.
+// Source: protocol/sonar3d15/README.md.
 #pragma once
 
 #include <memory>

@@ -34,7 +34,7 @@ enum class UdpMode : std::uint8_t { multicast, unicast, disabled };
 
 inline constexpr Endpoint multicast_group{0xE0000060, 4747};  ///< 224.0.0.96 (6)
 
-/// Section numbers refer to docs/protocols/sonar3d15.md. The Device constructor rejects values out of range.
+/// Section numbers refer to protocol/sonar3d15/README.md. The Device constructor rejects values out of range.
 struct DeviceConfig {
   Release release{1, 8, 0};
   std::optional<PacketId> packets;  ///< nullopt: by the release

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // HTTP/1.1 as far as clients of a Sonar 3D-15 use it: requests with a Content-Length, on streams that may
-// stay open. Source: docs/protocols/sonar3d15.md 5. No sockets: bytes <-> values.
+// stay open. Source: protocol/sonar3d15/README.md 5. No sockets: bytes <-> values.
 #pragma once
 
 #include <cstddef>

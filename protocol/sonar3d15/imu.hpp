@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inertial sensor in a Sonar 3D-15, from its attitude. Source: docs/protocols/sonar3d15.md 2.4.
+// The inertial sensor in a Sonar 3D-15, from its attitude. Source: protocol/sonar3d15/README.md 2.4.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout table of a packet's header. Payload and checksum follow it. Source: docs/protocols/sonar3d15.md 1.
+// Layout table of a packet's header. Payload and checksum follow it. Source: protocol/sonar3d15/README.md 1.
 #pragma once
 
 #include <tuple>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of a message: id, length, payload, checksum. Source: docs/protocols/sonar3d15.md 1. No state; any
-// thread.
+// The frame of a message: id, length, payload, checksum. Source: protocol/sonar3d15/README.md 1. No state;
+// any thread.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files `.sonar`: packets one after another, without a header or bytes between them. Source:
-// docs/protocols/sonar3d15.md
-// 9. To write a file, append each datagram.
+// Files `.sonar`: packets one after another, without a header or bytes between them. To write a file, append
+// each datagram. Source: protocol/sonar3d15/README.md 9.
 #pragma once
 
 #include <cstdint>

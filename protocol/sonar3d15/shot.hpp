@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two images of a shot: from echoes to numbers, to log records and back. Source:
-// docs/protocols/sonar3d15.md 3, 4.
+// protocol/sonar3d15/README.md 3, 4.
 #pragma once
 
 #include <chrono>
