@@ -13,6 +13,8 @@ oculus/client/       streams of a head
 ping360/           the same three for the Ping360
 sonar3d15/packets/ recordings, messages and blocks of Snappy
 sonar3d15/device/  scripts for fuzz_sonar3d15_device: requests of clients, and images
+dvl_a50/stream/    texts of both directions of a DVL
+dvl_a50/device/    scripts for fuzz_dvl_a50_device: what clients send to a device
 glf/log/           small logs, bare and in every kind of archive
 mcap/, pcapng/     small files, whole and cut
 mavlink/           datagrams of each message, signed, among others, broken
@@ -616,6 +618,39 @@ def write(folder, name, data):
     (target / name).write_bytes(data)
 
 
+def dvl_a50_texts():
+    texts = {name: message["bytes"] for name, message in sorted(messages("dvl_a50").items()) if message["message"] != "pd4"}
+    yield from texts.items()
+    yield "stream", b"".join(text for text in texts.values() if text.startswith(b"{"))
+    yield "time", b"2026-01-01T02:00:00.5+02:00"
+
+
+def dvl_a50_device_scripts():
+    """Bytes of a JSON client, the serial line and an HTTP client; the other kinds of events are those of the Ping360."""
+    json, serial, http = range(3)
+
+    def say(text, kind=json, delay=2):
+        return event(kind, text, delay)
+
+    def command(name, parameters="{}"):
+        return say(f'{{"command":"{name}","parameters":{parameters}}}'.encode())
+
+    def script(flags, *events):
+        return bytes([flags]) + b"".join(events)
+
+    image = event(P360_IMAGE, delay=100)
+    yield "reports", script(0, command("get_config"), 4 * image, event(P360_GONE))
+    yield "settings", script(0, command("set_config", '{"speed_of_sound":1500,"range_mode":"wt"}'), 3 * image,
+                             command("reset_dead_reckoning"), command("get_version_info"))
+    yield "triggers", script(0x10, 3 * command("trigger_ping"), 3 * image, command("calibrate_gyro"))
+    yield "times", script(0, command("set_time_manual", '{"now":"2026-01-01T00:00:00Z"}'), command("get_time_status"),
+                          command("force_sync_ntp", '{"timeout_seconds":1}'), event(P360_FAILED, delay=100))
+    yield "serial", script(4, *(say(line, serial) for line in (b"wcv*fe\r\n", b"wcs,1450,,n,,,*c5\n", b"wcp,2\r", b"wcw")), image)
+    yield "http", script(0, say(b"GET /api/v1/about HTTP/1.1\r\n\r\n", http), say(b"GET / HTTP/1.0\n\n", http))
+    yield "next_due", script(2, command("get_config"), event(P360_NEXT_DUE, delay=100), image)
+    yield "played", script(1, command("get_config"), event(P360_FEED), image)
+
+
 def main():
     for device, folder in (("gemini", "gemini/datagrams"), ("micron", "micron/frames")):
         for name, message in messages(device).items():
@@ -628,6 +663,7 @@ def main():
                             ("ping360/frames", ping360_frames()), ("ping360/device", ping360_device_scripts()),
                             ("ping360/client", ping360_client_scripts()), ("ping1d/device", ping1d_device_scripts()), ("ping1d/messages", ping1d_messages()),
                             ("sonar3d15/packets", sonar3d15_packets()), ("sonar3d15/device", sonar3d15_device_scripts()),
+                            ("dvl_a50/stream", dvl_a50_texts()), ("dvl_a50/device", dvl_a50_device_scripts()),
                             ("glf/log", glf_logs()), ("mcap", mcap_files()),
                             ("pcapng", pcapng_files()),
                             ("mavlink", mavlink_datagrams()), ("pose", pose_streams()),
