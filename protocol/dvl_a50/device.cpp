@@ -144,7 +144,8 @@ class Device::Impl {
     PingPlan plan;
     bool triggered = false;
     std::optional<Velocity> recorded;
-    Velocity report;  ///< set at the arrival of the image
+    Velocity report;                    ///< set at the arrival of the image
+    std::vector<std::uint8_t> samples;  ///< of a recorded ping, as they came
   };
   /// What a command did.
   struct Outcome {
@@ -646,7 +647,8 @@ void Device::Impl::begin_ping(TimePoint now) {
   if (!start || now < *start || !cycle_.granted()) {
     return;
   }
-  ping_ = {.plan = plan(), .triggered = !settings_.acoustic_enabled, .recorded = {}, .report = {}};
+  ping_ = {
+      .plan = plan(), .triggered = !settings_.acoustic_enabled, .recorded = {}, .report = {}, .samples = {}};
   const nanoseconds period = std::max(this->period(ping_.plan), listening_time(ping_.plan));
   if (locked_ && settings_.periodic_cycling_enabled && now >= next_cycling_ && !ping_.triggered) {
     // A look for a nearer bottom takes the place of a ping (5).
@@ -676,6 +678,7 @@ void Device::Impl::take(TimePoint now, const PingRendered& ping) {
   }
   if (ping_.recorded) {
     ping_.report = *ping_.recorded;
+    ping_.samples = ping.image.u8;
     if (ping.image.u8.size() != static_cast<std::size_t>(cycle_.job().bins())) {
       cycle_.fail();
     }
@@ -713,7 +716,13 @@ void Device::Impl::finish_ping(TimePoint now) {
   ping_.report.validity_us = unix_us(reflected);
   const TimePoint leaves = config_.simulated_time ? now : std::max(now, reflected + config_.processing_delay);
   ping_.report.transmission_us = unix_us(leaves);
-  cycle_.put_on_wire(record_of(ping_.report, job.range_m(), job.sound_speed_mps));
+  PingRecord record = record_of(ping_.report, job.range_m(), job.sound_speed_mps);
+  if (ping_.recorded) {
+    record.settings.bins = job.bins();
+    record.settings.bin_m = job.bin_m();
+    record.samples = std::move(ping_.samples);
+  }
+  cycle_.put_on_wire(std::move(record));
   ++counters_.pings_sent;
   pending_.push_back({leaves, ping_.report});
 }

@@ -28,6 +28,7 @@ TEST(DvlPlayback, ARecordedReportIsSentAgainWithTheTimesOfToday) {
   EXPECT_EQ(again.velocity_mps, first.velocity_mps);
   EXPECT_EQ(again.beams, first.beams);
   EXPECT_EQ(again.covariance, first.covariance);
+  EXPECT_EQ(player.records.at(0).samples, test_image(player.jobs[0], 200).u8) << "what was fed";
   EXPECT_EQ(again.transmission_us, (1767225600s + player.velocities[0].time) / 1us);
 }
 
