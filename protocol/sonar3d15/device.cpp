@@ -166,10 +166,11 @@ Reply Device::Impl::answer(TimePoint now, const Peer& client, const Request& req
     ++unknown_paths_;
   } else {
     ++refused_;
-    warnings_.warn(
-        "refused",
-        fmt::format("a client's {} was refused with status {}: {}", request.method, reply.status, reply.body),
-        actions_.notices);
+    // Only paths of the head refuse values, so the path is not any text of a client.
+    warnings_.warn("refused",
+                   fmt::format("a client's {} {} was refused with status {}: {}", request.method,
+                               request.path, reply.status, reply.body),
+                   actions_.notices);
   }
   if (acoustics != controls_.settings().acoustics) {
     actions_.notices.push_back(

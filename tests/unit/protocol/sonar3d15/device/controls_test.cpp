@@ -91,7 +91,11 @@ TEST(Controls, AWrongTypeOrValueChangesNothing) {
   }
   const std::string nested = "{\"x\":" + std::string(60'000, '[') + std::string(60, ']') + "}";
   EXPECT_EQ(bench.post("acoustics/range", nested), 400);
-  EXPECT_EQ(bench.notices.size(), 1U);  // the first refusal
+  ASSERT_EQ(bench.notices.size(), 1U);  // the first refusal
+  EXPECT_EQ(
+      bench.notices[0].text,
+      "a client's POST /api/v1/integration/acoustics/enabled was refused with status 400: \"wrong type or "
+      "value\"");
 }
 
 TEST(Controls, UnusedMembersOfUdpMayBeMissing) {
