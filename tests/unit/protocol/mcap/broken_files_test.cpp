@@ -63,11 +63,13 @@ TEST(McapBroken, ACompressedChunkIsRefusedAndNeverCutOff) {
   EXPECT_EQ(all_of(reader->messages()).size(), 5U);
 }
 
-// The first chunk would be inside the header, and lost, but a later reader of the repaired file would find it.
+// The first chunk would be inside the header, and lost, but a later reader of the repaired file would find
+// it.
 TEST(McapBroken, AHeaderWithAWrongLengthIsDamagedAndNotKept) {
   const Bytes whole = finished_file();
   Bytes file{whole.begin(), whole.end() - 1};
-  file[magic.size() + 1] = static_cast<std::uint8_t>(read_summary(whole)->chunks[1].offset - first_chunk + 12);
+  file[magic.size() + 1] =
+      static_cast<std::uint8_t>(read_summary(whole)->chunks[1].offset - first_chunk + 12);
   const auto recovery = recover(file);
   ASSERT_FALSE(recovery);
   EXPECT_EQ(recovery.error().field, "header");
