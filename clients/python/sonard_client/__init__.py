@@ -24,13 +24,15 @@ if TYPE_CHECKING:
     from .micron import Micron
     from .oculus import Oculus
     from .ping import LoggedPing, NoHead, NoPing, Ping
+    from .ping1d import Ping1D, Sounding
     from .ping360 import Ping360
 
-__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Oculus", "Ping", "Ping360",
-           "PosePublisher", "encode_pose", "read_log"]
+__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Oculus", "Ping", "Ping1D",
+           "Ping360", "PosePublisher", "Sounding", "encode_pose", "read_log"]
 
 _MODULES = {"DamagedLog": "damage", "Gemini": "gemini", "LoggedPing": "ping", "Micron": "micron", "NoHead": "ping",
-            "NoPing": "ping", "Oculus": "oculus", "Ping": "ping", "Ping360": "ping360", "read_log": "log"}
+            "NoPing": "ping", "Oculus": "oculus", "Ping": "ping", "Ping1D": "ping1d", "Ping360": "ping360", "Sounding": "ping1d",
+            "read_log": "log"}
 
 
 def __getattr__(name: str) -> Any:

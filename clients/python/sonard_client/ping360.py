@@ -4,43 +4,20 @@
 from __future__ import annotations
 
 import math
-import socket
 import struct
-import time
-from typing import Iterator, Optional
+from typing import Iterator
 
 import numpy as np
 
-from .ping import Array, NoHead, NoPing, Ping, turn_of
+from .ping import Array, NoPing, Ping, turn_of
+from .ping_head import ATTEMPTS, PingHead
 
 _TURN = 400  # gradians, clockwise from above
 _TICK_S = 25e-9  # unit of the sample period
 _SHORTEST_PERIOD, _LONGEST_PERIOD = 80, 40000  # 2.3
-_PROTOCOL_VERSION, _GENERAL_REQUEST, _NACK, _DEVICE_DATA, _TRANSDUCER = 5, 6, 2, 2300, 2601
+_DEVICE_DATA, _TRANSDUCER = 2300, 2601
 _FREQUENCY_KHZ = 750
 _BEAMWIDTH_RAD, _VERTICAL_BEAMWIDTH_RAD = math.radians(2), math.radians(25)
-_ATTEMPTS = 5
-
-
-def _frame(message: int, payload: bytes) -> bytes:
-    """Encodes a frame (1)."""
-    front = b"BR" + struct.pack("<HHBB", len(payload), message, 0, 0) + payload
-    return front + struct.pack("<H", sum(front) & 0xFFFF)
-
-
-def _frames(buffer: bytearray) -> Iterator[tuple[int, bytes]]:
-    """Removes whole frames from the received bytes; number and payload of each (1.1)."""
-    while (start := buffer.find(b"BR")) >= 0 and len(buffer) >= start + 10:
-        del buffer[:start]
-        length, message = struct.unpack_from("<HH", buffer, 2)
-        if len(buffer) < length + 10 and length <= 4096:
-            return
-        if length <= 4096 and sum(buffer[: length + 8]) & 0xFFFF == struct.unpack_from("<H", buffer, length + 8)[0]:
-            payload = bytes(buffer[8: length + 8])
-            del buffer[: length + 10]
-            yield message, payload
-        else:
-            del buffer[:1]
 
 
 def _pulse_us(range_m: float, period: int, sound_speed_mps: float) -> int:
@@ -50,31 +27,11 @@ def _pulse_us(range_m: float, period: int, sound_speed_mps: float) -> int:
     return int(min(max(wanted_us, 5), 500, 64 * sample_us))
 
 
-class Ping360:
+class Ping360(PingHead):
     """A client of one head at HOST:PORT, which it commands ping by ping. Use it from one thread at a time."""
 
     def __init__(self, host: str = "127.0.0.1", port: int = 12345, patience_s: float = 5.0) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._buffer = bytearray()
-        try:
-            self._socket.connect((host, port))
-            for _ in range(_ATTEMPTS):
-                if self._ask(_GENERAL_REQUEST, struct.pack("<H", _PROTOCOL_VERSION), _PROTOCOL_VERSION,
-                             patience_s / _ATTEMPTS):
-                    return
-            raise NoHead(f"no answer from {host}:{port} within {patience_s} s: check that the head is on")
-        except BaseException:
-            self.close()
-            raise
-
-    def __enter__(self) -> Ping360:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        self._socket.close()
+        super().__init__(host, port, patience_s)
 
     def turn(self, range_m: float = 20.0, bins: int = 1000, step_deg: float = 1.8, gain_percent: float = 50.0,
              sound_speed_mps: float = 1500.0) -> Ping:
@@ -106,32 +63,11 @@ class Ping360:
         """Samples of the answer to a transducer command, which is sent again until an answer with its settings comes."""
         _, gain, angle, *settings = struct.unpack("<BBHHHHHBB", command)
         wanted = (gain, angle, *settings[:4])
-        for _ in range(_ATTEMPTS):
-            payload = self._ask(_TRANSDUCER, command, _DEVICE_DATA, 2.0, wanted)
+        for _ in range(ATTEMPTS):
+            payload = self._ask(_TRANSDUCER, command, _DEVICE_DATA, 2.0, lambda answer: _answers(answer, wanted))
             if payload is not None:
                 return np.frombuffer(payload[14:], np.uint8)
         raise NoPing("no ping arrived: check that the head has a pose and is in the water")
-
-    def _ask(self, message: int, payload: bytes, wanted: int, wait_s: float,
-             settings: Optional[tuple[int, ...]] = None) -> Optional[bytes]:
-        """Sends a message. Returns the payload of the answer `wanted`, for device_data that with these settings and all
-        its samples; None if none comes. Raises ValueError if the head refuses the message."""
-        until_s = time.monotonic() + wait_s
-        try:
-            self._socket.send(_frame(message, payload))
-            while (left_s := until_s - time.monotonic()) > 0:
-                self._socket.settimeout(left_s)
-                self._buffer += self._socket.recv(65536)
-                for number, answer in _frames(self._buffer):
-                    if number == _NACK and len(answer) >= 2 and struct.unpack_from("<H", answer)[0] == message:
-                        raise ValueError(f"the head refuses message {message}: {answer[2:].decode(errors='replace')}")
-                    if number == wanted and (settings is None or _answers(answer, settings)):
-                        return answer
-        except (TimeoutError, socket.timeout):
-            pass
-        except ConnectionRefusedError:  # nothing listens at this port, now
-            time.sleep(max(0.0, until_s - time.monotonic()))
-        return None
 
 
 def _answers(payload: bytes, settings: tuple[int, ...]) -> bool:

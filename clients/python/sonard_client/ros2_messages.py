@@ -13,9 +13,11 @@ from typing import Any, Sequence
 import numpy as np
 
 from .ping import Array, Ping
+from .ping1d import Sounding
 
 _DTYPE_UINT8, _DTYPE_UINT16 = 0, 2  # constants of marine_acoustic_msgs/SonarImageData
 _FLOAT32 = 7  # constant of sensor_msgs/PointField
+_ULTRASOUND = 0  # constant of sensor_msgs/Range
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,15 @@ def beams_transform(time_ns: int, frame_id: str) -> Content:
     """The frame of ProjectedSonarImage, z ahead, x up and y to starboard, in the head's frame: half a turn about the line
     between x and z, which exchanges x and z."""
     return transform(time_ns, frame_id, beams_frame(frame_id), (0, 0, 0), (math.sqrt(0.5), 0, math.sqrt(0.5), 0))
+
+
+def distance(ping: Sounding, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/Range. Without an echo it is infinite (REP-117)."""
+    half_m = (ping.ranges_m[-1] - ping.ranges_m[0]) / max(2 * (len(ping.ranges_m) - 1), 1)
+    return content("sensor_msgs/Range", header=_header(time_ns, frame_id), radiation_type=_ULTRASOUND,
+                   field_of_view=float(ping.beamwidth_rad), min_range=float(ping.ranges_m[0] - half_m),
+                   max_range=float(ping.ranges_m[-1] + half_m),
+                   range=float(ping.distance_m) if ping.confidence_percent > 0 else math.inf)
 
 
 def projected_sonar_image(ping: Ping, time_ns: int, frame_id: str) -> Content:

@@ -28,8 +28,8 @@ sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system",
                                                              ("clients", "python"))]
 from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping360, read_log  # noqa: E402
-from sonard_client import gemini, micron, oculus, ping360  # noqa: E402
+from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping1D, Ping360, read_log  # noqa: E402
+from sonard_client import gemini, micron, oculus, ping360, ping_head  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
@@ -366,15 +366,15 @@ class Ping360Bytes(unittest.TestCase):
 
     def test_frames(self):
         theirs = example("ping360", "transducer")
-        self.assertEqual(ping360._frame(ping360._TRANSDUCER, theirs[8:-2]), theirs)
+        self.assertEqual(ping_head.frame(ping360._TRANSDUCER, theirs[8:-2]), theirs)
         answer = example("ping360", "device_data")
         stream = bytearray(b"BBRxx\0\0" + answer + b"junkB" + answer[:9])
-        self.assertEqual(list(ping360._frames(stream)), [(2300, answer[8:-2])])
+        self.assertEqual(list(ping_head.frames(stream)), [(2300, answer[8:-2])])
         stream += answer[9:]
-        self.assertEqual(list(ping360._frames(stream)), [(2300, answer[8:-2])])
+        self.assertEqual(list(ping_head.frames(stream)), [(2300, answer[8:-2])])
         damaged = bytearray(answer)
         damaged[12] ^= 1
-        self.assertEqual(list(ping360._frames(damaged)), [])
+        self.assertEqual(list(ping_head.frames(damaged)), [])
 
     def test_only_an_answer_with_these_settings_is_one(self):
         payload = example("ping360", "device_data")[8:-2]
@@ -404,6 +404,45 @@ class Ping360Client(OwnMachine):
     def test_a_head_that_is_not_there(self):
         with self.assertRaisesRegex(NoHead, "no answer from 127.0.0.1:12345 within 0.5 s"):
             Ping360(patience_s=0.5)
+
+
+PING1D_CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+heads:
+  - name: altimeter
+    type: ping1d
+    model: ping2
+    udp: [{{bind: 127.0.0.1:9090}}]
+    mount: {{rpy_deg: [0, 0, 33.69]}}    # towards the sphere
+    link: {{seed: 1, to_client: {{duplicate: 0.5}}}}
+"""
+
+
+class Ping1DClient(OwnMachine):
+    def test_the_distance_of_the_sphere(self):
+        start(self, PING1D_CONFIG)
+        with Ping1D() as sonar:
+            self.assertEqual(sonar.revision, 2)
+            pings = sonar.pings(range_m=5, start_m=0.5, gain=4, interval_s=0.02)
+            soundings = [next(pings) for _ in range(30)]
+            with self.assertRaisesRegex(ValueError, "refuses message 1005: gain_setting out of range"):
+                sonar.ping(range_m=5, gain=7)
+            automatic = sonar.pings(interval_s=0.02)
+            self.assertAlmostEqual([next(automatic) for _ in range(20)][-1].distance_m, math.hypot(3, 2) - 0.5, delta=0.02)
+        for sounding in soundings:
+            self.assertEqual(sounding.samples.shape, (200, 1))
+            self.assertAlmostEqual(sounding.ranges_m[0], 0.5 + 0.0125)
+            self.assertAlmostEqual(sounding.ranges_m[-1], 5.5 - 0.0125)
+            self.assertAlmostEqual(sounding.distance_m, math.hypot(3, 2) - 0.5, delta=0.02)
+            self.assertGreater(sounding.confidence_percent, 50)
+        numbers = [sounding.number for sounding in soundings]
+        self.assertEqual(numbers, sorted(set(numbers)), "copies of a ping do not count")
+
+    def test_a_head_that_is_not_there(self):
+        with self.assertRaisesRegex(NoHead, "no answer from 127.0.0.1:9090 within 0.5 s"):
+            Ping1D(patience_s=0.5)
 
 
 def main():
