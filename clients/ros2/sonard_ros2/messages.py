@@ -8,7 +8,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from marine_acoustic_msgs.msg import PingInfo, ProjectedSonarImage, SonarImageData
-from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2, PointField
+from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2, PointField, Range
 from sonard_client.ros2_messages import Content
 from std_msgs.msg import Header
 
@@ -18,7 +18,7 @@ _CLASSES = {
     "marine_acoustic_msgs/PingInfo": PingInfo, "marine_acoustic_msgs/ProjectedSonarImage": ProjectedSonarImage,
     "marine_acoustic_msgs/SonarImageData": SonarImageData, "sensor_msgs/CameraInfo": CameraInfo,
     "sensor_msgs/Image": Image, "sensor_msgs/LaserScan": LaserScan, "sensor_msgs/PointCloud2": PointCloud2,
-    "sensor_msgs/PointField": PointField, "std_msgs/Header": Header}
+    "sensor_msgs/PointField": PointField, "sensor_msgs/Range": Range, "std_msgs/Header": Header}
 
 
 def message(value: Any) -> Any:

@@ -31,7 +31,7 @@ SONAR_BRIDGE = (
     Parameter("sound_speed_mps", 1500.0, "sound speed in m/s, to convert times to ranges", 1400.0, 1600.0),
     Parameter("threshold_percent", 30.0, "least sample of an echo, in percent of full scale; points, scan", 0.0, 100.0),
     Parameter("min_range_m", 0.75, "least range of an echo in metres; points, scan", 0.0, 150.0),
-    Parameter("interval_s", 0.1, "seconds from ping to ping; Gemini, Oculus", 0.01, 60.0),
+    Parameter("interval_s", 0.1, "seconds from ping to ping; Gemini, Oculus, Ping1D", 0.01, 60.0),
     Parameter("bits", 8, "bits per sample; Gemini, Oculus", choices=(8, 16)),
     Parameter("step_deg", 1.8, "degrees from line to line; Micron, Ping360", 0.06, 14.3),
     Parameter("bins", 400, "bins per line; Micron, Ping360", 20, 1500),

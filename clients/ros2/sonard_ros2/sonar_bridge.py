@@ -4,6 +4,7 @@
     ros2 run sonard_ros2 sonar_bridge --ros-args -p type:=gemini -p range_m:=20.0
 
 Topics: `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `points` (sensor_msgs/PointCloud2) of each ping or line;
+`range` (sensor_msgs/Range) of each ping of an echo sounder;
 `image` (sensor_msgs/Image), and `scan` (sensor_msgs/LaserScan) of a scanning head, of each ping or turn; `calibration`
 (sensor_msgs/CameraInfo) of the image when it changes, for late subscribers, too.
 """
@@ -15,8 +16,8 @@ import traceback
 from marine_acoustic_msgs.msg import ProjectedSonarImage
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
-from sonard_client import NoHead, NoPing, Ping
+from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2, Range
+from sonard_client import NoHead, NoPing, Ping, Sounding
 from sonard_client import ros2_messages as contents
 from sonard_client.turn import TurnCollector
 from tf2_ros import StaticTransformBroadcaster
@@ -49,6 +50,8 @@ class SonarBridge(Node):
         self._topics = {"sonar": self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE),
                         "points": self.create_publisher(PointCloud2, "points", _QUEUE),
                         "image": self.create_publisher(Image, "image", _QUEUE)}
+        if self._head is HEADS["ping1d"]:
+            self._topics["range"] = self.create_publisher(Range, "range", _QUEUE)
         if self._turn:
             self._topics["scan"] = self.create_publisher(LaserScan, "scan", _QUEUE)
         self._calibration = self.create_publisher(CameraInfo, "calibration", _LATCHED)
@@ -105,6 +108,8 @@ class SonarBridge(Node):
         frame_id = self._options.frame_id
         self._offer("sonar", contents.projected_sonar_image, ping, time_ns, frame_id)
         self._offer("points", contents.points, ping, time_ns, frame_id, self._echoes)
+        if isinstance(ping, Sounding):
+            self._offer("range", contents.distance, ping, time_ns, frame_id)
         picture = self._turn.add(ping) if self._turn else ping
         if picture is None:
             return

@@ -34,6 +34,8 @@ DEFINITIONS = {
                               "string name; uint32 offset; uint8 datatype; uint32 count",
     "sensor_msgs/PointCloud2": "std_msgs/Header header; uint32 height; uint32 width; sensor_msgs/PointField[] fields;"
                                "bool is_bigendian; uint32 point_step; uint32 row_step; uint8[] data; bool is_dense",
+    "sensor_msgs/Range": "std_msgs/Header header; uint8 radiation_type; float32 field_of_view; float32 min_range;"
+                         "float32 max_range; float32 range; float32 variance",
     "sensor_msgs/RegionOfInterest": "uint32 x_offset; uint32 y_offset; uint32 height; uint32 width; bool do_rectify",
     "sensor_msgs/CameraInfo": "std_msgs/Header header; uint32 height; uint32 width; string distortion_model; float64[] d;"
                               "float64[9] k; float64[9] r; float64[12] p; uint32 binning_x; uint32 binning_y;"

@@ -34,7 +34,7 @@ import wire_pings  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
 from ros2_messages import CLASSES  # noqa: E402
 from ros2_stand_ins import SENSOR_DATA, Time, ros  # noqa: E402
-from sonard_client import Ping  # noqa: E402
+from sonard_client import Ping, Sounding  # noqa: E402
 from sonard_client import ros2_messages as contents  # noqa: E402
 from sonard_client.turn import TurnCollector  # noqa: E402
 from sonard_ros2 import parameters, running  # noqa: E402
@@ -72,6 +72,11 @@ OCULUS = """
 PING360 = """
     type: ping360
     udp: [{bind: 127.0.0.1:12345}]
+"""
+PING1D = """
+    type: ping1d
+    udp: [{bind: 127.0.0.1:9090}]
+    mount: {rpy_deg: [0, 0, 33.69]}    # towards the sphere
 """
 HEADS = {"gemini": GEMINI, "oculus": OCULUS, "micron": MICRON, "ping360": PING360}
 
@@ -187,6 +192,15 @@ class Messages(unittest.TestCase):
         self.assertEqual((message.height, message.width, message.distortion_model, message.k[0]), (2, 3, "sonar_polar", 0))
         numpy.testing.assert_allclose(message.d, [0.5, 1, 1480, 720e3, *self.ping.bearings_rad])
 
+    def test_range(self):
+        sounding = Sounding(samples=numpy.zeros((4, 1), numpy.uint8), ranges_m=numpy.array([1.25, 1.75, 2.25, 2.75]),
+                            bearings_rad=numpy.zeros(1), transmit_us=None, beamwidth_rad=0.5, distance_m=2.125,
+                            confidence_percent=80)
+        message = self.made(contents.distance, sounding)
+        self.assertEqual((message.radiation_type, message.field_of_view, message.min_range, message.max_range, message.range),
+                         (0, 0.5, 1, 3, 2.125))
+        self.assertEqual(self.made(contents.distance, dataclasses.replace(sounding, confidence_percent=0)).range, math.inf)
+
     def test_points(self):
         message = self.made(contents.points, self.ping, contents.EchoFilter(100 * 2 / 255, 1.0))
         self.assertEqual([(field.name, field.offset, field.datatype, field.count) for field in message.fields],
@@ -236,8 +250,8 @@ class Parameters(unittest.TestCase):
         self.refused(PoseBridge, "source is 'gps', expected odometry or pose or tf", source="gps")
         self.refused(PoseBridge, "axes is 'flu', expected enu_flu or ned_frd", axes="flu")
         self.refused(PoseBridge, "^parameter port, UDP port .*: 0 is not within 1 to 65535", port=0)
-        self.refused(SonarBridge, "type is 'sidescan', expected gemini or micron or oculus or ping360", type="sidescan")
-        self.refused(SonarBridge, "device is 'sidescan', expected gemini or micron or oculus or ping360", device="sidescan")
+        self.refused(SonarBridge, "type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360", type="sidescan")
+        self.refused(SonarBridge, "device is 'sidescan', expected gemini or micron or oculus or ping1d or ping360", device="sidescan")
         self.refused(SonarBridge, "^parameter range_m, range .* metres: 0.5 is not within 1 to 150", range_m=0.5)
         self.refused(SonarBridge, "range_m is 151, expected a number from 1 to 150", range_m=151)
         self.refused(SonarBridge, "mount_rpy_deg is .0, 20., expected 3 numbers", mount_rpy_deg=[0, 20])
@@ -259,7 +273,7 @@ class Parameters(unittest.TestCase):
                 limits = [(one.from_value, one.to_value) for one in [*descriptor.floating_point_range, *descriptor.integer_range]]
                 self.assertEqual(limits, [(parameter.lowest, parameter.highest)] if parameter.lowest is not None else [])
                 self.assertEqual(len(descriptor.integer_range), limits != [] and type(parameter.default) is int)
-        self.assertEqual(ros.descriptors["type"].additional_constraints, "gemini or micron or oculus or ping360")
+        self.assertEqual(ros.descriptors["type"].additional_constraints, "gemini or micron or oculus or ping1d or ping360")
 
     def test_a_whole_number_for_one_with_decimals(self):
         ros.reset(range_m=30, type="micron")
@@ -436,6 +450,16 @@ class Ros2(OwnMachine):
         self.assertEqual(image.data, message.image.data)
         transform, = ros.published["/tf_static"]
         self.assertEqual((transform.header.frame_id, transform.child_frame_id), ("bow", "bow_beams"))
+
+    def test_the_distance_of_a_ping1d(self):
+        self.start(PING1D, has_pose=True)
+        self.nodes(SonarBridge, type="ping1d", interval_s=0.05, frame_id="altimeter")
+        message = ros.wait(lambda: [one for one in ros.published["range"] if math.isfinite(one.range)][10:], PATIENCE_S)[0]
+        self.assertAlmostEqual(message.range, math.hypot(3, 2) - 0.5, delta=0.03)
+        self.assertEqual(message.header.frame_id, "altimeter")
+        numpy.testing.assert_allclose((message.min_range, message.max_range), (0, 5), atol=1e-6)
+        self.assertAlmostEqual(message.field_of_view, math.radians(30), places=6)
+        self.assertEqual(len(ros.published["sonar"][-1].ranges), 200)
 
     def test_messages_are_what_was_on_the_wire(self):
         for kind, head in HEADS.items():
@@ -691,7 +715,7 @@ class Ros2(OwnMachine):
     def test_a_wrong_parameter_ends_it(self):
         program = self.node("sonar_bridge", "type=sidescan")
         self.assertEqual(program.wait(PATIENCE_S), 1)
-        self.assertEqual(program.output(), "parameter type is 'sidescan', expected gemini or micron or oculus or ping360")
+        self.assertEqual(program.output(), "parameter type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360")
 
 
 def main():

@@ -7,6 +7,6 @@
                           Raises NoHead, NoPing or OSError, after which the node tries again
 """
 
-from . import gemini, micron, oculus, ping360
+from . import gemini, micron, oculus, ping1d, ping360
 
-HEADS = {"gemini": gemini, "micron": micron, "oculus": oculus, "ping360": ping360}
+HEADS = {"gemini": gemini, "micron": micron, "oculus": oculus, "ping1d": ping1d, "ping360": ping360}
