@@ -270,4 +270,5 @@ void main() {
     atomicAdd(counts.invalid, s_invalid);
     atomicAdd(counts.additions, s_additions);
   }
+  report_cut_loops();
 }

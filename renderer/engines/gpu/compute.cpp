@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/engines/gpu/compute.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <osg/State>
 
@@ -17,8 +19,9 @@ Compute::Compute(EglContext& context, int group, bool time_stages)
       is_timed_(time_stages) {}
 
 osg::ref_ptr<osg::Program> Compute::build(const std::string& name, const char* text,
-                                          const std::string& defines) const {
-  const std::string source = fmt::format("#version 430\n#define GROUP {}u\n", group_) + defines + text;
+                                          const std::string& defines, int least_group) const {
+  const std::string source =
+      fmt::format("#version 430\n#define GROUP {}u\n", std::max(group_, least_group)) + defines + text;
   osg::ref_ptr<osg::Program> program = context_.build_program({new osg::Shader(osg::Shader::COMPUTE, source)},
                                                               name, {"PingBlock", "EchoBlock"});
   program->setName(name);

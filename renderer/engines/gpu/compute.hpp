@@ -29,9 +29,10 @@ class Compute {
   /// @param name of the shader's file, for messages
   /// @param text of the shader (shaders.hpp)
   /// @param defines lines before it, which set its macros; GROUP is set too
+  /// @param least_group at least as many invocations in a group
   /// @throws RendererError if it does not build
-  osg::ref_ptr<osg::Program> build(const std::string& name, const char* text,
-                                   const std::string& defines = "") const;
+  osg::ref_ptr<osg::Program> build(const std::string& name, const char* text, const std::string& defines = "",
+                                   int least_group = 1) const;
 
   using Buffers = std::initializer_list<const GpuBuffer*>;  ///< in the order of their bindings
   /// Selects a program for dispatch(), with its uniform blocks and its storage buffers.

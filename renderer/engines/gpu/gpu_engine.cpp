@@ -148,7 +148,7 @@ void GpuEngine::finish(Ping& ping) {
   }
   const PingCounts& counts = ping.buffers.counted;
   if (!result || counts.overflows > 0) {
-    throw RequestError("a slice of this ping has more surfaces than fit on the GPU");
+    throw RequestError("this ping has more surfaces, edges or slices than fit on the GPU");
   }
   statistics.seconds.binning += watch.lap();
   statistics.gpu.bytes_read_back +=

@@ -127,6 +127,10 @@ void hold(PingBuffers& ping) {
   ping.edges.hold(room.edges * sizeof(records::Edge));
 }
 
+// Of the shaders that have one group for each beam. Lists of a wide beam are long, and llvmpipe bounds the
+// loops of an invocation (loops_are_cut() in ping.glsl).
+constexpr int group_of_beam = 64;
+
 std::string see_defines(int segments) {
   return fmt::format("#define ROOM {}\n#define WAITING {}\n", segments > 0 ? segments : segments_at_a_time,
                      room_for_waiting);
@@ -140,9 +144,9 @@ GpuSlices::GpuSlices(EglContext& context, const GpuOptions& options)
       place_(compute_.build("place.comp", shaders::place_comp)),
       scan_(compute_.build("lists.comp", shaders::lists_comp, "#define SCAN 1\n")),
       fill_(compute_.build("lists.comp", shaders::lists_comp, "#define SCAN 0\n")),
-      list_things_(compute_.build("things.comp", shaders::things_comp)),
+      list_things_(compute_.build("things.comp", shaders::things_comp, "", group_of_beam)),
       see_(compute_.build("see.comp", shaders::see_comp, see_defines(options.segments))),
-      refine_(compute_.build("refine.comp", shaders::refine_comp)) {}
+      refine_(compute_.build("refine.comp", shaders::refine_comp, "", group_of_beam)) {}
 
 std::vector<bool> GpuSlices::may_be_seen(const std::vector<PlacedPart>& parts, const GpuPing& ping) {
   std::vector<bool> may;

@@ -34,5 +34,6 @@ void main() {
       lists[beams[beam].begin + atomicAdd(beams[beam].filled, 1u)] = i;
     }
   }
+  report_cut_loops();
 }
 #endif

@@ -243,4 +243,5 @@ void main() {
   if (lane == 0u) {
     atomicAdd(counts.without_facets, s_without_facets);
   }
+  report_cut_loops();
 }

@@ -197,4 +197,5 @@ void main() {
   if (lane == 0u) {
     of_slice[number] = SlicePieces(first, is_done ? count : 0u);
   }
+  report_cut_loops();
 }

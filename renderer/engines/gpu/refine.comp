@@ -109,4 +109,5 @@ void main() {
   }
   choose_parts(errors_of_beam());
   divide_slices();
+  report_cut_loops();
 }

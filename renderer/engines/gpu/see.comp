@@ -56,7 +56,7 @@ uint see_band() {
     atomicAdd(counts.segments, count);
   }
   barrier();
-  if (s_base + most_seen > ping.room.scratch) {
+  if (s_base + most_seen > ping.room.scratch || loops_are_cut()) {
     return 0u;
   }
   float from = border_of(lane), until = border_of(lane + 1u);
@@ -163,4 +163,5 @@ void main() {
   if (lane == 0u) {
     slices[number] = slice;
   }
+  report_cut_loops();
 }

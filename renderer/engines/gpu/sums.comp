@@ -145,4 +145,5 @@ void main() {
     write_open(weights_at, solid_angle);
   }
 #endif
+  report_cut_loops();
 }

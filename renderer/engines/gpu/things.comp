@@ -120,4 +120,5 @@ void main() {
   if (lane == 0u) {
     beams[group_number()] = beam;
   }
+  report_cut_loops();
 }

@@ -7,8 +7,7 @@ const uint least_probes = 12u;     // for lower edges even parts are as good
 // Upright edges of single triangles.
 const uint room = 2048u;
 shared float s_offset[room];
-shared uint s_edge[room];   // edge_word()
-shared uint s_order[room];  // by rising azimuth
+shared uint s_edge[room];  // edge_word()
 shared uint s_bits[side_probes / 32];
 
 // First and last probe, whether the triangle lies to port, and the azimuth of its normal in parts of a turn:
@@ -100,18 +99,39 @@ void gather_edges() {
   barrier();
 }
 
-void sort_edges(uint count) {
-  for (uint i = lane; i < count; i += GROUP) {
-    uint rank = 0u;
-    for (uint j = 0u; j < count; ++j) {
-      rank += s_offset[j] < s_offset[i] || (s_offset[j] == s_offset[i] && j < i) ? 1u : 0u;
-    }
-    s_order[rank] = i;
-  }
-  barrier();
+void swap_edges(uint i, uint k) {
+  float offset = s_offset[i];
+  uint edge = s_edge[i];
+  s_offset[i] = s_offset[k];
+  s_edge[i] = s_edge[k];
+  s_offset[k] = offset;
+  s_edge[k] = edge;
 }
 
-// Edges at one azimuth, from `begin` in s_order.
+// Sorts the edges by rising azimuth (bitonic sort). All invocations must call it.
+void sort_edges(uint count) {
+  uint size = 1u;
+  while (size < count) {
+    size *= 2u;
+  }
+  for (uint i = count + lane; i < size; i += GROUP) {
+    s_offset[i] = never;
+  }
+  barrier();
+  for (uint run = 2u; run <= size; run *= 2u) {
+    for (uint step = run / 2u; step > 0u; step /= 2u) {
+      for (uint pair = lane; pair < size / 2u; pair += GROUP) {
+        uint i = 2u * pair - pair % step;
+        if ((i & run) == 0u ? s_offset[i] > s_offset[i + step] : s_offset[i] < s_offset[i + step]) {
+          swap_edges(i, i + step);
+        }
+      }
+      barrier();
+    }
+  }
+}
+
+// Edges at one azimuth.
 struct EdgeGroup {
   uint begin, end;
   uint probes;
@@ -120,9 +140,9 @@ EdgeGroup group_from(uint begin, uint count) {
   EdgeGroup group = EdgeGroup(begin, begin, 0u);
   float until = 0.0;
   while (group.end < count) {
-    uint i = s_order[min(group.end, count - 1u)];  // drivers may read it before they compare
-    until = group.end == begin ? s_offset[i] + same_edge_rad : until;
-    if (group.end > begin && !(s_offset[i] < until)) {
+    uint i = group.end;
+    until = i == begin ? s_offset[i] + same_edge_rad : until;
+    if (i > begin && !(s_offset[i] < until)) {
       break;
     }
     group.probes += last_of(s_edge[i]) - first_of(s_edge[i]);
@@ -136,7 +156,7 @@ EdgeGroup group_from(uint begin, uint count) {
 bool ends_at(uint probe, EdgeGroup group) {
   int side = 0, turned = 0;
   for (uint i = group.begin; i < group.end; ++i) {
-    uint edge = s_edge[s_order[i]];
+    uint edge = s_edge[i];
     bool touches = probe >= first_of(edge) && probe < last_of(edge);
     side += touches ? side_of(edge) : 0;
     turned += touches ? side_of(edge) * facing_of(edge) : 0;
@@ -159,7 +179,7 @@ uint write_edge(EdgeGroup group, uint to) {
   }
   barrier();
   Edge edge;
-  edge.offset_rad = s_offset[s_order[group.begin]];
+  edge.offset_rad = s_offset[group.begin];
   edge.count = 0u;
   for (uint word = 0u; word < uint(side_probes / 32); ++word) {
     edge.probes[word] = s_bits[word];

@@ -94,7 +94,8 @@ struct PingOnCpu {
       sampler.sample(scene.T_world_sonar, scene.settings.aperture, scene.settings.range,
                      scene.settings.range.sampled_range_m(), of_gpu.surface, of_gpu.accuracy);
 
-  explicit PingOnCpu(const std::string& scene_name) : scene(test::make_scene(scene_name)) {}
+  explicit PingOnCpu(const std::string& scene_name) : PingOnCpu(test::make_scene(scene_name)) {}
+  explicit PingOnCpu(test::Scene of_ping) : scene(std::move(of_ping)) {}
 };
 
 /// The same ping on the GPU.
@@ -250,6 +251,21 @@ TEST_F(GpuSlicesTest, SlicesWithTooManySegmentsAreSeenInBands) {
   EXPECT_EQ(found.counts.overflows, 0U);
   EXPECT_LE(found.differing, 1e-5);
   EXPECT_LE(found.off_sides, 1e-3);
+}
+
+/// llvmpipe ends the loops of an invocation after 65,535 rounds and says nothing. One invocation has 100,000
+/// triangles here. The CPU must render such a ping.
+TEST_F(GpuSlicesTest, LoopsThatTheDriverEndsEarlyAreAnOverflow) {
+  test::Scene scene = test::make_scene("swell100k");
+  std::vector<double>& edges = scene.settings.aperture.beam_edges_rad;
+  edges = {edges.front(), edges.back()};
+  const PingOnCpu ping(std::move(scene));
+  const PingOnGpu of_one(*context_, {.group = 1}, ping, 1);
+  if (context_->software()) {
+    EXPECT_GT(of_one.counts.overflows, 0U);
+  } else {
+    EXPECT_EQ(of_one.counts.overflows, 0U);
+  }
 }
 
 /// Share of the fan that both engines see in the same slices.
