@@ -653,7 +653,7 @@ std::vector<Counter> Device::Impl::counts() const {
        Fault::of_client, Shown::warns,
        "{} commands for range or gain changed nothing: the head is in auto mode"},
       {"dropped_bytes", count.dropped_bytes,
-       "bytes outside frames, ignored; `00 FF` and `U`s of known clients among them (1)", Fault::none,
+       "bytes outside frames, ignored; public clients send some on purpose (1)", Fault::none,
        Shown::often},
       {"bad_checksums", count.bad_checksums, "frames with a wrong checksum, ignored (1)", Fault::of_client,
        Shown::warns, "{} frames had a wrong checksum: the head ignores them"},

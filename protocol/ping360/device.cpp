@@ -405,7 +405,7 @@ std::vector<Counter> Device::counts() const {
        "commands that came while `device.queue_length` others waited; the oldest is dropped (3.2)",
        Fault::of_client, Shown::often},
       {"dropped_bytes", count.dropped_bytes,
-       "bytes outside frames, ignored; `00 FF` and `U`s of known clients among them (1.1)", Fault::none,
+       "bytes outside frames, ignored; public clients send some on purpose (1.1)", Fault::none,
        Shown::often},
       {"bad_checksums", count.bad_checksums, "frames with a wrong checksum, ignored (1.1)", Fault::of_client,
        Shown::warns, "{} frames had a wrong checksum: the head ignores them"},

@@ -2,7 +2,6 @@
 #include "server/pose/section.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -53,14 +52,12 @@ std::string all_listed(Types types, std::string_view first, std::string_view con
 }
 
 std::string introduction(Types types) {
-  constexpr std::array words{"zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"};
   const std::vector<std::string> live = keys_of(types, true, "`");
   return fmt::format(
-      "At least one of {} is required. {} cannot be combined with {}. Only one of these {} may send poses of "
-      "the "
+      "At least one of {} is required. {} cannot be combined with {}. Only one of {} may send poses of the "
       "vehicle at a time.",
       all_listed(types, "initial", "and", "`"), listed(keys_of(types, false, "`"), "and"), listed(live, "or"),
-      words.at(live.size()));
+      listed(live, "and"));
 }
 
 void read_inputs(YamlSection& section, Types types, const std::filesystem::path& folder, PoseConfig& poses) {

@@ -66,7 +66,7 @@ std::shared_ptr<const PoseInput> read_gazebo(YamlSection& section, const std::fi
   section.require("topic", "a topic such as /world/ocean/dynamic_pose/info");
   section.text("topic", gazebo.topic, "topic with `Pose_V` or `Pose` messages");
   section.text("partition", gazebo.partition, "partition of the Gazebo transport");
-  section.default_is("partition", "value of `IGN_PARTITION`");
+  section.default_is("partition", "value of `IGN_PARTITION` (Fortress) or `GZ_PARTITION`");
   read_own_address(
       section, "address", gazebo.address,
       "address of this machine on the network to Gazebo, instead of `IGN_IP` and `GZ_IP`. Default: loopback, "
@@ -77,7 +77,7 @@ std::shared_ptr<const PoseInput> read_gazebo(YamlSection& section, const std::fi
   const bool relative = frame == Frame::relative;
   section.text("vehicle", gazebo.vehicle.name,
                "entity that carries the sonars; **required** if no model of the world is the vehicle");
-  section.default_is("vehicle", "`world.vehicle_model`; with `relative` it has no parents");
+  section.default_is("vehicle", "`world.vehicle_model`");
   read_parents(section, relative, gazebo.vehicle,
                "entities that the pose of `vehicle` is relative to, the outermost first; [] for a model "
                "directly in the world");

@@ -53,14 +53,15 @@ std::shared_ptr<const PoseInput> read_mavlink(YamlSection& section, const std::f
                   "MAVLink system ID of the vehicle; sonard ignores messages from other systems");
   section.integer("component_id", mavlink.component_id, 1, 255,
                   "MAVLink component whose messages sonard uses; 1 is the autopilot");
-  section.choice("messages", mavlink.messages,
-                 {{"auto", MavlinkMessages::automatic},
-                  {"odometry", MavlinkMessages::odometry},
-                  {"local_position", MavlinkMessages::local_position},
-                  {"global_position", MavlinkMessages::global_position}},
-                 "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
-                 "the attitude. `auto` uses the first in this list that arrives. GLOBAL_POSITION_INT "
-                 "requires an `origin`; at latitude 0, longitude 0 it gives only the depth");
+  section.choice(
+      "messages", mavlink.messages,
+      {{"auto", MavlinkMessages::automatic},
+       {"odometry", MavlinkMessages::odometry},
+       {"local_position", MavlinkMessages::local_position},
+       {"global_position", MavlinkMessages::global_position}},
+      "messages that give the pose: ODOMETRY, or LOCAL_POSITION_NED or GLOBAL_POSITION_INT with "
+      "the attitude. `auto` uses the first in this list that arrived within 2 s. GLOBAL_POSITION_INT "
+      "requires `world.origin`; at latitude 0, longitude 0 it gives only the depth");
   section.section("origin", "pose of the vehicle's own origin in the world", [&](YamlSection& inner) {
     read_pose(inner, mavlink.T_world_local,
               "world position (x east, y north, z up) of the vehicle's (0, 0, 0)",
