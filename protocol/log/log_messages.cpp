@@ -31,7 +31,7 @@ std::vector<std::uint8_t> schema_data(const google::protobuf::Descriptor& messag
 }
 
 std::vector<std::uint8_t> encode(const google::protobuf::MessageLite& message) {
-  pose::keep_protobuf_quiet();
+  keep_protobuf_quiet();
   std::vector<std::uint8_t> bytes(message.ByteSizeLong());
   message.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));
   return bytes;

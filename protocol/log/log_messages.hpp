@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "protocol/common/quiet_protobuf.hpp"
 #include "protocol/log/sonard_log.pb.h"
-#include "protocol/pose/quiet_protobuf.hpp"
 
 namespace sonard::log {
 
@@ -37,7 +37,7 @@ std::optional<std::string> problem_of(const SonarImage& image);
 /// Decodes a message; nullopt if `bytes` are not such a message.
 template <class Message>
 std::optional<Message> decode(std::span<const std::uint8_t> bytes) {
-  pose::keep_protobuf_quiet();
+  keep_protobuf_quiet();
   Message message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return std::nullopt;

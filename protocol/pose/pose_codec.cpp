@@ -5,8 +5,8 @@
 #include <cmath>
 #include <unordered_set>
 
+#include "protocol/common/quiet_protobuf.hpp"
 #include "protocol/pose/pose_message.hpp"
-#include "protocol/pose/quiet_protobuf.hpp"
 
 namespace sonard::pose {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/sonar3d15/codec.hpp"
 
-#include "protocol/pose/quiet_protobuf.hpp"
+#include "protocol/common/quiet_protobuf.hpp"
 
 namespace sonard::sonar3d15 {
 namespace {
@@ -37,7 +37,7 @@ Result<Message, WireError> read(const google::protobuf::Any& any) {
 }  // namespace
 
 std::vector<std::uint8_t> encode(const google::protobuf::Message& message, PacketId id) {
-  pose::keep_protobuf_quiet();
+  keep_protobuf_quiet();
   Packet packet;
   packet.mutable_msg()->PackFrom(message);
   std::vector<std::uint8_t> bytes(packet.ByteSizeLong());
@@ -50,7 +50,7 @@ Result<Message, WireError> decode(std::span<const std::uint8_t> packet) {
   if (!bytes) {
     return bytes.error();
   }
-  pose::keep_protobuf_quiet();
+  keep_protobuf_quiet();
   Packet outer;
   if (!outer.ParseFromArray(bytes->data(), static_cast<int>(bytes->size()))) {
     return WireError{WireErrorReason::bad_value, packet_header_size, "payload"};

@@ -4,7 +4,7 @@
 
 #include <google/protobuf/stubs/logging.h>
 
-namespace sonard::pose {
+namespace sonard {
 
 /// Protobuf prints a line for each text that is not UTF-8, so a peer could fill a disk. Codecs return an
 /// error instead, which the programs count and log. Call it before each use of Protobuf; any thread.
@@ -12,4 +12,4 @@ inline void keep_protobuf_quiet() {
   [[maybe_unused]] static const auto before = google::protobuf::SetLogHandler(nullptr);
 }
 
-}  // namespace sonard::pose
+}  // namespace sonard
