@@ -206,6 +206,17 @@ void UdpEndpoint::start(Receive receive, std::function<void()> drained, Sent sen
   impl_->wait_readable();
 }
 
+void UdpEndpoint::set_multicast_ttl(int ttl) {
+  const int fd = impl_->socket.native_handle();
+  set_option(fd, IPPROTO_IP, IP_MULTICAST_TTL, ttl, "IP_MULTICAST_TTL");
+  const in_addr own{htonl(impl_->local.address)};
+  if (setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &own, sizeof own) != 0) {
+    throw_socket_error("set IP_MULTICAST_IF", errno);
+  }
+  // Large datagrams leave in fragments, which routers may divide again.
+  set_option(fd, IPPROTO_IP, IP_MTU_DISCOVER, IP_PMTUDISC_DONT, "IP_MTU_DISCOVER");
+}
+
 void UdpEndpoint::close() {
   boost::system::error_code ignored;
   impl_->socket.close(ignored);

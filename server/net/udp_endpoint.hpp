@@ -76,6 +76,9 @@ class UdpEndpoint {
   /// Starts to receive. `drained` is called each time that a full socket has taken all queued datagrams,
   /// `sent` with the datagrams that the kernel has taken, in order.
   void start(Receive receive, std::function<void()> drained = {}, Sent sent = {});
+  /// Multicast leaves by the interface with the address that the socket is bound to.
+  /// @param ttl routers that it may pass, plus 1. @throws SocketError
+  void set_multicast_ttl(int ttl);
   /// Sends at once as many as the socket takes; queues the rest, in order.
   void send(std::vector<Datagram> datagrams);
   /// True while datagrams wait for the socket.

@@ -30,6 +30,7 @@ void keep_earlier(std::optional<TimePoint>& earliest, const std::optional<TimePo
 struct UdpTransport::Impl : std::enable_shared_from_this<UdpTransport::Impl> {
   Impl(asio::io_context& used_io, const Clock& used_clock, const UdpTransportConfig& used_config);
 
+  std::unique_ptr<UdpEndpoint> open(const Endpoint& bind) const;
   void listen();
   void take(const Datagram& datagram);
   void tell_unauthorised(Ipv4 address);
@@ -60,10 +61,18 @@ UdpTransport::Impl::Impl(asio::io_context& used_io, const Clock& used_clock,
     : io(used_io),
       clock(used_clock),
       config(used_config),
-      socket(std::make_unique<UdpEndpoint>(io, config.bind)),
+      socket(open(config.bind)),
       to_client(config.link.to_client, config.link.seed),
       from_client(config.link.from_client, ~config.link.seed),  // independent of to_client
       timer(io) {}
+
+std::unique_ptr<UdpEndpoint> UdpTransport::Impl::open(const Endpoint& bind) const {
+  auto opened = std::make_unique<UdpEndpoint>(io, bind);
+  if (config.multicast_ttl > 0) {
+    opened->set_multicast_ttl(config.multicast_ttl);
+  }
+  return opened;
+}
 
 // Handlers hold the transport weakly: a queued handler does nothing once the transport is gone.
 void UdpTransport::Impl::listen() {
@@ -250,7 +259,7 @@ void UdpTransport::set_own_address(Ipv4 address) {
 }
 
 void UdpTransport::rebind(const Endpoint& bind) {
-  impl_->socket = std::make_unique<UdpEndpoint>(impl_->io, bind);
+  impl_->socket = impl_->open(bind);
   if (impl_->running) {
     impl_->listen();
   }

@@ -23,6 +23,7 @@ struct UdpTransportConfig {
   Endpoint bind;
   AllowList allow;  ///< permitted clients; does not affect messages to everybody
   LinkConfig link;
+  int multicast_ttl = 0;  ///< UdpEndpoint::set_multicast_ttl(); 0: the head sends no multicast
 };
 
 /// Replies go to the Peer that a device names, from our address that it names. Both directions pass a
