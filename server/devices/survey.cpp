@@ -24,4 +24,8 @@ PingRecord Survey::record(int ping, std::vector<std::uint8_t> samples) const {
   return record;
 }
 
+PingRecord Survey::record_of_measured(int ping, const DirectionRanges&, std::int64_t) const {
+  return record(ping, {});
+}
+
 }  // namespace sonard::server

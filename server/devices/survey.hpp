@@ -63,6 +63,12 @@ class Survey {
   /// overrides this function.
   /// @param samples 8 bits each, or the high bytes of 16 bits
   virtual PingRecord record(int ping, std::vector<std::uint8_t> samples) const;
+
+  /// For jobs with directions: the ranges in metres and the signals that a client gets for these echoes.
+  virtual DirectionRanges measured(const DirectionRanges& echoes) const { return echoes; }
+  /// The record of such a ping, as record().
+  /// @param sent by measured()
+  virtual PingRecord record_of_measured(int ping, const DirectionRanges& sent, std::int64_t unix_ns) const;
 };
 
 }  // namespace sonard::server

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -47,10 +48,11 @@ struct FrameView {
 
 /// Contents of the files of one ping of a fan, or one sweep of a scanning head.
 struct Frame {
-  std::string npy;                ///< samples
-  std::string bodies_npy;         ///< ids of bodies; empty: not requested
-  std::string sidecar;            ///< JSON
-  std::function<cv::Mat()> draw;  ///< draws the picture; for one frame at a time
+  std::string npy;                                        ///< samples
+  std::string bodies_npy;                                 ///< ids of bodies; empty: not requested
+  std::vector<std::pair<std::string, std::string>> more;  ///< names and contents of further files
+  std::string sidecar;                                    ///< JSON
+  std::function<cv::Mat()> draw;                          ///< draws the picture; for one frame at a time
   /// Draws OfflineOptions::clean_pictures; for one frame at a time.
   std::function<std::vector<CleanPicture>()> draw_clean;
   FrameView view;

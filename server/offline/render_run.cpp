@@ -36,6 +36,7 @@
 #include "server/daemon/daemon.hpp"
 #include "server/daemon/exit_codes.hpp"
 #include "server/devices/device_type.hpp"
+#include "server/offline/direction_frames.hpp"
 #include "server/offline/fan_frames.hpp"
 #include "server/offline/frame_findings.hpp"
 #include "server/offline/frame_source.hpp"
@@ -167,6 +168,10 @@ std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, s
     return std::make_unique<SweepFrames>(heads[head], static_cast<int>(head), std::move(survey), trajectory,
                                          options, truth);
   }
+  if (survey->job(0).directions.any()) {
+    return std::make_unique<DirectionFrames>(heads[head], place_of(heads, head), std::move(survey),
+                                             trajectory, options);
+  }
   return std::make_unique<FanFrames>(heads[head], place_of(heads, head), std::move(survey), trajectory,
                                      options, truth);
 }
@@ -277,6 +282,12 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       findings_(world_, config_, head_, trajectory_),
       folder_(options.out) {
   warn_of_rate(*frames_, config_.heads[head_].name);
+  if (usual_settings(config_.heads[head_]).directions.any() && (options.truth || options.clean_pictures)) {
+    throw Error(ErrorKind::configuration,
+                fmt::format("{}: head '{}' has directions, not range bins (omit the option)",
+                            options.truth ? "--truth" : "--clean-png", config_.heads[head_].name),
+                "heads");
+  }
   if (options.clean_pictures && options.truth && world_.bodies.size() > 255) {
     throw Error(
         ErrorKind::configuration,
@@ -380,6 +391,9 @@ void RenderRun::write(int frame, const Frame& made) {
   folder_.write(npy_name(name), made.npy);
   if (!made.bodies_npy.empty()) {
     folder_.write(bodies_name(name), made.bodies_npy);
+  }
+  for (const auto& [file, contents] : made.more) {
+    folder_.write(file, contents);
   }
   if (options_.draws(frame)) {
     folder_.write(picture_name(name), picture::png_file(draw(made.draw), png_level));
