@@ -12,4 +12,5 @@ set(SONARD_DEVICES
   oculus
   ping1d
   ping360
+  sonar3d15
 )

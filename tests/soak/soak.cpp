@@ -40,6 +40,16 @@ void require(bool condition, const char* what) {
   }
 }
 
+DirectionRanges echoes_of(const std::vector<std::uint8_t>& samples, const Directions& directions) {
+  DirectionRanges echoes{directions.columns, directions.rows, {}, {}};
+  for (std::size_t i = 0; i < directions.count(); ++i) {
+    const std::uint8_t sample = samples.at(i % samples.size());
+    echoes.range_m.push_back(1.0F + 0.05F * static_cast<float>(sample));
+    echoes.intensity.push_back(1e-6F * static_cast<float>(sample));
+  }
+  return echoes;
+}
+
 Soak::Soak(HeadUnderSoak& head) : head_(head) {}
 
 void Soak::run_until(std::uint64_t pings) {
@@ -150,7 +160,11 @@ void Soak::answer() {
   }
   const std::vector<std::uint8_t> image = samples_of(work.job, head_.beams());
   rendered_ = {work.job.number, work.job.transmit_time, head_.made_of(image)};
-  step(PingRendered{PingImage{work.job.number, image, {}}});
+  PingImage answer{work.job.number, image, {}};
+  if (work.job.directions.any()) {
+    answer.directions = echoes_of(image, work.job.directions);
+  }
+  step(PingRendered{std::move(answer)});
 }
 
 void Soak::see(const SeenPing& ping) {

@@ -83,6 +83,9 @@ struct TypeUnderSoak {
 /// In the order of cmake/devices.cmake; the build writes this function.
 std::span<const TypeUnderSoak> types_under_soak();
 
+/// The echoes of a job with directions, from the samples of its image.
+DirectionRanges echoes_of(const std::vector<std::uint8_t>& samples, const Directions& directions);
+
 /// @throws std::runtime_error{what} if `condition` is false
 void require(bool condition, const char* what);
 

@@ -79,6 +79,8 @@ class LineViewer {
 
   // ---- Called by the viewer of a device
 
+  /// Handles all that has arrived, also in another way than by the line.
+  void advance();
   /// Call once.
   void open_line(const LineAddress& address);
   bool line_is_open() const { return line_ && line_->is_open(); }
@@ -100,7 +102,6 @@ class LineViewer {
   void line_opened();
   void line_speaks();
   void line_lost(const std::string& why);
-  void advance();
   /// False if a line exists but is lost.
   bool listens() const { return !line_ || line_is_open(); }
   void check_limits(TimePoint at);

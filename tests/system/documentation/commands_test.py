@@ -168,6 +168,9 @@ RULES = [
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/oculus-and-ping360.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 (--out out|--range 20 --gain 3)", until=PROGRESS, beside=("configs/demo-ping1d.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 --pings 50 --log-pings", beside=("configs/demo-ping1d.yaml",)),
+    Run(VIEW + r"sonar3d15 --head 127.0.0.5 --port 8080 --interface 127.0.0.1 (--pings 20 )?--out out", until="ls out/shot-last.png",
+        beside=("configs/demo-sonar3d15.yaml",)),
+    Run(VIEW + r"sonar3d15 --head 192.168.2.96 .*", codes=(3,)),  # no such head
     Run(COMPARE + r"out/.*", before=MAKE_LOG + " && mkdir -p out other && cp made/ping_000000.png out/polar-last.png && "
                                                "cp made/ping_000001.png other/polar-last.png"),
     Run(COMPARE + r"dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),

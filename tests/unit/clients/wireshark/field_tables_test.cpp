@@ -30,7 +30,10 @@ TEST(FieldTables, NameEveryMessage) {
   for (const FieldTables& tables : device_field_tables()) {
     const std::string lua = tables.lua();
     EXPECT_EQ(lua.find("unknown"), std::string::npos) << tables.device;
-    for (const char* part : {"  commands = {\n    [", "  reports = {\n    [", "  messages = {\n    "}) {
+    for (const std::string part : {"  commands = {\n    [", "  reports = {\n    [", "  messages = {\n    "}) {
+      if (tables.device == "sonar3d15" && part.starts_with("  commands")) {
+        continue;  // they are HTTP, which Wireshark knows
+      }
       EXPECT_NE(lua.find(part), std::string::npos) << tables.device << " has no" << part;
     }
   }

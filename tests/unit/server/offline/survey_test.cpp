@@ -110,6 +110,9 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
     const std::unique_ptr<Survey> survey = server::survey(*type);
     survey->frames(10);
     const PingJob job = survey->job(3);
+    if (job.directions.any()) {  // tested with the device, because its records have no bins of a ping
+      continue;
+    }
     const std::size_t beams = type->scanning() ? 1 : survey->bearings_rad().size();
     const std::vector<std::uint8_t> samples(static_cast<std::size_t>(job.bins()) * beams, 7);
     const PingRecord record = survey->record(3, samples);
@@ -137,6 +140,9 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
 TEST(Survey, AnOculusHasTwoFrequenciesAndOtherHeadsRefuseTheOption) {
   for (const DeviceType* type : device_types()) {
     SCOPED_TRACE(type->name());
+    if (type->name() == "sonar3d15") {  // it has two, too: tests/unit/server/devices/sonar3d15
+      continue;
+    }
     if (type->name() != "oculus") {
       EXPECT_THAT(complaint(*type, with(&SurveyOptions::frequency, "high")),
                   testing::StartsWith("--frequency: not an option for "));
