@@ -112,14 +112,14 @@ void set(std::array<std::uint8_t, N>& values, const Json& json) {
   std::ranges::copy(read, values.begin());
 }
 
-template <class Message, class Member>
-void take_field(Json& group, Message& message, const Field<Message, Member>& field) {
+template <class Message, class Owner, class Member>
+void take_field(Json& group, Message& message, const Field<Owner, Member>& field) {
   set(message.*field.member, take(group, std::string{field.name}));
 }
 
 /// A field that a message may lack.
-template <class Message, class Inner>
-void take_field(Json& group, Message& message, const Field<Message, std::optional<Inner>>& field) {
+template <class Message, class Owner, class Inner>
+void take_field(Json& group, Message& message, const Field<Owner, std::optional<Inner>>& field) {
   const std::string name{field.name};
   (message.*field.member).reset();
   if (group.contains(name)) {
