@@ -146,8 +146,8 @@ void write_value(ByteWriter& writer, const std::optional<Inner>& value) {
 // ---- Fields by their table
 
 /// Reads a field. A field beyond the minimum keeps its value if the message ends before the field does.
-template <class Table, class Message, class Member>
-void read_field(ByteReader& reader, Message& message, const Field<Message, Member>& field) {
+template <class Table, class Message, class Owner, class Member>
+void read_field(ByteReader& reader, Message& message, const Field<Owner, Member>& field) {
   if (field.offset < Table::minimum || reader.remaining() >= wire_size(field)) {
     read_value(reader, field.name, message.*field.member);
   }
@@ -161,8 +161,8 @@ void read_field(ByteReader& reader, Message&, const Spare<Size>& spare) {
   reader.skip(std::max(insisted, std::min(Size, reader.remaining())), "spare");
 }
 
-template <class Message, class Member>
-void write_field(ByteWriter& writer, const Message& message, const Field<Message, Member>& field) {
+template <class Message, class Owner, class Member>
+void write_field(ByteWriter& writer, const Message& message, const Field<Owner, Member>& field) {
   write_value(writer, message.*field.member);
 }
 

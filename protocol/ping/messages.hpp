@@ -4,8 +4,11 @@
 // zero and skipped on reading.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace sonard::ping {
 
@@ -18,6 +21,29 @@ enum class CommonId : std::uint16_t {
   general_request = 6,
   set_common_device_id = 100,
 };
+
+/// The name of an id in a list of names.
+template <class Id, std::size_t N>
+constexpr std::string_view name_in(const std::pair<Id, std::string_view> (&names)[N], Id id) {
+  for (const auto& [known, name] : names) {
+    if (known == id) {
+      return name;
+    }
+  }
+  return "unknown";
+}
+
+constexpr std::string_view name_of(CommonId id) {
+  using enum CommonId;
+  constexpr std::pair<CommonId, std::string_view> names[] = {{ack, "ack"},
+                                                             {nack, "nack"},
+                                                             {ascii_text, "ascii_text"},
+                                                             {device_information, "device_information"},
+                                                             {protocol_version, "protocol_version"},
+                                                             {general_request, "general_request"},
+                                                             {set_common_device_id, "set_common_device_id"}};
+  return name_in(names, id);
+}
 
 /// A message with an unknown id.
 struct Unknown {

@@ -75,7 +75,7 @@ void Client::on_report(TimePoint now, const Profile& profile) {
   }
   last_number_ = profile.ping_number;
   ++statistics_.pings;
-  pings_.push_back({now, measurement<Distance>(profile), {profile.data.begin(), profile.data.end()}});
+  pings_.push_back({now, profile.measured(), {profile.data.begin(), profile.data.end()}});
   due_ = now + ping_timeout;
   if (statistics_.pings == wanted_) {
     stop(now);

@@ -9,7 +9,7 @@
 namespace sonard::ping1d {
 
 bool Profile::operator==(const Profile& other) const {
-  return measurement<Distance>(*this) == measurement<Distance>(other) && std::ranges::equal(data, other.data);
+  return measured() == other.measured() && std::ranges::equal(data, other.data);
 }
 
 namespace {
@@ -22,48 +22,6 @@ static_assert(are_contiguous<SetDeviceId, SetRange, SetSpeedOfSound, SetPingInte
                              GeneralInfo, DistanceSimple, Distance, Profile>());
 
 }  // namespace
-
-std::string_view name_of(MessageId id) {
-  using enum MessageId;
-  switch (id) {
-    case set_device_id:
-      return "set_device_id";
-    case set_range:
-      return "set_range";
-    case set_speed_of_sound:
-      return "set_speed_of_sound";
-    case set_mode_auto:
-      return "set_mode_auto";
-    case set_ping_interval:
-      return "set_ping_interval";
-    case set_gain_setting:
-      return "set_gain_setting";
-    case set_ping_enable:
-      return "set_ping_enable";
-    case goto_bootloader:
-      return "goto_bootloader";
-    case firmware_version:
-      return "firmware_version";
-    case range:
-      return "range";
-    case general_info:
-      return "general_info";
-    case distance_simple:
-      return "distance_simple";
-    case distance:
-      return "distance";
-    case profile:
-      return "profile";
-    case continuous_start:
-      return "continuous_start";
-    case continuous_stop:
-      return "continuous_stop";
-    case ping_enable:
-      return "ping_enable";
-    default:
-      return value_name(id);
-  }
-}
 
 bool can_be_requested(std::uint16_t id) {
   if (id == static_cast<std::uint16_t>(CommonId::device_information) ||

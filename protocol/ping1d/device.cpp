@@ -11,13 +11,10 @@
 
 #include <fmt/format.h>
 
-#include "protocol/common/once_warnings.hpp"
-#include "protocol/common/ping_cycle.hpp"
-#include "protocol/ping1d/auto_mode.hpp"
 #include "protocol/ping1d/codec.hpp"
-#include "protocol/ping1d/recorded_form.hpp"
+#include "protocol/ping1d/layout.hpp"
+#include "protocol/ping1d/pinger.hpp"
 #include "protocol/ping1d/scan.hpp"
-#include "protocol/ping1d/tracking.hpp"
 
 namespace sonard::ping1d {
 namespace {
@@ -28,6 +25,12 @@ using std::chrono::nanoseconds;
 constexpr std::chrono::milliseconds longest_wait{40};
 constexpr std::size_t most_waiting = 32;
 constexpr std::uint32_t least_speed_mmps = 1'000'000, most_speed_mmps = 2'000'000;
+
+bool is_measurement(std::uint16_t id) {
+  const auto message = static_cast<MessageId>(id);
+  return message == MessageId::distance_simple || message == MessageId::distance ||
+         message == MessageId::profile;
+}
 
 const DeviceConfig& validated(const DeviceConfig& config) {
   const auto require = [](bool condition, const char* what) {
@@ -61,29 +64,25 @@ const DeviceConfig& validated(const DeviceConfig& config) {
 
 }  // namespace
 
-class Device::Impl {
+class Device::Impl final : public Head {
  public:
   Impl(const DeviceConfig& config, TimePoint start)
-      : config_(validated(config)),
-        clients_(config_),
-        state_(boot_state()),
-        cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, start, counters_) {
-  }
+      : Head(config_, config.id, config.accepts_any_destination, counters_),
+        config_(validated(config)),
+        pinger_(config_, start, counters_) {}
 
   // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
-  void take(TimePoint now, const BytesReceived& piece);
+  void take(TimePoint now, const BytesReceived& piece) { receive(now, piece); }
   void take(TimePoint, const ClientCame&) {}
-  void take(TimePoint, const ClientGone& gone) { forget(gone.who, "disconnected"); }
-  void take(TimePoint now, const PingRendered& ping);
-  void take(TimePoint now, const PingNotRendered& ping) { cycle_.on_image_failed(now, ping.number); }
+  void take(TimePoint now, const ClientGone& gone) { Head::take(now, gone); }
+  void take(TimePoint now, const PingRendered& ping) { pinger_.on_image(now, ping.image); }
+  void take(TimePoint now, const PingNotRendered& ping) { pinger_.on_image_failed(now, ping.number); }
   void take(TimePoint, const TriggerEdge&) {}   // the head has no trigger input
   void take(TimePoint, const WaterChanged&) {}  // the head pings in air, too
   void take(TimePoint, const SensorsRead&) {}   // the head has no such sensors
-  void take(TimePoint, const PingFed& feed) {
-    cycle_.feed(feed.ping && recorded_form(feed.ping->wire) ? feed.ping : std::nullopt);
-  }
-  void take(TimePoint, const NextPingDue&) { cycle_.grant(); }
+  void take(TimePoint, const PingFed& feed) { pinger_.feed(feed.ping); }
+  void take(TimePoint, const NextPingDue&) { pinger_.grant(); }
 
   void advance(TimePoint now);
   Actions actions(TimePoint now);
@@ -92,52 +91,33 @@ class Device::Impl {
   std::vector<Counter> counts() const;
 
  private:
-  /// Everything that a restart resets.
-  struct State {
-    std::uint8_t id;
-    Scan scan;
-    bool auto_mode = true;
-    bool enabled = true;
-    std::uint16_t interval_ms;
-    Tracking tracking;
-    Distance measured;                  ///< the newest ping; ping_number 0: none yet
-    std::vector<std::uint8_t> profile;  ///< of that ping
-    std::uint32_t pings = 0;
-  };
   /// A client's messages after every ping.
   struct Stream {
     Peer peer;
     std::uint16_t id = 0;
   };
   struct Waiting {
-    Peer asker;
+    Peer peer;
     std::uint16_t id = 0;
     TimePoint due{};
   };
-  /// The ping under way.
-  struct Ping {
-    Scan scan;
-    nanoseconds since_last{};
-    std::optional<Distance> recorded;
-    Echo echo;  ///< set at the arrival of the image
-  };
 
-  State boot_state() const;
-  void forget(const Peer& peer, std::string_view why);
-  void notice(std::string text) { notices_.push_back({Notice::Level::info, std::move(text)}); }
-
-  // Frames.
-  void take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame);
-  void reply(const Peer& asker, const Report& report) {
-    clients_.send(asker, encode(report, state_.id), outgoing_);
+  // The clients' side.
+  bool keeps(const Peer& peer) const override;
+  void on_bytes(TimePoint now) override;
+  bool obey(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame) override {
+    return Head::obey(now, asker, decode_command(frame),
+                      [&](const auto& message) { handle(now, asker, message); });
   }
+  void on_forget(TimePoint now, const Peer& peer, std::string_view why) override;
+
+  // Answers.
+  void reply(const Peer& asker, const Report& report) { send(asker, encode(report, id_)); }
   void accept(const Peer& asker, const Command& command);
-  void send_nack(const Peer& asker, std::uint16_t id, std::string_view text);
-  void refuse(const Peer& asker, std::uint16_t id, std::string_view text);
+  template <class Command, class Setting>
+  bool set(const Peer& asker, const Command& command, std::uint32_t least, std::uint32_t most,
+           Setting& setting);
   bool refused_in_auto(const Peer& asker, const Command& command);
-  template <class Command>
-  bool refused(const Peer& asker, const Command& command, std::uint32_t least, std::uint32_t most,
-               std::string_view field);
   Report data(std::uint16_t id) const;
   void answer_waiting(TimePoint now);
 
@@ -156,197 +136,79 @@ class Device::Impl {
   void handle(TimePoint now, const Peer& asker, const ContinuousStop& command);
   void handle(TimePoint now, const Peer& asker, const Unknown& command);
 
-  // Pings.
   bool pinging(TimePoint now) const;
-  nanoseconds period() const { return ping_period(state_.scan, state_.interval_ms, config_); }
-  std::optional<TimePoint> next_start(TimePoint now) const;
-  std::optional<TimePoint> send_due() const;
-  void begin_ping(TimePoint now);
-  void send_ping(TimePoint now);
 
   const DeviceConfig config_;
   DeviceCounters counters_;
-  Clients clients_;
-  State state_;
+  Pinger pinger_;
   std::vector<Stream> streams_;
   std::vector<Waiting> waiting_;
-  std::optional<TimePoint> heard_;             ///< newest bytes of any client
-  TimePoint silent_until_ = TimePoint::min();  ///< in the future while the head restarts
-  PingCycle cycle_;
-  Ping ping_;
-  TimePoint next_ping_{};  ///< by the rate
-  TimePoint wanted_{};     ///< since when pings are wanted
-  TimePoint last_start_{};
-
-  // Of the step in progress.
-  std::vector<Outgoing> outgoing_;
-  std::vector<Notice> notices_;
-  OnceWarnings warnings_;
+  std::optional<TimePoint> heard_;  ///< newest bytes of any client
 };
 
-Device::Impl::State Device::Impl::boot_state() const {
-  return {.id = config_.id,
-          .scan = {.length_mm = config_.scan_length_mm, .gain = config_.gain_setting},
-          .interval_ms = config_.interval_ms,
-          .tracking = Tracking(config_.confidence_window),
-          .measured = {.scan_length_mm = config_.scan_length_mm, .gain_setting = config_.gain_setting},
-          .profile = std::vector<std::uint8_t>(static_cast<std::size_t>(config_.points))};
+// ---- Clients
+
+bool Device::Impl::keeps(const Peer& peer) const {
+  return std::ranges::any_of(streams_, [&](const Stream& it) { return same_client(it.peer, peer); });
 }
 
-// ---- Clients and frames
-
-void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
-  if (now < silent_until_) {
-    counters_.unheard_bytes += piece.bytes.size();
-    return;
-  }
-  if (clients_.locked_against(now, piece.from)) {
-    ++counters_.locked_out;
-    return;
-  }
-  if (clients_.find(piece.from) == nullptr) {
-    notice(fmt::format("client {} connected", clients_.name_of(piece.from)));
-  }
+void Device::Impl::on_bytes(TimePoint now) {
   if (!pinging(now)) {
-    wanted_ = now;
+    pinger_.want(now);
   }
   heard_ = now;
-  const auto streams = [this](const Peer& peer) {
-    return std::ranges::any_of(streams_, [&](const Stream& it) { return same_client(it.peer, peer); });
-  };
-  Clients::Client& client = clients_.heard(now, piece.from, streams);
-  const std::uint64_t dropped = client.input.dropped();
-  const std::uint64_t bad_checksums = client.input.bad_checksums();
-  client.input.append(now, {piece.bytes.data(), piece.bytes.size()});
-  for (auto frame = client.input.front(); frame && now >= silent_until_; frame = client.input.front()) {
-    take_frame(now, client.peer, *frame);
-    client.input.pop();
-  }
-  counters_.dropped_bytes += client.input.dropped() - dropped;
-  counters_.bad_checksums += client.input.bad_checksums() - bad_checksums;
-  if (now < silent_until_) {
-    clients_.clear();  // goto_bootloader came
-  }
 }
 
-void Device::Impl::forget(const Peer& peer, std::string_view why) {
-  if (clients_.find(peer) == nullptr) {
-    return;
-  }
+void Device::Impl::on_forget(TimePoint, const Peer& peer, std::string_view) {
   const auto of_client = [&](const auto& it) { return same_client(it.peer, peer); };
   std::erase_if(streams_, of_client);
-  std::erase_if(waiting_, [&](const Waiting& it) { return same_client(it.asker, peer); });
-  clients_.remove(peer);
-  notice(fmt::format("client {} is gone: {}", clients_.name_of(peer), why));
-}
-
-void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame) {
-  const FrameHeader header = frame_header(frame);
-  if (!config_.accepts_any_destination && header.destination != 0 && header.destination != broadcast_id &&
-      header.destination != state_.id) {
-    ++counters_.other_destinations;
-    return;
-  }
-  const auto command = decode_command(frame);
-  if (!command) {
-    refuse(asker, header.message_id, "wrong payload length");
-    return;
-  }
-  counters_.commands += std::holds_alternative<Unknown>(*command) ? 0 : 1;
-  clients_.hold(now, asker);
-  std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
-}
-
-void Device::Impl::accept(const Peer& asker, const Command& command) {
-  if (config_.acknowledges) {
-    reply(asker, Ack{id_of(command)});
-  }
-}
-
-void Device::Impl::send_nack(const Peer& asker, std::uint16_t id, std::string_view text) {
-  ++counters_.refused;
-  reply(asker, Nack{id, std::string(text)});
-}
-
-/// @param text a literal
-void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
-  warnings_.warn(text, fmt::format("the client's message {} is refused: {}", id, text), notices_);
-  send_nack(asker, id, text);
-}
-
-/// In auto mode the head chooses range and gain, and commands change nothing (3.3).
-bool Device::Impl::refused_in_auto(const Peer& asker, const Command& command) {
-  if (!state_.auto_mode) {
-    return false;
-  }
-  ++counters_.refused_in_auto;
-  if (!config_.refuses_silently_in_auto) {
-    send_nack(asker, id_of(command), "auto mode is on");
-  }
-  return true;
-}
-
-template <class Command>
-bool Device::Impl::refused(const Peer& asker, const Command& command, std::uint32_t least, std::uint32_t most,
-                           std::string_view field) {
-  if (command.value >= least && command.value <= most) {
-    return false;
-  }
-  warnings_.warn(
-      field,
-      fmt::format("the client's {} {} is refused: expected {} to {}", field, command.value, least, most),
-      notices_);
-  send_nack(asker, static_cast<std::uint16_t>(Command::id), fmt::format("{} out of range", field));
-  return true;
+  std::erase_if(waiting_, of_client);
 }
 
 // ---- Requests
 
 Report Device::Impl::data(std::uint16_t id) const {
-  const State& state = state_;
+  const Pinger::Settings& now = pinger_.settings;
   const DeviceInformation& information = config_.information;
   switch (static_cast<MessageId>(id)) {
     case MessageId::firmware_version:
       return FirmwareVersion{.major = information.firmware_major, .minor = information.firmware_minor};
     case MessageId::device_id:
-      return DeviceId{state.id};
+      return DeviceId{id_};
     case MessageId::voltage_5:
       return Voltage5{config_.voltage_mv};
     case MessageId::speed_of_sound:
-      return SpeedOfSound{state.scan.speed_of_sound_mmps};
+      return SpeedOfSound{now.scan.speed_of_sound_mmps};
     case MessageId::range:
-      return Range{state.scan.start_mm, state.scan.length_mm};
+      return Range{now.scan.start_mm, now.scan.length_mm};
     case MessageId::mode_auto:
-      return ModeAuto{state.auto_mode};
+      return ModeAuto{now.auto_mode};
     case MessageId::ping_interval:
-      return PingInterval{state.interval_ms};
+      return PingInterval{now.interval_ms};
     case MessageId::gain_setting:
-      return GainSetting{state.scan.gain};
+      return GainSetting{now.scan.gain};
     case MessageId::transmit_duration:
-      return TransmitDuration{transmit_duration_us(state.scan, config_)};
+      return TransmitDuration{transmit_duration_us(now.scan, config_)};
     case MessageId::general_info:
       return GeneralInfo{information.firmware_major,
                          information.firmware_minor,
                          config_.voltage_mv,
-                         state.interval_ms,
-                         state.scan.gain,
-                         state.auto_mode};
+                         now.interval_ms,
+                         now.scan.gain,
+                         now.auto_mode};
     case MessageId::distance_simple:
-      return DistanceSimple{state.measured.distance_mm,
-                            static_cast<std::uint8_t>(state.measured.confidence_percent)};
+      return DistanceSimple{pinger_.measured().distance_mm,
+                            static_cast<std::uint8_t>(pinger_.measured().confidence_percent)};
     case MessageId::distance:
-      return state.measured;
+      return pinger_.measured();
     case MessageId::processor_temperature:
       return ProcessorTemperature{config_.processor_temperature_cdeg};
     case MessageId::pcb_temperature:
       return PcbTemperature{config_.pcb_temperature_cdeg};
     case MessageId::ping_enable:
-      return PingEnable{state.enabled};
-    case MessageId::profile: {
-      auto profile = measurement<Profile>(state.measured);
-      profile.data = state.profile;
-      return profile;
-    }
+      return PingEnable{now.enabled};
+    case MessageId::profile:
+      return Profile{pinger_.measured(), pinger_.profile()};
     default:
       break;
   }
@@ -354,21 +216,11 @@ Report Device::Impl::data(std::uint16_t id) const {
                                                                       : Report{information};
 }
 
-namespace {
-
-bool is_measurement(std::uint16_t id) {
-  const auto message = static_cast<MessageId>(id);
-  return message == MessageId::distance_simple || message == MessageId::distance ||
-         message == MessageId::profile;
-}
-
-}  // namespace
-
 void Device::Impl::handle(TimePoint now, const Peer& asker, const GeneralRequest& command) {
   if (!can_be_requested(command.requested_id)) {
     refuse(asker, id_of(Command{command}), "cannot be requested");
-  } else if (is_measurement(command.requested_id) && state_.pings == 0 && state_.enabled &&
-             waiting_.size() < most_waiting) {
+  } else if (is_measurement(command.requested_id) && pinger_.measured().ping_number == 0 &&
+             pinger_.settings.enabled && waiting_.size() < most_waiting) {
     waiting_.push_back({asker, command.requested_id, now + longest_wait});
   } else {
     reply(asker, data(command.requested_id));
@@ -376,15 +228,48 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const GeneralRequest
 }
 
 void Device::Impl::answer_waiting(TimePoint now) {
-  const auto rest = std::stable_partition(
-      waiting_.begin(), waiting_.end(), [&](const Waiting& it) { return state_.pings > 0 || now >= it.due; });
+  const bool pinged = pinger_.measured().ping_number > 0;
+  const auto rest = std::stable_partition(waiting_.begin(), waiting_.end(),
+                                          [&](const Waiting& it) { return pinged || now >= it.due; });
   for (auto it = waiting_.begin(); it != rest; ++it) {
-    reply(it->asker, data(it->id));
+    reply(it->peer, data(it->id));
   }
   waiting_.erase(waiting_.begin(), rest);
 }
 
 // ---- Settings
+
+void Device::Impl::accept(const Peer& asker, const Command& command) {
+  if (config_.acknowledges) {
+    ack(asker, id_of(command));
+  }
+}
+
+/// Sets a value within its limits. The ack still has the old id as source. False: the value is refused.
+template <class Command, class Setting>
+bool Device::Impl::set(const Peer& asker, const Command& command, std::uint32_t least, std::uint32_t most,
+                       Setting& setting) {
+  if (command.value < least || command.value > most) {
+    refuse(asker, static_cast<std::uint16_t>(Command::id), value_name(Command::id), command.value, least,
+           most);
+    return false;
+  }
+  accept(asker, command);
+  setting = static_cast<Setting>(command.value);
+  return true;
+}
+
+/// In auto mode the head chooses range and gain, and commands change nothing (3.3).
+bool Device::Impl::refused_in_auto(const Peer& asker, const Command& command) {
+  if (!pinger_.settings.auto_mode) {
+    return false;
+  }
+  ++counters_.refused_in_auto;
+  if (!config_.refuses_silently_in_auto) {
+    nack(asker, id_of(command), "auto mode is on");
+  }
+  return true;
+}
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetCommonDeviceId& command) {
   if (command.device_id == broadcast_id) {
@@ -392,15 +277,11 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const SetCommonDeviceId&
     return;
   }
   accept(asker, command);
-  state_.id = command.device_id;
+  id_ = command.device_id;
 }
 
-/// The ack still has the old id as source.
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetDeviceId& command) {
-  if (!refused(asker, command, 0, broadcast_id - 1, "device_id")) {
-    accept(asker, command);
-    state_.id = command.value;
-  }
+  set(asker, command, 0, broadcast_id - 1, id_);
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetRange& command) {
@@ -413,62 +294,52 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const SetRange& command)
            command.length_mm < least_length_mm ? "scan_length out of range" : "range out of range");
     return;
   }
-  state_.scan.start_mm = command.start_mm;
-  state_.scan.length_mm = command.length_mm;
+  pinger_.settings.scan.start_mm = command.start_mm;
+  pinger_.settings.scan.length_mm = command.length_mm;
   accept(asker, command);
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetSpeedOfSound& command) {
-  if (!refused(asker, command, least_speed_mmps, most_speed_mmps, "speed_of_sound")) {
-    state_.scan.speed_of_sound_mmps = command.value;
-    accept(asker, command);
-  }
+  set(asker, command, least_speed_mmps, most_speed_mmps, pinger_.settings.scan.speed_of_sound_mmps);
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetModeAuto& command) {
-  if (!refused(asker, command, 0, 1, "mode_auto")) {
-    state_.auto_mode = command.value != 0;
-    accept(asker, command);
-  }
+  set(asker, command, 0, 1, pinger_.settings.auto_mode);
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetPingInterval& command) {
-  state_.interval_ms = command.value;
-  next_ping_ = std::min(next_ping_, last_start_ + period());
-  accept(asker, command);
+  set(asker, command, 0, UINT16_MAX, pinger_.settings.interval_ms);
+  pinger_.hurry();
 }
 
 void Device::Impl::handle(TimePoint, const Peer& asker, const SetGainSetting& command) {
-  if (!refused_in_auto(asker, command) && !refused(asker, command, 0, most_gain, "gain_setting")) {
-    state_.scan.gain = command.value;
-    accept(asker, command);
+  if (!refused_in_auto(asker, command)) {
+    set(asker, command, 0, most_gain, pinger_.settings.scan.gain);
   }
 }
 
 void Device::Impl::handle(TimePoint now, const Peer& asker, const SetPingEnable& command) {
-  if (refused(asker, command, 0, 1, "ping_enabled")) {
+  bool& enabled = pinger_.settings.enabled;
+  const bool was_enabled = enabled;
+  if (!set(asker, command, 0, 1, enabled)) {
     return;
   }
-  const bool enable = command.value != 0;
-  if (enable && !state_.enabled) {
-    wanted_ = now;
-  } else if (!enable) {
-    cycle_.cancel();
+  if (!enabled) {
+    pinger_.cancel();
+  } else if (!was_enabled) {
+    pinger_.want(now);
   }
-  state_.enabled = enable;
-  accept(asker, command);
 }
 
 void Device::Impl::handle(TimePoint now, const Peer& asker, const GotoBootloader& command) {
   accept(asker, command);
   notice("restart by way of the bootloader");
-  silent_until_ = now + config_.bootloader_silence;
-  cycle_.reboot(silent_until_);
-  state_ = boot_state();
+  restart(now + config_.bootloader_silence);
+  pinger_.reboot(now + config_.bootloader_silence);
+  id_ = config_.id;
   streams_.clear();
   waiting_.clear();
   heard_.reset();
-  // take() clears the clients later, because the input of one is being read.
 }
 
 // ---- Streams
@@ -508,128 +379,47 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const Unknown& command) 
   }
 }
 
-// ---- Pings
+// ---- Time
 
 bool Device::Impl::pinging(TimePoint now) const {
   const bool heard_lately =
       heard_ && (config_.idle_timeout.count() == 0 || now - *heard_ < config_.idle_timeout);
-  return state_.enabled && !clients_.empty() && (heard_lately || !streams_.empty());
+  return pinger_.settings.enabled && !clients_.empty() && (heard_lately || !streams_.empty());
 }
-
-std::optional<TimePoint> Device::Impl::next_start(TimePoint now) const {
-  return pinging(now) ? cycle_.next_start(std::max(wanted_, cycle_.answered_at()), next_ping_) : std::nullopt;
-}
-
-/// When the image can be sent; nullopt if there is no image.
-std::optional<TimePoint> Device::Impl::send_due() const {
-  if (!cycle_.rendered()) {
-    return std::nullopt;
-  }
-  return cycle_.job().transmit_time + (config_.simulated_time ? nanoseconds{0} : cycle_.job().listening_time);
-}
-
-void Device::Impl::begin_ping(TimePoint now) {
-  const std::optional<TimePoint> start = next_start(now);
-  if (!start || now < *start || !cycle_.granted()) {
-    return;
-  }
-  ping_ = {.scan = state_.scan, .since_last = now - last_start_, .recorded = {}, .echo = {}};
-  PingJob job;
-  if (const std::optional<ReplayedPing>& fed = cycle_.fed()) {
-    ping_.recorded = recorded_form(fed->wire);
-    job = make_job(*fed, *ping_.recorded);
-    if (!state_.auto_mode) {
-      job.differences = differences(state_.scan, *ping_.recorded);
-    }
-  } else {
-    job = make_job(state_.scan, config_);
-  }
-  job.period = std::max(period(), job.listening_time);
-  last_start_ = now;
-  // Keeps the phase; after a late call at most one missed period is caught up.
-  next_ping_ = std::max(std::max(next_ping_, now - job.period) + job.period, now + job.listening_time);
-  cycle_.begin(std::move(job), now);
-}
-
-void Device::Impl::take(TimePoint now, const PingRendered& ping) {
-  if (!cycle_.on_image(now, ping.image.number)) {
-    return;
-  }
-  const std::vector<float> strength = amplitudes(ping.image);
-  if (strength.empty() || strength.size() != static_cast<std::size_t>(cycle_.job().bins()) ||
-      (ping_.recorded && strength.size() != ping.image.u8.size())) {
-    cycle_.fail();
-  } else if (ping_.recorded) {
-    ping_.echo.profile = ping.image.u8;
-  } else {
-    ping_.echo = find_echo(strength, ping_.scan, config_.points, 1e3 * config_.least_range_m);
-  }
-}
-
-void Device::Impl::send_ping(TimePoint now) {
-  const std::optional<TimePoint> due = send_due();
-  if (!due || now < *due) {
-    return;
-  }
-  State& state = state_;
-  if (ping_.recorded) {
-    state.measured = *ping_.recorded;
-  } else {
-    state.tracking.add(ping_.echo, ping_.since_last);
-    state.measured = {.distance_mm = state.tracking.distance_mm(),
-                      .confidence_percent = state.tracking.confidence_percent(),
-                      .transmit_duration_us = transmit_duration_us(ping_.scan, config_),
-                      .scan_start_mm = ping_.scan.start_mm,
-                      .scan_length_mm = ping_.scan.length_mm,
-                      .gain_setting = ping_.scan.gain};
-  }
-  state.measured.ping_number = ++state.pings;
-  state.profile = ping_.echo.profile;
-  const double sound_speed_mps = ping_.recorded ? cycle_.job().sound_speed_mps : ping_.scan.sound_speed_mps();
-  cycle_.put_on_wire(record_of(state.measured, state.profile, sound_speed_mps, state.id));
-  ++counters_.pings_sent;
-  for (const Stream& stream : streams_) {
-    reply(stream.peer, data(stream.id));
-  }
-  if (state.auto_mode && !ping_.recorded) {
-    state.scan = next_auto_scan(state.scan, ping_.echo, config_);
-  }
-}
-
-// ---- Time
 
 void Device::Impl::advance(TimePoint now) {
-  for (const Peer& peer : clients_.silent(now)) {
-    forget(peer, "timed out");
+  forget_silent(now);
+  if (pinger_.send(now, id_)) {
+    for (const Stream& stream : streams_) {
+      reply(stream.peer, data(stream.id));
+    }
   }
-  send_ping(now);
   answer_waiting(now);
-  if (!pinging(now)) {
-    cycle_.cancel();
+  if (pinging(now)) {
+    pinger_.begin(now);
+  } else {
+    pinger_.cancel();
   }
-  begin_ping(now);
 }
 
 Actions Device::Impl::actions(TimePoint now) {
   Actions actions;
-  actions.send = std::exchange(outgoing_, {});
-  actions.notices = std::exchange(notices_, {});
-  cycle_.report(actions);
-  actions.nobody_there = clients_.empty();
+  report(actions);
+  pinger_.report(actions);
   std::optional<TimePoint> wake = clients_.next_silence();
   const auto also = [&](std::optional<TimePoint> due) {
     wake = wake && due ? std::min(wake, due) : (due ? due : wake);
   };
-  also(send_due());
+  also(pinger_.send_due());
   for (const Waiting& it : waiting_) {
     also(it.due);
   }
   if (heard_ && config_.idle_timeout.count() > 0 && pinging(now) && streams_.empty()) {
     also(*heard_ + config_.idle_timeout);
   }
-  if (const std::optional<TimePoint> start = next_start(now)) {
+  if (const auto start = pinging(now) ? pinger_.next_start() : std::nullopt) {
     if (config_.simulated_time) {
-      actions.next_ping = NextPing{*start, period(), listening_time(state_.scan)};
+      actions.next_ping = pinger_.announced(*start);
     } else {
       also(*start);
     }
@@ -660,7 +450,7 @@ std::vector<Counter> Device::Impl::counts() const {
       {"other_destinations", count.other_destinations,
        "commands for another device ID, ignored (`device.accepts_any_destination`)", Fault::of_client,
        Shown::warns, "{} commands were for another device"},
-      {"clients_dropped", clients_.dropped(), "clients forgotten because of `device.max_clients`",
+      {"clients_dropped", count.clients_dropped, "clients forgotten because of `device.max_clients`",
        Fault::none, Shown::warns, "{} clients were dropped: too many at a time (device.max_clients)"},
       {"locked_out", count.locked_out, "datagrams of other clients, dropped (`lock_to_first`)", Fault::none,
        Shown::warns, "{} datagrams were dropped: another client uses the head (lock_to_first)"},

@@ -15,39 +15,16 @@ namespace sonard::ping1d {
 template <class Message>
 struct Layout : CommonLayout<Message> {};
 
-/// Name of the value of a Single.
+/// Name of the value of a Single: that of its message without "set_", with three exceptions.
 constexpr std::string_view value_name(MessageId id) {
-  using enum MessageId;
-  switch (id) {
-    case set_device_id:
-    case device_id:
-      return "device_id";
-    case set_speed_of_sound:
-    case speed_of_sound:
-      return "speed_of_sound";
-    case set_mode_auto:
-    case mode_auto:
-      return "mode_auto";
-    case set_ping_interval:
-    case ping_interval:
-      return "ping_interval";
-    case set_gain_setting:
-    case gain_setting:
-      return "gain_setting";
-    case set_ping_enable:
-    case ping_enable:
-      return "ping_enabled";
-    case voltage_5:
-      return "voltage_5";
-    case transmit_duration:
-      return "transmit_duration";
-    case processor_temperature:
-      return "processor_temperature";
-    case pcb_temperature:
-      return "pcb_temperature";
-    default:
-      return "id";
+  if (id == MessageId::continuous_start || id == MessageId::continuous_stop) {
+    return "id";
   }
+  if (id == MessageId::ping_enable || id == MessageId::set_ping_enable) {
+    return "ping_enabled";
+  }
+  const std::string_view name = name_of(id);
+  return name.starts_with("set_") ? name.substr(4) : name;
 }
 
 template <MessageId Id, class Value>
@@ -89,22 +66,20 @@ struct Layout<DistanceSimple> : WholeLayout<13> {
                                             Field{12, "confidence", &DistanceSimple::confidence_percent}};
 };
 
-template <class Message>
-struct MeasurementLayout : WholeLayout<32> {
+template <>
+struct Layout<Distance> : WholeLayout<32> {
   static constexpr auto fields = std::tuple{
-      Field{8, "distance", &Message::distance_mm},
-      Field{12, "confidence", &Message::confidence_percent},
-      Field{14, "transmit_duration", &Message::transmit_duration_us},
-      Field{16, "ping_number", &Message::ping_number},
-      Field{20, "scan_start", &Message::scan_start_mm},
-      Field{24, "scan_length", &Message::scan_length_mm},
-      Field{28, "gain_setting", &Message::gain_setting},
+      Field{8, "distance", &Distance::distance_mm},
+      Field{12, "confidence", &Distance::confidence_percent},
+      Field{14, "transmit_duration", &Distance::transmit_duration_us},
+      Field{16, "ping_number", &Distance::ping_number},
+      Field{20, "scan_start", &Distance::scan_start_mm},
+      Field{24, "scan_length", &Distance::scan_length_mm},
+      Field{28, "gain_setting", &Distance::gain_setting},
   };
 };
-template <>
-struct Layout<Distance> : MeasurementLayout<Distance> {};
 /// Up to the count of its points.
 template <>
-struct Layout<Profile> : MeasurementLayout<Profile> {};
+struct Layout<Profile> : Layout<Distance> {};
 
 }  // namespace sonard::ping1d

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "protocol/ping/frame.hpp"
@@ -49,7 +50,37 @@ enum class MessageId : std::uint16_t {
 };
 
 /// The name in the published definitions.
-std::string_view name_of(MessageId id);
+constexpr std::string_view name_of(MessageId id) {
+  using enum MessageId;
+  constexpr std::pair<MessageId, std::string_view> names[] = {
+      {set_device_id, "set_device_id"},
+      {set_range, "set_range"},
+      {set_speed_of_sound, "set_speed_of_sound"},
+      {set_mode_auto, "set_mode_auto"},
+      {set_ping_interval, "set_ping_interval"},
+      {set_gain_setting, "set_gain_setting"},
+      {set_ping_enable, "set_ping_enable"},
+      {goto_bootloader, "goto_bootloader"},
+      {firmware_version, "firmware_version"},
+      {device_id, "device_id"},
+      {voltage_5, "voltage_5"},
+      {speed_of_sound, "speed_of_sound"},
+      {range, "range"},
+      {mode_auto, "mode_auto"},
+      {ping_interval, "ping_interval"},
+      {gain_setting, "gain_setting"},
+      {transmit_duration, "transmit_duration"},
+      {general_info, "general_info"},
+      {distance_simple, "distance_simple"},
+      {distance, "distance"},
+      {processor_temperature, "processor_temperature"},
+      {pcb_temperature, "pcb_temperature"},
+      {ping_enable, "ping_enable"},
+      {profile, "profile"},
+      {continuous_start, "continuous_start"},
+      {continuous_stop, "continuous_stop"}};
+  return name_in(names, id);
+}
 
 /// A message with one value, which has the name of the message without "set_".
 template <MessageId Id, class Value>
@@ -151,33 +182,13 @@ struct Distance {
 };
 
 /// A measurement with the echoes over range.
-struct Profile {
+struct Profile : Distance {
   static constexpr MessageId id = MessageId::profile;
-  std::uint32_t distance_mm = 0;
-  std::uint16_t confidence_percent = 0;
-  std::uint16_t transmit_duration_us = 0;
-  std::uint32_t ping_number = 0;
-  std::uint32_t scan_start_mm = 0;
-  std::uint32_t scan_length_mm = 0;
-  std::uint32_t gain_setting = 0;
   std::span<const std::uint8_t> data;  ///< points that divide the scan evenly, nearest first; views the frame
 
+  const Distance& measured() const { return *this; }
   bool operator==(const Profile& other) const;
 };
-
-/// Copies the measurement between Distance and Profile.
-template <class To, class From>
-To measurement(const From& from) {
-  To to;
-  to.distance_mm = from.distance_mm;
-  to.confidence_percent = from.confidence_percent;
-  to.transmit_duration_us = from.transmit_duration_us;
-  to.ping_number = from.ping_number;
-  to.scan_start_mm = from.scan_start_mm;
-  to.scan_length_mm = from.scan_length_mm;
-  to.gain_setting = from.gain_setting;
-  return to;
-}
 
 using Report = std::variant<Unknown, Ack, Nack, AsciiText, DeviceInformation, ProtocolVersion,
                             FirmwareVersion, DeviceId, Voltage5, SpeedOfSound, Range, ModeAuto, PingInterval,

@@ -9,6 +9,16 @@
 
 namespace sonard::ping1d {
 
+Distance measured_by(const Scan& scan, const DeviceConfig& config, std::uint32_t distance_mm,
+                     std::uint16_t confidence_percent) {
+  return {.distance_mm = distance_mm,
+          .confidence_percent = confidence_percent,
+          .transmit_duration_us = transmit_duration_us(scan, config),
+          .scan_start_mm = scan.start_mm,
+          .scan_length_mm = scan.length_mm,
+          .gain_setting = scan.gain};
+}
+
 PingRecord record_of(const Distance& measured, std::vector<std::uint8_t> profile, double sound_speed_mps,
                      std::uint8_t device_id) {
   PingRecord record;
@@ -22,14 +32,14 @@ PingRecord record_of(const Distance& measured, std::vector<std::uint8_t> profile
       .frequency_hz = carrier_hz};
   record.bearings_rad = {0.0};
   record.samples = std::move(profile);
-  record.wire = encode(measurement<Profile>(measured), device_id);
+  record.wire = encode(Profile{measured, {}}, device_id);
   return record;
 }
 
 std::optional<Distance> recorded_form(std::span<const std::uint8_t> wire) {
   const auto report = decode_report(wire);
   const auto* const profile = report ? std::get_if<Profile>(&*report) : nullptr;
-  return profile != nullptr ? std::optional(measurement<Distance>(*profile)) : std::nullopt;
+  return profile != nullptr ? std::optional(profile->measured()) : std::nullopt;
 }
 
 PingJob make_job(const ReplayedPing& recorded, const Distance& measured) {

@@ -13,6 +13,9 @@
 
 namespace sonard::ping1d {
 
+/// What a ping of this scan measures, without its number.
+Distance measured_by(const Scan& scan, const DeviceConfig& config, std::uint32_t distance_mm,
+                     std::uint16_t confidence_percent);
 /// The record of a ping without number and transmit time. Bins are points of the profile; they count from the
 /// start of the scan, which only `wire` tells. `wire` is the profile message without its points.
 PingRecord record_of(const Distance& measured, std::vector<std::uint8_t> profile, double sound_speed_mps,

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "protocol/ping360/codec.hpp"
+#include "protocol/ping360/limits.hpp"
 #include "protocol/ping360/scanner.hpp"
 #include "protocol/ping360/settings_text.hpp"
 #include "protocol/ping360/units.hpp"
@@ -49,16 +50,18 @@ const DeviceConfig& validated(const DeviceConfig& config) {
 
 }  // namespace
 
-class Device::Impl {
+class Device::Impl final : public Head {
  public:
   Impl(const DeviceConfig& config, TimePoint start)
-      : config_(validated(config)), scanner_(config_, start, counters_), clients_(config_), id_(config_.id) {}
+      : Head(config_, config.id, !config.ignores_other_destinations, counters_),
+        config_(validated(config)),
+        scanner_(config_, start, counters_) {}
 
   // One overload for each event.
   void take(TimePoint, const TimePassed&) {}
-  void take(TimePoint now, const BytesReceived& piece);
+  void take(TimePoint now, const BytesReceived& piece) { receive(now, piece); }
   void take(TimePoint, const ClientCame&) {}
-  void take(TimePoint now, const ClientGone& gone);
+  void take(TimePoint now, const ClientGone& gone) { Head::take(now, gone); }
   void take(TimePoint now, const PingRendered& ping) { scanner_.on_image(now, ping.image); }
   void take(TimePoint now, const PingNotRendered& ping) { scanner_.on_image_failed(now, ping.number); }
   void take(TimePoint, const TriggerEdge&) {}   // the head has no trigger input
@@ -76,22 +79,18 @@ class Device::Impl {
  private:
   using Client = Clients::Client;
 
-  // Clients.
-  Client& client_of(TimePoint now, const Peer& peer);
-  bool scans(const Peer& peer) const;
-  void forget(TimePoint now, const Peer& peer, std::string_view why);
-  void forget_silent_clients(TimePoint now);
-  void notice(std::string text) { notices_.push_back({Notice::Level::info, std::move(text)}); }
-  std::optional<TimePoint> next_deadline() const;
+  // The clients' side.
+  bool keeps(const Peer& peer) const override;
+  bool on_empty(TimePoint now, Client& client) override;
+  void between_frames(TimePoint now, Client& client) override;
+  bool obey(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame) override {
+    return Head::obey(now, asker, decode_command(frame),
+                      [&](const auto& message) { handle(now, asker, message); });
+  }
+  void on_forget(TimePoint now, const Peer& peer, std::string_view why) override;
 
-  // Frames.
-  void read_frames(TimePoint now, Client& client);
-  void note_break(TimePoint now, Client& client);
-  void take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame);
-  void send(const Peer& to, const std::vector<std::uint8_t>& frame) { clients_.send(to, frame, outgoing_); }
+  // Answers.
   void reply(const Peer& asker, const Report& report) { send(asker, encode(report, id_)); }
-  void send_nack(const Peer& asker, std::uint16_t id, std::string_view text);
-  void refuse(const Peer& asker, std::uint16_t id, std::string_view text);
   template <class Command>
   bool refused(const Peer& asker, const Command& command);
   void end_scan(TimePoint now, std::string_view why);
@@ -109,135 +108,46 @@ class Device::Impl {
 
   const DeviceConfig config_;
   DeviceCounters counters_;
-  SettingsWarnings warnings_;
   Scanner scanner_;
-  Clients clients_;
-  std::uint8_t id_;
-  TimePoint silent_until_ = TimePoint::min();  ///< in the future while the head restarts
-
-  // Of the step in progress.
-  std::vector<Outgoing> outgoing_;
-  std::vector<Notice> notices_;
+  bool said_angle_400_ = false;
 };
 
 // ---- Clients
 
 /// The starter of a scan may only listen.
-bool Device::Impl::scans(const Peer& peer) const {
+bool Device::Impl::keeps(const Peer& peer) const {
   const auto scan = scanner_.running_scan();
   return scan && same_client(scan->first, peer);
 }
 
-Device::Impl::Client& Device::Impl::client_of(TimePoint now, const Peer& peer) {
-  if (clients_.find(peer) == nullptr) {
-    notice(fmt::format("client {} connected", clients_.name_of(peer)));
-  }
-  Client& client = clients_.heard(now, peer, [this](const Peer& known) { return scans(known); });
-  counters_.clients_dropped = clients_.dropped();
-  return client;
-}
-
-void Device::Impl::forget(TimePoint now, const Peer& peer, std::string_view why) {
-  if (scans(peer)) {
+void Device::Impl::on_forget(TimePoint now, const Peer& peer, std::string_view why) {
+  if (keeps(peer)) {
     end_scan(now, why);
   }
   scanner_.forget(now, peer);
-  clients_.remove(peer);
-  notice(fmt::format("client {} is gone: {}", clients_.name_of(peer), why));
 }
-
-void Device::Impl::take(TimePoint now, const ClientGone& gone) {
-  if (const Client* const client = clients_.find(gone.who)) {
-    forget(now, Peer{client->peer}, "disconnected");
-  }
-}
-
-void Device::Impl::forget_silent_clients(TimePoint now) {
-  for (const Peer& peer : clients_.silent(now)) {
-    forget(now, peer, "timed out");
-  }
-}
-
-// ---- Frames
 
 /// An empty datagram stands for a break of the serial line behind a bridge. A 'U' between frames stands for a
 /// break if the line does not report breaks (4.3, 4.4).
-void Device::Impl::take(TimePoint now, const BytesReceived& piece) {
-  if (now < silent_until_) {
-    counters_.unheard_bytes += piece.bytes.size();
-    return;
-  }
-  if (clients_.locked_against(now, piece.from)) {
-    ++counters_.locked_out;
-    return;
-  }
-  Client& client = client_of(now, piece.from);
-  if (piece.bytes.size() > 0) {
-    client.input.append(now, {piece.bytes.data(), piece.bytes.size()});
-    read_frames(now, client);
-  } else if (!clients_.is_serial(client.peer)) {
+bool Device::Impl::on_empty(TimePoint now, Client& client) {
+  if (!clients_.is_serial(client.peer)) {
     client.input.clear();
     end_scan(now, "empty datagram received");
   }
-  if (now < silent_until_) {
-    clients_.clear();  // a reset command came
-  }
+  return true;
 }
 
-void Device::Impl::read_frames(TimePoint now, Client& client) {
-  const std::uint64_t dropped = client.input.dropped();
-  const std::uint64_t bad_checksums = client.input.bad_checksums();
-  for (auto frame = client.input.front(); frame && now >= silent_until_; frame = client.input.front()) {
-    note_break(now, client);
-    take_frame(now, client.peer, *frame);
-    client.input.pop();
-  }
-  note_break(now, client);
-  counters_.dropped_bytes += client.input.dropped() - dropped;
-  counters_.bad_checksums += client.input.bad_checksums() - bad_checksums;
-}
-
-void Device::Impl::note_break(TimePoint now, Client& client) {
+void Device::Impl::between_frames(TimePoint now, Client& client) {
   if (client.input.take_baud_bytes() && clients_.is_serial(client.peer)) {
     end_scan(now, "break received");
   }
-}
-
-void Device::Impl::take_frame(TimePoint now, const Peer& asker, std::span<const std::uint8_t> frame) {
-  const FrameHeader header = frame_header(frame);
-  const bool for_us =
-      header.destination == 0 || header.destination == broadcast_id || header.destination == id_;
-  if (config_.ignores_other_destinations && !for_us) {
-    ++counters_.other_destinations;
-    return;
-  }
-  const auto command = decode_command(frame);
-  if (!command) {
-    refuse(asker, header.message_id, "wrong payload length");
-    return;
-  }
-  counters_.commands += std::holds_alternative<Unknown>(*command) ? 0 : 1;
-  clients_.hold(now, asker);
-  std::visit([&](const auto& message) { handle(now, asker, message); }, *command);
-}
-
-void Device::Impl::send_nack(const Peer& asker, std::uint16_t id, std::string_view text) {
-  ++counters_.refused;
-  reply(asker, Nack{id, std::string(text)});
-}
-
-/// @param text a literal
-void Device::Impl::refuse(const Peer& asker, std::uint16_t id, std::string_view text) {
-  warnings_.refused(id, text, notices_);
-  send_nack(asker, id, text);
 }
 
 template <class Command>
 bool Device::Impl::refused(const Peer& asker, const Command& command) {
   const auto field = out_of_range(command, config_);
   if (field) {
-    warnings_.refused(*field, notices_);
-    send_nack(asker, id_of(command), fmt::format("{} out of range", field->field));
+    refuse(asker, id_of(command), field->field, field->value, field->least, field->most);
   }
   return field.has_value();
 }
@@ -292,7 +202,7 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const SetDeviceId& comma
 /// The answer still has the old id as source.
 void Device::Impl::set_id(const Peer& asker, std::uint16_t order, std::uint8_t device_id) {
   if (is_device_id(device_id)) {
-    reply(asker, Ack{order});
+    ack(asker, order);
     id_ = device_id;
   } else {
     const bool of_head = order == static_cast<std::uint16_t>(SetDeviceId::id);
@@ -305,15 +215,16 @@ void Device::Impl::handle(TimePoint now, const Peer&, const Reset& command) {
   scanner_.restart(now);
   ++counters_.resets;
   notice(command.bootloader != 0 ? "reset into the bootloader" : "reset");
-  silent_until_ = now + (command.bootloader != 0 ? config_.bootloader_silence : config_.reset_silence);
-  // take() clears the clients later, because the input of one is being read.
+  Head::restart(now + (command.bootloader != 0 ? config_.bootloader_silence : config_.reset_silence));
 }
 
 void Device::Impl::handle(TimePoint now, const Peer& asker, const Transducer& command) {
   if (refused(asker, command)) {
     return;
   }
-  warnings_.taken(command, notices_);
+  if (command.angle == gradians_per_turn && !std::exchange(said_angle_400_, true)) {
+    notice("the client's angle 400 is taken as 0");
+  }
   if (scanner_.running_scan()) {
     notice("auto scan ended: transducer command received");
   }
@@ -335,7 +246,7 @@ void Device::Impl::handle(TimePoint now, const Peer& asker, const AutoTransmit& 
 void Device::Impl::handle(TimePoint now, const Peer& asker, const MotorOff& command) {
   end_scan(now, "motor_off");
   scanner_.stop(now);
-  reply(asker, Ack{id_of(command)});
+  ack(asker, id_of(command));
 }
 
 /// Ignores messages that only heads send, such as a nack. Otherwise two heads on one line would answer each
@@ -349,7 +260,7 @@ void Device::Impl::handle(TimePoint, const Peer& asker, const Unknown& command) 
 // ---- Time
 
 void Device::Impl::advance(TimePoint now) {
-  forget_silent_clients(now);
+  forget_silent(now);
   std::vector<Scanner::Answer> answers;
   scanner_.advance(now, id_, answers);
   for (const Scanner::Answer& answer : answers) {
@@ -359,18 +270,12 @@ void Device::Impl::advance(TimePoint now) {
 
 Actions Device::Impl::actions() {
   Actions actions;
-  actions.send = std::exchange(outgoing_, {});
-  actions.notices = std::exchange(notices_, {});
+  report(actions);
   scanner_.report(actions);
-  actions.nobody_there = clients_.empty();
-  actions.wake_at = next_deadline();
-  return actions;
-}
-
-std::optional<TimePoint> Device::Impl::next_deadline() const {
   const auto work = scanner_.next_deadline();
   const auto silence = clients_.next_silence();
-  return work && silence ? std::min(work, silence) : (work ? work : silence);
+  actions.wake_at = work && silence ? std::min(work, silence) : (work ? work : silence);
+  return actions;
 }
 
 // ---- Device

@@ -4,22 +4,13 @@
 
 #include <cstdint>
 
-#include "protocol/common/ping_cycle.hpp"
+#include "protocol/ping/head.hpp"
 
 namespace sonard::ping360 {
 
-/// All counters only grow, also across resets of the head.
-struct DeviceCounters : PingCounters {
-  std::uint64_t commands = 0;            ///< understood
-  std::uint64_t refused = 0;             ///< answered by a nack
-  std::uint64_t dropped_bytes = 0;       ///< not part of a frame
-  std::uint64_t bad_checksums = 0;       ///< frames with a wrong checksum
-  std::uint64_t other_destinations = 0;  ///< frames for another device
-  std::uint64_t unheard_bytes = 0;       ///< arrived while the head restarted
-  std::uint64_t commands_joined = 0;     ///< repeated an unanswered command, and share its answer
-  std::uint64_t commands_dropped = 0;    ///< the queue was full
-  std::uint64_t clients_dropped = 0;     ///< there were too many clients
-  std::uint64_t locked_out = 0;          ///< datagrams of other addresses, by DeviceConfig::lock_to_first
+struct DeviceCounters : ping::HeadCounters {
+  std::uint64_t commands_joined = 0;   ///< repeated an unanswered command, and share its answer
+  std::uint64_t commands_dropped = 0;  ///< the queue was full
   std::uint64_t resets = 0;
 };
 

@@ -8,6 +8,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <variant>
 
 #include "protocol/ping/frame.hpp"
@@ -35,6 +37,19 @@ enum class MessageId : std::uint16_t {
   auto_transmit = 2602,
   motor_off = 2903,
 };
+
+/// The name in the published definitions, of an id that only this device has.
+constexpr std::string_view name_of(MessageId id) {
+  using enum MessageId;
+  constexpr std::pair<MessageId, std::string_view> names[] = {{set_device_id, "set_device_id"},
+                                                              {device_data, "device_data"},
+                                                              {auto_device_data, "auto_device_data"},
+                                                              {reset, "reset"},
+                                                              {transducer, "transducer"},
+                                                              {auto_transmit, "auto_transmit"},
+                                                              {motor_off, "motor_off"}};
+  return name_in(names, id);
+}
 
 // ---- Client -> head
 

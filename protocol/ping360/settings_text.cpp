@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "protocol/ping360/settings_text.hpp"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "protocol/ping360/units.hpp"
@@ -33,23 +31,6 @@ std::vector<Setting> settings_of(const PingJob& job, const PingForm& form) {
 
 std::string scan_text(const AutoTransmit& scan) {
   return fmt::format("{} to {} gradians, step {}", scan.start_angle, scan.stop_angle, scan.num_steps);
-}
-
-void SettingsWarnings::refused(const OutOfRange& field, std::vector<Notice>& notices) {
-  warnings_.warn(field.field,
-                 fmt::format("the client's {} {} is refused: expected {} to {}", field.field, field.value,
-                             field.least, field.most),
-                 notices);
-}
-
-void SettingsWarnings::refused(std::uint16_t message_id, std::string_view why, std::vector<Notice>& notices) {
-  warnings_.warn(why, fmt::format("the client's message {} is refused: {}", message_id, why), notices);
-}
-
-void SettingsWarnings::taken(const Transducer& command, std::vector<Notice>& notices) {
-  if (command.angle == gradians_per_turn && !std::exchange(said_angle_400_, true)) {
-    notices.push_back({Notice::Level::info, "the client's angle 400 is taken as 0"});
-  }
 }
 
 }  // namespace sonard::ping360

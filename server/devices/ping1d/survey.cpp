@@ -71,14 +71,10 @@ class Ping1dSurvey final : public Survey {
     const ping1d::Echo echo =
         ping1d::find_echo(ping1d::amplitudes({.number = 0, .u8 = std::move(samples), .u16 = {}}), scan_,
                           device_.points, 1e3 * device_.least_range_m);
-    const ping1d::Distance measured{
-        .distance_mm = static_cast<std::uint32_t>(std::lround(echo.distance_mm.value_or(0.0))),
-        .confidence_percent = static_cast<std::uint16_t>(std::lround(echo.confidence_percent)),
-        .transmit_duration_us = ping1d::transmit_duration_us(scan_, device_),
-        .ping_number = static_cast<std::uint32_t>(ping) + 1,
-        .scan_start_mm = scan_.start_mm,
-        .scan_length_mm = scan_.length_mm,
-        .gain_setting = scan_.gain};
+    ping1d::Distance measured = ping1d::measured_by(
+        scan_, device_, static_cast<std::uint32_t>(std::lround(echo.distance_mm.value_or(0.0))),
+        static_cast<std::uint16_t>(std::lround(echo.confidence_percent)));
+    measured.ping_number = static_cast<std::uint32_t>(ping) + 1;
     PingRecord record = ping1d::record_of(measured, echo.profile, scan_.sound_speed_mps(), device_.id);
     record.number = static_cast<std::uint64_t>(ping);
     return record;

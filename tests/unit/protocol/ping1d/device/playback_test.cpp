@@ -31,7 +31,7 @@ TEST(Ping1dPlayback, ARecordHasTheProfileAndTheMeasurement) {
   const PingRecord& record = bench.records.back();
   const auto sent = bench.all<Profile>().back().second;
   EXPECT_EQ(record.samples, Bytes(sent.data.begin(), sent.data.end()));
-  EXPECT_EQ(recorded_form(record.wire), measurement<Distance>(sent));
+  EXPECT_EQ(recorded_form(record.wire), sent.measured());
   EXPECT_EQ(record.settings.bins, 200);
   EXPECT_DOUBLE_EQ(record.settings.range_m(), 1e-3 * sent.scan_length_mm);
   EXPECT_EQ(recorded_form(encode(recorded_ping)), std::nullopt) << "not a profile";
@@ -52,7 +52,7 @@ TEST(Ping1dPlayback, ARecordedPingIsSentAsItWas) {
   ASSERT_EQ(sent.size(), 1U);
   Distance expected = recorded_ping;
   expected.ping_number = 1;
-  EXPECT_EQ(measurement<Distance>(sent[0].second), expected);
+  EXPECT_EQ(sent[0].second.measured(), expected);
   EXPECT_EQ(Bytes(sent[0].second.data.begin(), sent[0].second.data.end()), bench.records[0].samples);
   EXPECT_EQ(bench.get<DistanceSimple>(), (DistanceSimple{1234, 77}));
 }
