@@ -16,6 +16,7 @@
 #include "server/devices/micron/section.hpp"
 #include "server/devices/micron/settings.hpp"
 #include "server/devices/micron/survey.hpp"
+#include "server/devices/single_beam.hpp"
 #include "server/net/serial_transport.hpp"
 
 namespace sonard::server {
@@ -147,13 +148,7 @@ const DeviceType& micron_type() {
 // wall across the beam 5 m away is at about 55 of 80 dB. At a gain of 28 %, the noise under the ceiling of
 // the TVG is at 5 dB; at 58 %, the ring-down is at 24 dB. One ping in six has a burst of interference.
 render::SonarSettings micron_acoustics() {
-  constexpr double degree = std::numbers::pi / 180.0;
-  render::SonarSettings acoustics;
-  acoustics.aperture.beam_edges_rad = {1.5 * degree, -1.5 * degree};
-  acoustics.aperture.receive_beamwidth_rad = 3 * degree;
-  acoustics.aperture.vertical_beamwidth_rad = 35 * degree;
-  acoustics.aperture.elevation =
-      render::Aperture::Elevation::sinc_two_way;  // one transducer sends and receives
+  render::SonarSettings acoustics = single_beam_acoustics(3.0, 35.0);
   acoustics.output_scale = render::OutputScale::half_decibels;
   acoustics.physical.multipath.most_bounces = 6;
   acoustics.physical.pulse.shape = render::PulseSettings::Shape::windowed_chirp;
@@ -163,13 +158,11 @@ render::SonarSettings micron_acoustics() {
   acoustics.physical.noise.output_db = -77.8;
   acoustics.physical.bin_overlap = 0.55;
   acoustics.physical.noise.by_bearing_db = 7.0;
-  acoustics.physical.bearing_jitter_rad = 0.15 * degree;
+  acoustics.physical.bearing_jitter_rad = 0.15 * std::numbers::pi / 180.0;
   acoustics.physical.near_field_blank_m = 0.1;
-  acoustics.physical.ring_down.on = true;
   acoustics.physical.ring_down.level_db = -40.0;
   acoustics.physical.ring_down.vehicle_level_db = -70.0;
   acoustics.physical.noise.interference.probability = 0.16;
-  acoustics.physical.noise.broadside_stripe_db = 0.0;
   return acoustics;
 }
 

@@ -5,15 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "protocol/ping360/device_config.hpp"
 #include "renderer/acoustics/transducer.hpp"
 #include "renderer/acoustics/water.hpp"
-#include "server/heads/device_settings.hpp"
+#include "server/devices/ping/lines.hpp"
 #include "server/heads/head_config.hpp"
-#include "server/net/serial_port.hpp"
-#include "server/net/udp_transport.hpp"
 
 namespace sonard::server {
 
@@ -33,11 +30,7 @@ struct DiscoveryConfig {
 
 /// The head turns about the z axis of its mount; the angle `device.bearing_offset` is along x. Its jobs set
 /// `range` of the acoustics.
-struct Ping360Config final : DeviceSettings {
-  ping360::DeviceConfig device;
-  std::vector<UdpTransportConfig> udp;  ///< channels 0, 1, ... of the device; all have the faults of one link
-  /// The channel after the UDP channels; without tcp, udp and pty there is no serial line.
-  SerialLinkConfig serial;
+struct Ping360Config final : PingHeadConfig<ping360::DeviceConfig> {
   std::optional<DiscoveryConfig> discovery;
   /// Clients choose the frequency. The maker calls 650 to 850 kHz usable (docs/protocols/ping360.md 9).
   render::TransducerBand transducer_band{650e3, 850e3};

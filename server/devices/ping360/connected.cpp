@@ -12,25 +12,12 @@
 #include "protocol/ping360/device.hpp"
 #include "protocol/ping360/discovery.hpp"
 #include "server/devices/ping360/config.hpp"
-#include "server/net/serial_transport.hpp"
 #include "server/net/several_transports.hpp"
 #include "server/net/udp_endpoint.hpp"
 #include "server/program_log/peer_log.hpp"
 
 namespace sonard::server {
 namespace {
-
-std::vector<std::unique_ptr<Transport>> open_transports(const Ping360Config& config,
-                                                        boost::asio::io_context& io, const Clock& clock) {
-  std::vector<std::unique_ptr<Transport>> transports;
-  for (const UdpTransportConfig& udp : config.udp) {
-    transports.push_back(std::make_unique<UdpTransport>(io, clock, udp));
-  }
-  if (config.device.serial_channel >= 0) {
-    transports.push_back(std::make_unique<SerialTransport>(io, clock, config.serial));
-  }
-  return transports;
-}
 
 /// Answers discovery requests with the head's address, and ignores requests to change it.
 class Discovery {
@@ -72,7 +59,7 @@ class ConnectedPing360 final : public ConnectedDevice {
   ConnectedPing360(const HeadConfig& head, boost::asio::io_context& io, const Clock& clock)
       : config_(device_settings<Ping360Config>(head)),
         device_(config_.device, clock.now()),
-        transport_(open_transports(config_, io, clock)) {
+        transport_(open_transports(config_, config_.device.serial_channel >= 0, io, clock)) {
     if (const auto& discovery = config_.discovery) {
       discovery_ = std::make_unique<Discovery>(head.name, *discovery, io);
     }

@@ -6,30 +6,17 @@
 
 #include <fmt/format.h>
 
+#include "server/devices/ping/section.hpp"
 #include "server/net/addresses.hpp"
 #include "server/yaml/network_section.hpp"
 
 namespace sonard::server {
 namespace {
 
-constexpr double minute_ms = 60'000.0;
 constexpr TextForm discovery_form{"an address and port such as 0.0.0.0:30303", endpoint_form.type,
                                   endpoint_form.schema, true};
 constexpr TextForm address_form{"an IPv4 address such as 192.168.2.4", "address", address_schema, true};
 constexpr TextForm mac_form{"six hexadecimal octets such as 54:10:ec:12:34:56", "six octets", mac_schema};
-
-void read_udp(YamlSection& section, const LinkConfig& link, Ping360Config& config) {
-  const auto read = [&](YamlSection& inner) {
-    UdpTransportConfig socket;
-    read_socket(inner, socket.bind, socket.allow, endpoint_form,
-                "UDP address; port 12345: a unit with Ethernet, 9092: a vehicle's bridge",
-                "address blocks that the head answers");
-    report_if_taken(inner, socket.bind, config.udp);
-    socket.link = link;
-    config.udp.push_back(std::move(socket));
-  };
-  section.sections("udp", "sockets that clients send to; required without `serial`", read);
-}
 
 void read_discovery(YamlSection& section, DiscoveryConfig& discovery) {
   section.parsed("bind", discovery.bind, &parse_endpoint, discovery_form,
@@ -65,16 +52,9 @@ void warn_if_found_in_vain(YamlSection& section, const Ping360Config& config) {
 }
 
 void read_device(YamlSection& section, ping360::DeviceConfig& device) {
-  section.integer("id", device.id, 1, 254,
-                  "device ID in the frames of the head, until a client sets another ID");
-  section.integer("revision", device.information.device_revision, 1, 255,
-                  "hardware revision that the head reports");
-  section.integer("firmware_major", device.information.firmware_major, 0, 255,
-                  "major version of the firmware that the head reports");
-  section.integer("firmware_minor", device.information.firmware_minor, 0, 255,
-                  "minor version of the firmware; above 3.3.0, ping-viewer lets a head scan by itself");
-  section.integer("firmware_patch", device.information.firmware_patch, 0, 255,
-                  "patch version of the firmware that the head reports");
+  read_identity(section, 1, "hardware revision that the head reports",
+                "minor version of the firmware; above 3.3.0, ping-viewer lets a head scan by itself",
+                device.id, device.information);
   section.integer("bearing_offset", device.bearing_offset, 0, 399,
                   "angle in gradians that is straight ahead; ping-viewer assumes 200, ROS drivers 0");
   section.boolean(
@@ -95,12 +75,7 @@ void read_device(YamlSection& section, ping360::DeviceConfig& device) {
                   "true: a sector ends at its limit; false: at the last whole step before it");
   section.boolean("ignores_other_destinations", device.ignores_other_destinations,
                   "true: the head drops frames to IDs other than its own, 0 and 255");
-  section.choice("fan_out", device.fan_out,
-                 {{"requester", ping360::FanOut::requester}, {"all", ping360::FanOut::all}},
-                 "clients that receive an answer: the client that asked or began the scan, or `all`, as "
-                 "behind a vehicle's bridge");
-  section.integer("max_clients", device.max_clients, 2, 1000,
-                  "maximum number of clients; then the head drops the longest silent one");
+  read_receivers(section, "began the scan", device);
   section.integer("max_datagram", device.max_datagram, 0, 65'507,
                   "maximum size of a datagram in bytes; longer frames are split, for clients with short "
                   "buffers. 0: one datagram for each frame");
@@ -111,8 +86,7 @@ void read_timing(YamlSection& section, ping360::DeviceConfig& device) {
                    "overhead of each ping, in addition to turning and listening");
   section.duration("gradian_ms", device.time_per_gradian, Range::from(0.0, 1000.0),
                    "time to turn by one gradian (0.9 degrees)");
-  section.number("scale", device.time_scale, Range::from(0.0, 100.0),
-                 "factor on the time from ping to ping; 0: as fast as pings are rendered");
+  read_time_scale(section, device.time_scale);
   section.duration("idle_timeout_ms", device.idle_timeout, Range::from(0.0, 60.0 * minute_ms),
                    "silence after which the head drops a client and ends its scan; 0: never");
   section.duration("reset_ms", device.reset_silence, Range::from(0.0, minute_ms), "silence after a reset");
@@ -164,23 +138,10 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
                      ? std::optional(render::Water{context.water.temperature_c, context.water.salinity_ppt,
                                                    context.water.depth_m, context.water.ph})
                      : std::nullopt;
-  config.device.simulated_time = context.simulated_time;
-  if (context.water_sound_speed_mps > 0.0) {
-    config.device.water_sound_speed_mps = context.water_sound_speed_mps;
-  }
+  apply_context(context, config.device);
   read_common(section, context, head);
-  LinkConfig link;
-  section.section("link", "faults of the datagrams of `udp`",
-                  [&](YamlSection& inner) { read_link_faults(inner, link); });
-  read_udp(section, link, config);
-  section.section("serial", "serial line in addition to the sockets",
-                  [&](YamlSection& inner) { config.serial = read_serial_link(inner, context.folder); });
-  if (config.udp.empty() && !section.has("serial")) {
-    section.report("udp", "no client could reach the head (expected udp with at least one item, or serial)");
-  }
-  read_lock_to_first(section, config.device.lock_to_first,
-                     "the first address is silent for `timing.idle_timeout_ms`, which must not be 0");
-  config.serial.lock_to_first = config.device.lock_to_first;
+  read_lines(section, context, "UDP address; port 12345: a unit with Ethernet, 9092: a vehicle's bridge",
+             config, config.device);
   section.section("discovery",
                   "answers to clients that search the network; without this section, clients find no head",
                   [&](YamlSection& inner) { read_discovery(inner, config.discovery.emplace()); });
@@ -192,12 +153,7 @@ Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context
                   [&](YamlSection& inner) { read_timing(inner, config.device); });
   section.section("acoustics", "formation of the pings",
                   [&](YamlSection& inner) { read_ping360_acoustics(inner, head, config); });
-  if (config.device.lock_to_first && config.device.idle_timeout.count() == 0) {
-    section.report("lock_to_first", "would last for ever (expected timing.idle_timeout_ms above 0)");
-  }
-  if (section.has("serial")) {
-    config.device.serial_channel = static_cast<int>(config.udp.size());
-  }
+  check_lock(section, config.device);
   return config;
 }
 

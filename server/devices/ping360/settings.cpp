@@ -6,6 +6,7 @@
 #include "protocol/ping360/units.hpp"
 #include "renderer/acoustics/transducer.hpp"
 #include "renderer/acoustics/water.hpp"
+#include "server/devices/single_beam.hpp"
 
 namespace sonard::server {
 namespace {
@@ -31,12 +32,7 @@ void follow_frequency(double frequency_hz, const Ping360Config& config, render::
 
 render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfig& head) {
   const Ping360Config& config = device_settings<Ping360Config>(head);
-  render::SonarSettings settings = head.acoustics;
-  settings.range = {.count = std::max(1, job.native_bins),
-                    .step_m = job.native_bins > 0 ? job.native_bin_m : 0.01,
-                    .compression_log2 = 0,
-                    .compression_peak = false};
-  settings.transmit = job.transmit;
+  render::SonarSettings settings = single_beam_settings(job, head);
   render::PhysicalModel& physical = settings.physical;
   physical.pulse.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;
   physical.pulse.usual = {job.sound_speed_mps * usual_pulse_s / 2.0,
@@ -48,8 +44,25 @@ render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfi
   const double frequency_hz = job.frequency_hz > 0 ? job.frequency_hz : ping360_carrier_hz;
   physical.pulse.band_loss_db = render::band_loss_db(config.transducer_band, frequency_hz, job.pulse_s);
   follow_frequency(frequency_hz, config, physical);
-  physical.gain_db += job.gain_db;
   return settings;
+}
+
+// Beam of 2 by 25 degrees, from the maker's data sheet. The law of the samples is not published. Assumed:
+// half decibels, as in the other scanning head, with a wall 5 m away in the upper half of the scale. Nearer
+// than 0.75 m the transducer rings, and images of owners are bright from the first sample on
+// (docs/protocols/ping360.md 2.3).
+render::SonarSettings ping360_acoustics() {
+  render::SonarSettings acoustics = single_beam_acoustics(2.0, 25.0);
+  acoustics.output_scale = render::OutputScale::half_decibels;
+  acoustics.physical.multipath.most_bounces = 6;
+  acoustics.physical.pulse.shape = render::PulseSettings::Shape::tone;
+  acoustics.physical.gain_db = -9.0;
+  acoustics.physical.tvg.max_db = 75.0;
+  acoustics.physical.noise.level_db = -141.0;
+  acoustics.physical.near_field_blank_m = 0.0;
+  acoustics.physical.ring_down.end_m = 0.75;
+  acoustics.physical.ring_down.from_start = true;
+  return acoustics;
 }
 
 }  // namespace sonard::server
