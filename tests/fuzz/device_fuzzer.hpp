@@ -5,8 +5,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -47,6 +49,14 @@ class DeviceFuzzer {
   virtual void check_record(const PingRecord&) const {}
   /// Called after each step, before its messages are checked.
   virtual void stepped(const sonard::Event&) {}
+
+  /// For check_job() of a head with one beam.
+  void check_line_job(const PingJob& job) const {
+    require(job.bins() <= most_bins(), "a job can be rendered");
+    constexpr double half_a_turn = std::numbers::pi + 1e-9;  // with rounding
+    require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
+    require(job.transmit_time <= now(), "a job is not ahead of its time");
+  }
 
   TimePoint now() const { return now_; }
   const Actions& last() const { return last_; }

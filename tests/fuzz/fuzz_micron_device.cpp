@@ -2,9 +2,7 @@
 // Any sequence of bytes, lines, faults, recorded lines and pauses against a Micron head.
 // Promises, beside those of all heads: every frame sent is a whole message of this head.
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <numbers>
 #include <span>
 #include <utility>
 #include <variant>
@@ -126,12 +124,7 @@ class MicronFuzzer final : public sonard::fuzz::DeviceFuzzer {
             "a head speaks its own protocol");
   }
 
-  void check_job(const PingJob& job) const override {
-    require(job.bins() <= max_bins, "a job can be rendered");
-    constexpr double half_a_turn = std::numbers::pi + 1e-9;  // with rounding
-    require(std::abs(job.bearing_rad) <= half_a_turn, "a job has a bearing of one turn");
-    require(job.transmit_time <= now(), "a job is not ahead of its time");
-  }
+  void check_job(const PingJob& job) const override { check_line_job(job); }
   void check_record(const sonard::PingRecord& record) const override {
     require(recorded_line(record.wire).has_value(), "a record can be played");
   }
