@@ -12,6 +12,7 @@ constexpr milliseconds answer_timeout{500};
 constexpr milliseconds ping_timeout{2000};
 constexpr milliseconds stop_period{100};
 constexpr int stop_tries = 10;
+constexpr std::uint32_t most_late = 16;  ///< pings
 constexpr auto stream_id = static_cast<std::uint16_t>(Profile::id);
 
 }  // namespace
@@ -65,9 +66,12 @@ void Client::request_stream(TimePoint now) {
   due_ = now + ping_timeout;
 }
 
-/// A link may deliver a message twice or late. Only later pings count.
+/// A link may deliver a message twice or late. Only later pings count. Much smaller numbers are those of a
+/// head that has restarted.
 void Client::on_report(TimePoint now, const Profile& profile) {
-  if (phase_ != Phase::listening || profile.ping_number == last_number_) {
+  const bool late =
+      last_number_ && profile.ping_number <= *last_number_ && *last_number_ - profile.ping_number < most_late;
+  if (phase_ != Phase::listening || late) {
     return;
   }
   if (last_number_ && profile.ping_number > *last_number_) {

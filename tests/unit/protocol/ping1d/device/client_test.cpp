@@ -51,6 +51,24 @@ TEST(Ping1dClient, MeetsTheHeadAndTakesPings) {
   EXPECT_EQ(session.client.statistics().pings_missed, 0U);
 }
 
+TEST(Ping1dClient, DropsCopiesAndLatePings) {
+  Session session;
+  session.client.start(0ns, {}, 0);
+  session.run_session(1s);
+  session.client.take_pings();
+  const std::uint64_t missed = session.client.statistics().pings_missed;
+  for (const std::uint32_t number : {100U, 103U, 102U, 103U, 104U, 1U}) {
+    session.client.on_bytes(session.now, encode(Profile{{.ping_number = number}, {}}));
+  }
+  std::vector<std::uint32_t> numbers;
+  for (const ReceivedPing& ping : session.client.take_pings()) {
+    numbers.push_back(ping.measured.ping_number);
+  }
+  EXPECT_EQ(numbers, (std::vector<std::uint32_t>{100, 103, 104, 1}))
+      << "the last is of a head that has restarted";
+  EXPECT_GT(session.client.statistics().pings_missed, missed + 1);
+}
+
 TEST(Ping1dClient, RequestsTheStreamAgainIfNoPingComes) {
   Session session;
   session.client.start(0ns, {}, 0);
