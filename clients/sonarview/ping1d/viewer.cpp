@@ -2,12 +2,11 @@
 // `sonarview ping1d`.
 #include <fmt/format.h>
 
-#include <boost/crc.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 
-#include "clients/sonarview/common/line_viewer.hpp"
+#include "clients/sonarview/common/ping_viewer.hpp"
 #include "clients/sonarview/common/subcommand.hpp"
 #include "clients/sonarview/ping1d/options.hpp"
 #include "clients/sonarview/ping1d/waterfall.hpp"
@@ -17,41 +16,27 @@
 namespace sonard::client {
 namespace {
 
-constexpr std::chrono::milliseconds stop_patience{500};
-
-class Viewer final : public LineViewer {
+class Viewer final : public PingViewer<ping1d::Client, ping1d::ReceivedPing> {
  public:
   explicit Viewer(const Ping1dOptions& options)
-      : LineViewer(options.run), options_(options), client_(started()), waterfall_(options.run.radius_px) {}
+      : PingViewer(options.run, options.line, "a Ping1D"),
+        options_(options),
+        waterfall_(options.run.radius_px) {}
 
  private:
   void begin(TimePoint at) override;
-  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { client_.on_bytes(at, bytes); }
-  void talk(TimePoint at) override;
-  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
-  bool head_met() const override { return client_.statistics().frames > 0; }
-  void take_received() override;
-  bool finished() const override { return client_.finished(); }
-  std::chrono::nanoseconds say_goodbye(TimePoint at) override;
+  void take_ping(const ping1d::ReceivedPing& ping) override;
+  std::optional<std::string> identity() const override;
   void refresh_pictures(ImageWriter& to) override;
   void finish_pictures(ImageWriter& to) override;
   std::string progress_text(std::uint64_t fresh) const override;
-  std::string awaited_text() const override { return fmt::format("a head on {}", options_.line.text()); }
-  std::string no_head_text(double wait_s) const override;
-  std::string no_ping_text(double wait_s) const override {
-    return fmt::format("no ping for {:.1f} s", wait_s);
-  }
   bool sum_up(const RunCounters& counters) override;
 
-  void take_ping(const ping1d::ReceivedPing& ping);
-  void greet_head();
   std::vector<Picture> pictures(const std::string& name) const;
 
   const Ping1dOptions options_;
-  ping1d::Client client_;
   Waterfall waterfall_;
   ping1d::Distance newest_;
-  bool greeted_ = false;
 };
 
 void Viewer::begin(TimePoint at) {
@@ -59,50 +44,23 @@ void Viewer::begin(TimePoint at) {
   open_line(options_.line);
 }
 
-void Viewer::talk(TimePoint at) {
-  client_.advance(at);
-  for (const std::vector<std::uint8_t>& frame : client_.take_outgoing()) {
-    send(frame);
-  }
-}
-
-void Viewer::take_received() {
-  greet_head();
-  for (const ping1d::ReceivedPing& ping : client_.take_pings()) {
-    if (!stopping()) {
-      take_ping(ping);
-    }
-  }
-  if (const auto& refusal = client_.refusal(); refusal && !stopping()) {
-    give_up(ExitStatus::incomplete, "the head refused a command: " + printable(refusal->text));
-  }
-}
-
 void Viewer::take_ping(const ping1d::ReceivedPing& ping) {
   count_ping(ping.received);
   newest_ = ping.measured;
   waterfall_.add(ping);
   if (options_.run.log_pings) {
-    boost::crc_32_type crc;
-    crc.process_bytes(ping.profile.data(), ping.profile.size());
     fmt::print(
         "ping number={} distance_m={:.3f} confidence={} start_m={:.3f} length_m={:.3f} gain={} points={} "
         "crc32={:08x}\n",
         newest_.ping_number, 1e-3 * newest_.distance_mm, newest_.confidence_percent,
         1e-3 * newest_.scan_start_mm, 1e-3 * newest_.scan_length_mm, newest_.gain_setting,
-        ping.profile.size(), crc.checksum());
+        ping.profile.size(), crc32_of(ping.profile));
     std::fflush(stdout);
   }
   if (ImageWriter* const to = writer();
       to != nullptr && options_.run.every > 0 && pings() % options_.run.every == 0) {
     to->write(pictures(fmt::format("{:06}", pings())));
   }
-}
-
-/// Ends the stream, because a head on a serial line continues without its client.
-std::chrono::nanoseconds Viewer::say_goodbye(TimePoint at) {
-  client_.stop(at);
-  return head_met() ? stop_patience : std::chrono::milliseconds{};
 }
 
 // ---- Pictures
@@ -127,25 +85,18 @@ void Viewer::finish_pictures(ImageWriter& to) {
 
 // ---- Messages
 
-void Viewer::greet_head() {
+std::optional<std::string> Viewer::identity() const {
   const auto& information = client_.information();
-  if (greeted_ || options_.run.quiet || !information) {
-    return;
+  if (!information) {
+    return std::nullopt;
   }
-  greeted_ = true;
-  fmt::print(stderr, "sonarview: {} at {}, firmware {}.{}.{}\n",
-             information->device_revision == 2 ? "Ping2" : "Ping1D", printable(options_.line.text()),
-             information->firmware_major, information->firmware_minor, information->firmware_patch);
+  return fmt::format("{} at {}, firmware {}.{}.{}", information->device_revision == 2 ? "Ping2" : "Ping1D",
+                     line_text(), information->firmware_major, information->firmware_minor,
+                     information->firmware_patch);
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; {}", pings(), fresh, measurement_text(newest_));
-}
-
-std::string Viewer::no_head_text(double wait_s) const {
-  const std::uint64_t foreign = client_.statistics().dropped_bytes;
-  return fmt::format("{} is open, but no head answered within {:.1f} s{}", options_.line.text(), wait_s,
-                     foreign > 0 ? ": " + foreign_bytes_text(foreign, "a Ping1D") : "");
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/crc.hpp>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -11,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "clients/sonarview/common/line_viewer.hpp"
+#include "clients/sonarview/common/ping_viewer.hpp"
 #include "clients/sonarview/common/subcommand.hpp"
 #include "clients/sonarview/ping360/options.hpp"
 #include "clients/sonarview/ping360/sweeps.hpp"
@@ -21,7 +20,6 @@
 namespace sonard::client {
 namespace {
 
-constexpr std::chrono::milliseconds stop_patience{500};
 constexpr double degrees_per_rad = 180.0 / std::numbers::pi;
 
 SweepForm form_of(const Ping360Options& options) {
@@ -50,42 +48,29 @@ ping360::Transducer first_order(const ping360::AutoTransmit& scan) {
   return order;
 }
 
-class Viewer final : public LineViewer {
+class Viewer final : public PingViewer<ping360::Client, ping360::ReceivedPing> {
  public:
   explicit Viewer(const Ping360Options& options)
-      : LineViewer(options.run),
+      : PingViewer(options.run, options.line, "a Ping360"),
         options_(options),
-        client_(started()),
         sweeps_(options.all_round, options.ahead),
         pictures_(form_of(options), options.run.every) {}
 
  private:
   void begin(TimePoint at) override;
-  void on_bytes(TimePoint at, std::span<const std::uint8_t> bytes) override { client_.on_bytes(at, bytes); }
-  void talk(TimePoint at) override;
-  std::optional<TimePoint> next_deadline() const override { return client_.next_deadline(); }
-  bool head_met() const override { return client_.statistics().frames > 0; }
-  void take_received() override;
-  bool finished() const override { return client_.finished(); }
-  std::chrono::nanoseconds say_goodbye(TimePoint at) override;
+  void take_ping(const ping360::ReceivedPing& ping) override;
+  std::optional<std::string> identity() const override;
   void refresh_pictures(ImageWriter& to) override { pictures_.refresh(to, sweeps_.current()); }
   void finish_pictures(ImageWriter& to) override { pictures_.finish(to, sweeps_.current()); }
   std::string progress_text(std::uint64_t fresh) const override;
-  std::string awaited_text() const override;
-  std::string no_head_text(double wait_s) const override;
-  std::string no_ping_text(double wait_s) const override;
   bool sum_up(const RunCounters& counters) override;
 
-  void take_ping(const ping360::ReceivedPing& ping);
   void log_ping(const ping360::ReceivedPing& ping) const;
-  void greet_head();
 
   const Ping360Options options_;
-  ping360::Client client_;
   SweepCollector sweeps_;
   SweepPictures pictures_;
   std::uint64_t sweeps_done_ = 0;
-  bool greeted_ = false;
 };
 
 void Viewer::begin(TimePoint at) {
@@ -101,25 +86,6 @@ void Viewer::begin(TimePoint at) {
     client_.start(at, first_order(scan), scan.num_steps, options_.run.pings);
   }
   open_line(options_.line);
-}
-
-void Viewer::talk(TimePoint at) {
-  client_.advance(at);
-  for (const std::vector<std::uint8_t>& frame : client_.take_outgoing()) {
-    send(frame);
-  }
-}
-
-void Viewer::take_received() {
-  greet_head();
-  for (const ping360::ReceivedPing& ping : client_.take_pings()) {
-    if (!stopping()) {
-      take_ping(ping);
-    }
-  }
-  if (const auto& refusal = client_.refusal(); refusal && !stopping()) {
-    give_up(ExitStatus::incomplete, "the head refused a command: " + refusal->text);
-  }
 }
 
 void Viewer::take_ping(const ping360::ReceivedPing& ping) {
@@ -142,54 +108,31 @@ void Viewer::take_ping(const ping360::ReceivedPing& ping) {
 
 void Viewer::log_ping(const ping360::ReceivedPing& ping) const {
   const auto strongest = std::max_element(ping.samples.begin(), ping.samples.end());
-  boost::crc_32_type crc;
-  crc.process_bytes(ping.samples.data(), ping.samples.size());
   fmt::print(
       "ping number={} turn={} angle={} bearing_deg={:.5g} samples={} strongest={} strongest_m={:.3f} "
       "crc32={:08x}\n",
       ping.number, sweeps_.current().number, ping.form.settings.angle,
       ping360::bearing_rad(ping.form.settings.angle, options_.ahead) * degrees_per_rad, ping.samples.size(),
       ping.samples.empty() ? 0 : *strongest,
-      (static_cast<double>(strongest - ping.samples.begin()) + 0.5) * options_.bin_m(), crc.checksum());
+      (static_cast<double>(strongest - ping.samples.begin()) + 0.5) * options_.bin_m(),
+      crc32_of(ping.samples));
   std::fflush(stdout);
-}
-
-/// Stops the scan, because a head continues without its client.
-std::chrono::nanoseconds Viewer::say_goodbye(TimePoint at) {
-  client_.stop(at);
-  return head_met() ? stop_patience : std::chrono::milliseconds{};
 }
 
 // ---- Messages
 
-void Viewer::greet_head() {
+std::optional<std::string> Viewer::identity() const {
   const auto& information = client_.head().information;
-  if (greeted_ || !information) {
-    return;
+  if (!information) {
+    return std::nullopt;
   }
-  greeted_ = true;
-  say(fmt::format("head at {}, device type {}, firmware {}.{}.{}", options_.line.text(),
-                  information->device_type, information->firmware_major, information->firmware_minor,
-                  information->firmware_patch));
+  return fmt::format("head at {}, device type {}, firmware {}.{}.{}", line_text(), information->device_type,
+                     information->firmware_major, information->firmware_minor, information->firmware_patch);
 }
 
 std::string Viewer::progress_text(std::uint64_t fresh) const {
   return fmt::format("{} pings, {} in the last second; turn {} has {} pings", pings(), fresh,
                      sweeps_.current().number, sweeps_.current().lines.size());
-}
-
-std::string Viewer::awaited_text() const {
-  return fmt::format("a head on {}", options_.line.text());
-}
-
-std::string Viewer::no_head_text(double wait_s) const {
-  const std::uint64_t foreign = client_.statistics().dropped_bytes;
-  return fmt::format("{} is open, but no head answered within {:.1f} s{}", options_.line.text(), wait_s,
-                     foreign > 0 ? ": " + foreign_bytes_text(foreign, "a Ping360") : "");
-}
-
-std::string Viewer::no_ping_text(double wait_s) const {
-  return fmt::format("no ping for {:.1f} s", wait_s);
 }
 
 bool Viewer::sum_up(const RunCounters& counters) {
