@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A Ping1D on UDP with a lossy link, on TCP and on a pseudo terminal; recorded, replayed and rendered offline.
+"""A Ping1D on UDP with a lossy link, also to another machine, on TCP and on a pseudo terminal; recorded, replayed and
+rendered offline.
 
     head_test.py --programs DIR [Ping1d.test_name ...]
 """
@@ -21,7 +22,7 @@ import numpy
 HERE = os.path.dirname(os.path.abspath(__file__))
 SOURCE = os.path.abspath(os.path.join(HERE, "..", "..", ".."))
 sys.path[:0] = [os.path.join(HERE, "..", "gemini")]
-from lab import Namespace, Program, need  # noqa: E402
+from lab import HEAD_ADDRESS, Lab, Namespace, Program, need  # noqa: E402
 
 DEMO = os.path.join(SOURCE, "configs", "demo-ping1d.yaml")
 START_S = 60
@@ -30,18 +31,24 @@ DEPTH_M = 4.0  # of the tank below the head
 PROGRAMS = None
 
 
-class Ping1d(unittest.TestCase):
+class Case(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         need("ip")
         folder = tempfile.TemporaryDirectory(prefix="sonard-ping1d-")
         cls.addClassCleanup(folder.cleanup)
         cls.folder = folder.name
-        cls.machine = Namespace("sonard-" + uuid.uuid4().hex[:8])
+        cls.make_machines()
+
+    @classmethod
+    def make_machines(cls):
+        """Sets `machine`, on which the head is, and `viewer`, on which its clients are."""
+        cls.machine = cls.viewer = Namespace("sonard-" + uuid.uuid4().hex[:8])
         cls.addClassCleanup(cls.machine.remove)
 
     def program(self, name, *arguments):
-        program = Program(self.machine.command(os.path.join(PROGRAMS, name), *arguments), name)
+        machine = self.viewer if name == "sonarview" else self.machine
+        program = Program(machine.command(os.path.join(PROGRAMS, name), *arguments), name)
         self.addCleanup(program.kill)
         return program
 
@@ -76,6 +83,8 @@ class Ping1d(unittest.TestCase):
             self.assertAlmostEqual(float(ping["distance_m"]), DEPTH_M, delta=0.011)
             self.assertGreater(int(ping["confidence"]), 50)
 
+
+class Ping1d(Case):
     def test_every_transport_reaches_the_same_head(self):
         daemon = self.daemon(tcp=("      pty:\n        - {}", f"      pty: [{{link: {self.folder}/tty}}]\n"
                                   "      tcp: [{bind: 127.0.0.1:4001}]"))
@@ -140,6 +149,43 @@ class Ping1d(unittest.TestCase):
             geometry = json.load(file)["geometry"]
         bed = next(row for row in range(100, 2000) if samples[row, 0] > 20)
         self.assertAlmostEqual(bed * geometry["line_step_m"], DEPTH_M, delta=0.011)
+
+
+class TwoMachines(Case):
+    """Two network namespaces on one wire, and a link that loses, doubles, reorders and delays in both directions."""
+
+    FAULTS = "{loss: 0.1, duplicate: 0.1, reorder: 0.1, delay_ms: 3, jitter_ms: 4}"
+
+    @classmethod
+    def make_machines(cls):
+        lab = Lab()
+        lab.__enter__()
+        cls.addClassCleanup(lab.__exit__)
+        cls.machine, cls.viewer = lab.head, lab.client
+
+    def counts(self, daemon):
+        """The daemon's counters of the head and of its link."""
+        said = " ".join(re.findall(r"head=ping2: (?:ended|transport) (.*)", daemon.output()))
+        return {name: int(value) for name, value in re.findall(r"(\w+)=(\d+)(?= |$)", said)}
+
+    def test_each_ping_arrives_once_or_is_lost(self):
+        daemon = self.daemon(udp=("      - bind: 127.0.0.1:9090", f"      - {{bind: {HEAD_ADDRESS}:9090, allow: [10.61.19.0/24]}}"),
+                             link=("    udp:\n", f"    link: {{seed: 1, to_client: {self.FAULTS}, from_client: {self.FAULTS}}}\n"
+                                   "    udp:\n"))
+        pings, summary = self.view("--udp", f"{HEAD_ADDRESS}:9090", "--pings", "300", "--interval", "20")
+        self.assert_depth(pings)
+        numbers = [int(ping["number"]) for ping in pings]
+        self.assertEqual(numbers, sorted(set(numbers)), "in order, and none twice")
+        self.assertEqual((summary["frames_bad"], summary["bytes_dropped"]), ("0", "0"))
+        self.assertEqual(int(summary["pings_missed"]), numbers[-1] - numbers[0] + 1 - len(numbers))
+        self.end(daemon)
+        counts = self.counts(daemon)
+        for fault in "lost", "duplicated", "reordered":
+            self.assertGreater(counts[f"to_client_{fault}"], 10)
+        arrived = counts.get("from_client_passed", counts["received"])
+        self.assertEqual(counts["commands"], arrived, "every command that arrived was understood")
+        late = counts["to_client_reordered"]
+        self.assertLessEqual(int(summary["pings_missed"]), counts["to_client_lost"] + late, "a ping was lost or came late")
 
 
 if __name__ == "__main__":
