@@ -35,8 +35,8 @@ bool has_slice(uint number, Room needed) {
   return number < needed.slices && needed.slices <= ping.room.slices && visible_have_room(needed);
 }
 
-// llvmpipe ends all further loops of an invocation after 65,535 rounds (LP_MAX_TGSI_LOOP_ITERATIONS of Mesa), and
-// says nothing. Such a ping counts as an overflow.
+// llvmpipe ends all further loops of an invocation after 65,535 rounds (LP_MAX_TGSI_LOOP_ITERATIONS of Mesa),
+// and says nothing. Such a ping counts as an overflow.
 bool loops_are_cut() {
   uint n = 0u, end = 1u + uint(ping.room.slices > 0u);  // 2, which no compiler knows
   while (n < end) {

@@ -10,8 +10,8 @@ bool comes_before(uint a, uint b) {
   return s_low[a] < s_low[b] || (s_low[a] == s_low[b] && s_number[a] < s_number[b]);
 }
 
-// Sets s_order: a counting sort into as many buckets as there are segments, then ranks within each bucket. If the
-// driver cuts loops, s_order has no meaning, but no index leads out of the arrays.
+// Sets s_order: a counting sort into as many buckets as there are segments, then ranks within each bucket. If
+// the driver cuts loops, s_order has no meaning, but no index leads out of the arrays.
 void sort_segments() {
   for (uint k = lane; k < count; k += GROUP) {
     s_bucket[k] = 0u;
