@@ -23,6 +23,7 @@ float height_within(Slice slice, uint key) {
 // As SliceCutter::missed_height().
 float missed_height(Slice slice) {
   float azimuth = of_beam.middle_rad + slice.offset_rad, half_width = 0.5 * slice.width_rad, height = 0.0;
+  uint measured = none;  // key of the last height, which all ends with this key have
   for (uint i = 0u; i < of_beam.ends; ++i) {
     ThingEnd end = ends[2u * of_beam.first_thing + i];
     float beside = end.azimuth - azimuth;
@@ -31,7 +32,11 @@ float missed_height(Slice slice) {
                   : end.is_high != 0u ? beside < azimuth_error_rad && beside > -half_width
                                       : beside > -azimuth_error_rad && beside < half_width;
     if (missed) {
-      height = max(height, is_low ? least_missed : max(least_missed, height_within(slice, end.key)));
+      height = max(height, least_missed);
+    }
+    if (missed && !is_low && end.key != measured) {
+      height = max(height, height_within(slice, end.key));
+      measured = end.key;
     }
   }
   return height;
