@@ -8,6 +8,8 @@
 #include <limits>
 #include <span>
 
+#include "renderer/simd.hpp"
+
 namespace sonard::render {
 namespace {
 
@@ -61,7 +63,7 @@ class PointMaker {
     const double count = std::ceil(
         std::clamp(std::max(rows * points_per_row, bins * points_per_bin), 1.0, most_points_of_a_patch));
     const double sine_a = sine_of(t_a), all = sine_of(t_b) - sine_a;
-    double sine = sine_a;
+    double sine = sine_a, across = 0;  // across the wedge, in [-1/2, 1/2)
     for (double i = 0; i < count; ++i) {
       const double end = (i + 1) / count, middle = (i + 0.5) / count;
       const double next = sine_of(t_a + (t_b - t_a) * end);
@@ -70,7 +72,8 @@ class PointMaker {
       const double t = t_a + (t_b - t_a) * middle;
       const double smear_m = smear_a + (smear_b - smear_a) * middle;
       const double range_m =
-          std::sqrt(1 + t * t) / (inverse_a + (inverse_b - inverse_a) * middle) + smear_m * across(i);
+          std::sqrt(1 + t * t) / (inverse_a + (inverse_b - inverse_a) * middle) + smear_m * across;
+      across += across + golden < 0.5 ? golden : golden - 1;
       const double bin = range_m / range_.step_m;
       if (range_m >= grid_.nearest_m && bin < static_cast<double>(range_.count)) {
         const double loss = static_cast<double>(loss_of_bin_[static_cast<std::size_t>(bin)]);
@@ -81,11 +84,9 @@ class PointMaker {
   }
 
  private:
-  /// Where across the wedge a point lies, in [-1/2, 1/2): evenly distributed over the points of a patch.
-  static double across(double point) {
-    constexpr double golden = 0.6180339887498949;
-    return std::fmod(0.5 + point * golden, 1.0) - 0.5;
-  }
+  /// From a point to the next across the wedge. Multiples of it, without whole wedges, are evenly
+  /// distributed.
+  static constexpr double golden = 0.6180339887498949;
 
   static double sine_of(double tangent) { return tangent / std::sqrt(1 + tangent * tangent); }
 
@@ -94,17 +95,47 @@ class PointMaker {
   const std::vector<float>& loss_of_bin_;
 };
 
-/// Energy over range of the beams of one column. One per thread.
-class ColumnSums {
+/// to[i] += weight * from[i]
+SONARD_SIMD_CLONES
+void add_weighted(const float* __restrict from, float weight, std::size_t count, float* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) {
+    to[i] += weight * from[i];
+  }
+}
+
+/// The bins of a row that something was added to.
+struct Touched {
+  std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
+
+  std::size_t count() const { return low > high ? 0 : high - low + 1; }
+};
+
+/// Energy over range of the rows of a wedge. Two numbers per bin: energy, and its moment about the near end
+/// of the bin, in bins.
+struct WedgeSums {
+  std::vector<Touched> rows;
+  std::vector<float> sums;  ///< of the touched bins, row by row
+};
+
+/// Energy over range of the rows of a wedge or a column. One per thread.
+class RowSums {
  public:
   void reset(int rows, int bins) {
-    bins_ = static_cast<std::size_t>(bins) + 1;  // one more, which stays empty
-    sums_.assign(static_cast<std::size_t>(rows) * bins_, {});
+    const std::size_t of_row = 2 * (static_cast<std::size_t>(bins) + 1);  // one bin more, which stays empty
+    if (touched_.size() != static_cast<std::size_t>(rows) || of_row_ != of_row) {
+      of_row_ = 0;  // if there is no memory
+      sums_.assign(static_cast<std::size_t>(rows) * of_row, 0.0F);
+      of_row_ = of_row;
+    } else {
+      for (std::size_t r = 0; r < touched_.size(); ++r) {
+        std::fill_n(first_of(r), 2 * touched_[r].count(), 0.0F);
+      }
+    }
     touched_.assign(static_cast<std::size_t>(rows), {});
   }
 
   /// @param reach_rows half the rows that see a point
-  void add(std::span<const Point> points, float weight, float reach_rows,
+  void add(std::span<const Point> points, float reach_rows,
            const std::array<float, pattern_steps + 1>& table) {
     const float steps_per_row = static_cast<float>(pattern_steps) / reach_rows;
     const auto last_row = static_cast<float>(touched_.size()) - 1;
@@ -115,15 +146,37 @@ class ColumnSums {
       const float within = point.bin - static_cast<float>(bin);
       for (float row = low; row <= high; ++row) {
         const auto step = static_cast<std::size_t>(std::abs(row - point.row) * steps_per_row);
-        const float energy = weight * point.energy * table[step];
+        const float energy = point.energy * table[step];
         const auto r = static_cast<std::size_t>(row);
-        Sum& sum = sums_[r * bins_ + bin];
-        sum.energy += energy;
-        sum.moment += energy * within;
+        float* const sum = &sums_[r * of_row_ + std::size_t{2} * bin];
+        sum[0] += energy;
+        sum[1] += energy * within;
         touched_[r].low = std::min(touched_[r].low, bin);
         touched_[r].high = std::max(touched_[r].high, bin);
       }
     }
+  }
+
+  void add(const WedgeSums& wedge, float weight) {
+    const float* from = wedge.sums.data();
+    for (std::size_t r = 0; r < wedge.rows.size(); ++r) {
+      const Touched& row = wedge.rows[r];
+      const std::size_t numbers = 2 * row.count();
+      if (numbers > 0) {
+        add_weighted(from, weight, numbers, &sums_[r * of_row_ + std::size_t{2} * row.low]);
+        from += numbers;
+        touched_[r].low = std::min(touched_[r].low, row.low);
+        touched_[r].high = std::max(touched_[r].high, row.high);
+      }
+    }
+  }
+
+  WedgeSums of_wedge() {
+    WedgeSums wedge{touched_, {}};
+    for (std::size_t r = 0; r < touched_.size(); ++r) {
+      wedge.sums.insert(wedge.sums.end(), first_of(r), first_of(r) + 2 * touched_[r].count());
+    }
+    return wedge;
   }
 
   struct Strongest {
@@ -131,8 +184,8 @@ class ColumnSums {
     float energy = 0.0F;
   };
   Strongest strongest(std::size_t row) const {
-    const Sum* sums = &sums_[row * bins_];
-    const auto energy_at = [sums](std::size_t k) { return sums[k].energy + sums[k + 1].energy; };
+    const float* const sums = &sums_[row * of_row_];
+    const auto energy_at = [sums](std::size_t k) { return sums[2 * k] + sums[2 * k + 2]; };
     const std::size_t low = touched_[row].low, high = touched_[row].high;
     std::size_t peak = low;
     for (std::size_t k = low; k <= high; ++k) {
@@ -151,22 +204,21 @@ class ColumnSums {
     }
     double energy = 0.0, moment = 0.0;
     for (std::size_t k = first; k <= last + 1; ++k) {
-      const auto here = static_cast<double>(sums[k].energy);
+      const auto here = static_cast<double>(sums[2 * k]);
       energy += here;
-      moment += here * static_cast<double>(k - first) + static_cast<double>(sums[k].moment);
+      moment += here * static_cast<double>(k - first) + static_cast<double>(sums[2 * k + 1]);
     }
     return {static_cast<double>(first) + moment / energy, energy_at(peak)};
   }
 
  private:
-  struct Sum {
-    float energy = 0.0F, moment = 0.0F;  ///< moment about the near end of the bin, in bins
-  };
-  struct Touched {
-    std::uint32_t low = std::numeric_limits<std::uint32_t>::max(), high = 0;
-  };
-  std::size_t bins_ = 0;
-  std::vector<Sum> sums_;  ///< [row * bins_ + bin]
+  /// The first touched bin of a row, or the first bin.
+  float* first_of(std::size_t row) {
+    return &sums_[row * of_row_ + (touched_[row].count() > 0 ? std::size_t{2} * touched_[row].low : 0)];
+  }
+
+  std::size_t of_row_ = 0;   ///< numbers of a row
+  std::vector<float> sums_;  ///< [row][bin][energy, moment]
   std::vector<Touched> touched_;
 };
 
@@ -179,19 +231,25 @@ DirectionEchoes find_directions(const SeenPatches& seen, const DirectionGrid& gr
       static_cast<float>(direction_reach_beamwidths * grid.elevation_beamwidth_rad / grid.row_step_rad());
   const double reach_rad = direction_reach_beamwidths * grid.azimuth_beamwidth_rad;
   const PointMaker maker(grid, range, loss_of_bin);
-  std::vector<std::vector<Point>> points(seen.wedges.size());
+  std::vector<WedgeSums> sums_of_wedge(seen.wedges.size());
   workers.run(static_cast<int>(seen.wedges.size()), [&](int wedge) {
+    thread_local std::vector<Point> points;
+    thread_local RowSums sums;
     const auto w = static_cast<std::size_t>(wedge);
+    points.clear();
     for (const EchoPatch& patch : seen.of(w)) {
-      maker.add(patch, points[w]);
+      maker.add(patch, points);
     }
+    sums.reset(grid.rows, range.count);
+    sums.add(points, reach_rows, table);
+    sums_of_wedge[w] = sums.of_wedge();
   });
   DirectionEchoes echoes{grid.columns, grid.rows, {}, {}};
   const auto columns = static_cast<std::size_t>(grid.columns), rows = static_cast<std::size_t>(grid.rows);
   echoes.range_m.assign(columns * rows, 0.0F);
   echoes.intensity.assign(columns * rows, 0.0F);
   workers.run(grid.columns, [&](int column) {
-    thread_local ColumnSums sums;
+    thread_local RowSums sums;
     sums.reset(grid.rows, range.count);
     const double azimuth_rad = grid.azimuth_rad(column);
     const auto first = std::ranges::partition_point(seen.wedges, [&](const SeenPatches::Wedge& wedge) {
@@ -200,7 +258,7 @@ DirectionEchoes find_directions(const SeenPatches& seen, const DirectionGrid& gr
     for (auto w = static_cast<std::size_t>(first - seen.wedges.begin());
          w < seen.wedges.size() && seen.wedges[w].azimuth_rad >= azimuth_rad - reach_rad; ++w) {
       const double offset = (seen.wedges[w].azimuth_rad - azimuth_rad) / grid.azimuth_beamwidth_rad;
-      sums.add(points[w], static_cast<float>(pattern(offset)), reach_rows, table);
+      sums.add(sums_of_wedge[w], static_cast<float>(pattern(offset)));
     }
     for (std::size_t row = 0; row < rows; ++row) {
       const auto [bin, energy] = sums.strongest(row);
