@@ -14,7 +14,7 @@
 
 namespace sonard::render {
 
-/// Images come from the GPU until it fails. The images at which it fails, and all later ones, come from the
+/// Images come from the selected engine. The images at which the GPU fails, and all later ones, come from the
 /// CPU, until the GPU is back (GpuOptions::retry_s). Each engine is made on first use, from the current
 /// world.
 class EngineSwitch final : public EchoEngine {

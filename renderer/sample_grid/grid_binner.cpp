@@ -120,9 +120,9 @@ BinningResult bin_grid_by_cones(const SampleGrid& grid, const CellWeights& weigh
 
 }  // namespace
 
-BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
-                         const std::vector<const SurfaceSample*>& views, const RangeBins& range,
-                         const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
+BinningResult bin_samples(const SampleGrid& grid, const CellWeights& weights,
+                          const std::vector<const SurfaceSample*>& views, const RangeBins& range,
+                          const BinningOptions& options, WorkerPool& workers, std::vector<float> memory) {
   if (options.cone_aperture != nullptr) {
     return bin_grid_by_cones(grid, weights, views, range, options, workers, std::move(memory));
   }

@@ -15,8 +15,8 @@ namespace sonard::render {
 /// @param weights of the grid
 /// @param views the samples of every view, row after row in the order of SubView
 /// @param memory see bin_beams()
-BinningResult bin_echoes(const SampleGrid& grid, const CellWeights& weights,
-                         const std::vector<const SurfaceSample*>& views, const RangeBins& range,
-                         const BinningOptions& options, WorkerPool& workers, std::vector<float> memory = {});
+BinningResult bin_samples(const SampleGrid& grid, const CellWeights& weights,
+                          const std::vector<const SurfaceSample*>& views, const RangeBins& range,
+                          const BinningOptions& options, WorkerPool& workers, std::vector<float> memory = {});
 
 }  // namespace sonard::render

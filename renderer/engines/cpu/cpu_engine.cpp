@@ -73,8 +73,8 @@ void CpuEngine::image_by_grid(const EchoRequest& request, const BinningOptions& 
   const auto views = rays_.sample(request.T_world_sonar, grid_.grid(), surface_model(settings, skip_),
                                   settings.range.sampled_range_m());
   statistics.seconds.visibility += watch.lap();
-  hand_over(bin_echoes(grid_.grid(), grid_.weights(), views, settings.range, options, workers_,
-                       std::move(echo.image.intensity)),
+  hand_over(bin_samples(grid_.grid(), grid_.weights(), views, settings.range, options, workers_,
+                        std::move(echo.image.intensity)),
             echo, statistics);
   statistics.seconds.binning += watch.lap();
 }

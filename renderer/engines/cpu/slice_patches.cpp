@@ -262,7 +262,7 @@ void SlicePatcher::find_gradients(const Request& request) {
   const float* __restrict low_slope = seen_.low_slope.data();
   const float* __restrict high_slope = seen_.high_slope.data();
   const float width = request.slice.width_rad;
-  const float furthest = request.max_range_m;
+  const float furthest = request.sampled_range_m;
   // A gradient moves the middle of the echo by a third of this.
   const float least_gradient_m = 0.5F * request.linearity * request.line_m;
   for (std::size_t i = 0; i < count; ++i) {
@@ -319,7 +319,7 @@ bool SlicePatcher::is_mapped(const Request& request, const VisibleSegment& segme
 slices::PatchLimits SlicePatcher::limits_of(const Request& request) {
   const bool varies = request.pattern.varies();
   return {.displaced_m = request.linearity * request.line_m,
-          .furthest_m = request.max_range_m,
+          .furthest_m = request.sampled_range_m,
           .half_line_m = 0.5F * request.line_m,
           .mapped_m = request.mapped_lines * request.line_m,
           .facet_slopes = request.facet_slopes,

@@ -44,7 +44,7 @@ class SlicePatcher {
     /// across the wedge until the move is at most this many lines.
     float facet_lines;
     float line_m;
-    float max_range_m;           ///< segments wholly beyond are not divided
+    float sampled_range_m;       ///< segments wholly beyond are not divided
     bool within_facets = false;  ///< Sampling::within_facets
   };
 
@@ -88,9 +88,10 @@ class SlicePatcher {
   std::vector<float> range_gradient_;   ///< of the solid angle along the range, see EchoPatch; 0: constant
   std::vector<float> cosine_gradient_;  ///< of cosine_, the mean of a segment
   std::vector<float> cosine_mid_;       ///< cosine in the middle of a segment
-  std::vector<float> echo_gradient_;    ///< range_gradient_ plus the gradient of the response
-  std::vector<std::int32_t> parts_;     ///< number of parts into which a segment is divided
-  std::vector<float> displaced_;        ///< bound of the echo's displacement by linearity, metres
+  std::vector<float>
+      echo_gradient_;  ///< gradient of the response; after join_gradients(), with range_gradient_
+  std::vector<std::int32_t> parts_;  ///< parts into which a segment is divided; 0: not decided
+  std::vector<float> displaced_;     ///< bound of the echo's displacement by linearity, metres
   std::vector<float> response_, response_without_facets_;
   std::vector<float> centroid_offset_;   ///< centroid of the echo in its wedge, 1/2 at the port side
   std::vector<MappedIncidence> mapped_;  ///< in the middle of a segment

@@ -53,7 +53,7 @@ SliceBorder Comparison::compare(const SliceCell& port, const SideProfile& port_s
   const float* __restrict secant = view.secant.data();
   const std::int32_t* __restrict weight = view.weight.data();
   const float mean_width = 0.5F * (port.slice.width_rad + starboard.slice.width_rad);
-  const slices::BorderLimits limits{view.line_m, view.max_range_m, most_sagitta_m,
+  const slices::BorderLimits limits{view.line_m, view.bins_end_m, most_sagitta_m,
                                     mean_width / (8 * port.slice.width_rad),
                                     mean_width / (8 * starboard.slice.width_rad)};
   std::int32_t mismatched = 0, curved = 0;
@@ -101,7 +101,7 @@ float Comparison::shift_lines(const SideProfile& port_side, const SideProfile& s
   const float* __restrict wb = starboard_side.data();
   const float* __restrict secant = view.secant.data();
   const std::int32_t* __restrict weight = view.weight.data();
-  const float line_m = view.line_m, furthest_m = view.max_range_m;
+  const float line_m = view.line_m, furthest_m = view.bins_end_m;
   const float probes_per_t = (side_probes - 1) / (2 * slices::probe_reach * view.tan_limit);
   const auto moment_of = [&](float w, float next_w, std::size_t i, float pattern) {
     return slices::moment_of(w, next_w, secant[i], secant[i + 1], furthest_m, probes_per_t, pattern);

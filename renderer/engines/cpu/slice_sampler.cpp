@@ -138,7 +138,7 @@ std::uint64_t SliceSampler::make_patches(const SliceCell& cell, std::vector<Echo
                     .facet_slopes = setting.accuracy.facet_slopes,
                     .facet_lines = setting.accuracy.facet_lines,
                     .line_m = setting.line_m,
-                    .max_range_m = setting.fan.max_range_m(),
+                    .sampled_range_m = setting.fan.sampled_range_m(),
                     .within_facets = setting.accuracy.within_facets},
                    patches);
   return setting.surface.facets == Facets::near_normal ? without_facets : 0;

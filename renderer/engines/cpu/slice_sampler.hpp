@@ -43,9 +43,9 @@ struct SliceCell {
   ProbeSet edge_at_starboard;      ///< of the upright edge at which its whole was divided
 };
 
-/// Samples azimuths only: in each slice visibility and range limits are exact. Errors come from the width of
-/// slices alone and are of second order, except at round silhouettes along the slices (docs/accuracy.md).
-/// Only one thread may use it; it distributes its work over the pool.
+/// Samples azimuths only: in each slice visibility and range limits are exact. Errors across slices are of
+/// second order in their width, except at round silhouettes along them; errors along a slice have the limits
+/// of SliceAccuracy (docs/accuracy.md). Only one thread may use it; it distributes its work over the pool.
 class SliceSampler {
  public:
   SliceSampler(const World& world, WorkerPool& workers, const SkipSwitches& skip = {});

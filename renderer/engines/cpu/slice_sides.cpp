@@ -23,16 +23,16 @@ void summarise(const SideView& view, SliceSides& sides) {
   const float* __restrict starboard = sides.starboard.data();
   const float* __restrict secant = view.secant.data();
   const std::int32_t* __restrict weight = view.weight.data();
-  const float max_range_m = view.max_range_m;
+  const float bins_end_m = view.bins_end_m;
   std::int32_t in_range_port = 0, in_range_starboard = 0;
-  std::int32_t nearest = std::bit_cast<std::int32_t>(max_range_m), furthest = 0;
+  std::int32_t nearest = std::bit_cast<std::int32_t>(bins_end_m), furthest = 0;
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float range_p = secant[i] / port[i], range_s = secant[i] / starboard[i];
-    const bool in_p = secant[i] < max_range_m * port[i], in_s = secant[i] < max_range_m * starboard[i];
+    const bool in_p = secant[i] < bins_end_m * port[i], in_s = secant[i] < bins_end_m * starboard[i];
     in_range_port += in_p ? weight[i] : 0;
     in_range_starboard += in_s ? weight[i] : 0;
-    const auto low_p = std::bit_cast<std::int32_t>(in_p ? range_p : max_range_m);
-    const auto low_s = std::bit_cast<std::int32_t>(in_s ? range_s : max_range_m);
+    const auto low_p = std::bit_cast<std::int32_t>(in_p ? range_p : bins_end_m);
+    const auto low_s = std::bit_cast<std::int32_t>(in_s ? range_s : bins_end_m);
     const auto high_p = std::bit_cast<std::int32_t>(in_p ? range_p : 0.0F);
     const auto high_s = std::bit_cast<std::int32_t>(in_s ? range_s : 0.0F);
     const std::int32_t low = low_p < low_s ? low_p : low_s;
@@ -50,8 +50,8 @@ void summarise(const SideView& view, SliceSides& sides) {
 
 }  // namespace
 
-SideView::SideView(const ProbeWeights& weight_, float tan_limit_, float max_range_m_, float line_m_)
-    : tan_limit(tan_limit_), max_range_m(max_range_m_), line_m(line_m_), secant(), weight(weight_) {
+SideView::SideView(const ProbeWeights& weight_, float tan_limit_, float bins_end_m_, float line_m_)
+    : tan_limit(tan_limit_), bins_end_m(bins_end_m_), line_m(line_m_), secant(), weight(weight_) {
   for (std::size_t i = 0; i < side_probes; ++i) {
     const float t = probe_at(tan_limit, static_cast<int>(i));
     secant[i] = std::sqrt(1 + t * t);

@@ -26,9 +26,11 @@ struct SliceSides {
 
 /// The elevations and the range for the comparison of sides, for one ping.
 struct SideView {
-  SideView(const ProbeWeights& weight, float tan_limit, float max_range_m, float line_m);
+  SideView(const ProbeWeights& weight, float tan_limit, float bins_end_m, float line_m);
 
-  float tan_limit, max_range_m, line_m;
+  float tan_limit;
+  float bins_end_m;  ///< range of the end of the last bin
+  float line_m;
   SideProfile secant;  ///< of the probes' elevations: range = secant / w
   const ProbeWeights& weight;
 };

@@ -193,8 +193,8 @@ void GpuEngine::image_by_grid(const EchoJob& job, const BinningOptions& options)
   statistics.seconds.visibility += watch.lap();
   ++statistics.gpu.passes;
   statistics.gpu.synchronisations += grid_.grid().views.size();  // each view is read when it is drawn
-  hand_over(bin_echoes(grid_.grid(), grid_.weights(), samples, settings.range, options, workers_,
-                       std::move(echo.image.intensity)),
+  hand_over(bin_samples(grid_.grid(), grid_.weights(), samples, settings.range, options, workers_,
+                        std::move(echo.image.intensity)),
             echo, statistics);
   statistics.seconds.binning += watch.lap();
 }

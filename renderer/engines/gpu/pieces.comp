@@ -127,7 +127,7 @@ int count_parts() {
       height, ranges.range_low, ranges.range_mid, ranges.range_high, 0.5 * (gradient.smear_low + gradient.smear_high),
       gradient.displaced_m, is_plain && gradient.gradient != 0.0, is_mapped(),
       FACETS == 1 && may_respond ? slopes_per_t * height : 0.0);
-  PatchLimits limits = PatchLimits(echo.displaced_m, ping.fan.max_range_m, 0.5 * echo.line_m, echo.mapped_m,
+  PatchLimits limits = PatchLimits(echo.displaced_m, ping.fan.sampled_range_m, 0.5 * echo.line_m, echo.mapped_m,
                                    echo.facet_slopes, echo.height, echo.height_in_one_place);
   return parts_of_segment(uneven, limits);
 }

@@ -169,5 +169,5 @@ void measure(Piece at_hand) {
       abs(ranges.by_azimuth_low) * slice.width_rad, abs(ranges.by_azimuth_high) * slice.width_rad,
       abs(piece.high_slope - piece.low_slope) * slice.width_rad, is_plain ? cosine.gradient : 0.0, is_plain);
   // A gradient moves the middle of the echo by a third of this.
-  gradient = gradient_of(span, 0.5 * echo.displaced_m, ping.fan.max_range_m);
+  gradient = gradient_of(span, 0.5 * echo.displaced_m, ping.fan.sampled_range_m);
 }

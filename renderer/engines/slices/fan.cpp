@@ -11,12 +11,12 @@ namespace {
 constexpr int buckets_per_beam = 16;
 }
 
-Fan::Fan(const Aperture& aperture, double max_range_m)
+Fan::Fan(const Aperture& aperture, double sampled_range_m)
     : edges_rad_(aperture.beam_edges_rad),
       tan_limit_(static_cast<float>(std::tan(aperture.elevation_limit_rad()))) {
   const double port = edges_rad_.front(), starboard = edges_rad_.back(), width = port - starboard;
   width_rad_ = static_cast<float>(width);
-  space_ = {.max_range_m = static_cast<float>(max_range_m),
+  space_ = {.sampled_range_m = static_cast<float>(sampled_range_m),
             .sin_limit = static_cast<float>(std::sin(aperture.elevation_limit_rad())),
             .cos_limit = static_cast<float>(std::cos(aperture.elevation_limit_rad())),
             .is_convex = width_rad_ < std::numbers::pi_v<float> ? 1 : 0,

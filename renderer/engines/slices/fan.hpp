@@ -21,11 +21,11 @@ class Fan {
  public:
   static constexpr float widest_slice = 0.0174533F;  ///< radians, a degree
 
-  Fan(const Aperture& aperture, double max_range_m);
+  Fan(const Aperture& aperture, double sampled_range_m);
 
   int beam_count() const { return static_cast<int>(edges_rad_.size()) - 1; }
   double edge_rad(int i) const { return edges_rad_[static_cast<std::size_t>(i)]; }
-  float max_range_m() const { return space_.max_range_m; }
+  float sampled_range_m() const { return space_.sampled_range_m; }
   float tan_limit() const { return tan_limit_; }
   const slices::FanSpace& space() const { return space_; }
   /// See slices::misses_fan().

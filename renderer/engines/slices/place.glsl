@@ -66,7 +66,7 @@ SHARED float most_of(float a, float b, float c) {
 
 // The space in which a sonar sees (Fan).
 struct FanSpace {
-  float max_range_m;
+  float sampled_range_m;
   float sin_limit, cos_limit;                      // of the largest elevation
   int is_convex;                                   // 1: narrower than half a turn
   float port_x, port_y, starboard_x, starboard_y;  // horizontal unit normals of its sides, outwards
@@ -84,7 +84,7 @@ SHARED bool misses_fan(FanSpace fan, Corner centre, float radius_m) {
   // A sphere beyond either side is outside a fan of up to half a turn; beyond both sides, outside a wider
   // one.
   float beside_m = fan.is_convex != 0 ? max(port_m, starboard_m) : min(port_m, starboard_m);
-  return distance_m - radius_m > fan.max_range_m ||
+  return distance_m - radius_m > fan.sampled_range_m ||
          abs(centre.z) * fan.cos_limit - horizontal_m * fan.sin_limit > reach_m || beside_m > reach_m;
 }
 

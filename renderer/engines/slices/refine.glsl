@@ -45,9 +45,9 @@ SHARED ProbeDisagreement compare_probe(ProbePair w, BorderLimits limits) {
 SHARED float moment_of(float w, float next_w, float secant, float next_secant, float furthest_m,
                        float probes_per_t, float pattern) {
   const float tiny = 1e-30F;                             // avoids 0 / 0 if nothing is seen
-  float here = next_secant * w, next = secant * next_w;  // proportional to the ranges there and here
-  float steps = here > next ? here - next : next - here;
-  float cosine = next / (next + steps * (probes_per_t * secant * secant) + tiny);
+  float next = next_secant * w, here = secant * next_w;  // proportional to the ranges there and here
+  float steps = next > here ? next - here : here - next;
+  float cosine = here / (here + steps * (probes_per_t * secant * secant) + tiny);
   return secant < furthest_m * w ? cosine * w * pattern : 0.0F;
 }
 
