@@ -9,12 +9,14 @@ bool lies_well_inside(float offset_rad, Slice slice) {
 // Height in t of the triangles of a thing that reach into the wedge of a slice.
 float height_within(Slice slice, uint key) {
   float azimuth = of_beam.middle_rad + slice.offset_rad, low = never, high = -never;
-  for (uint i = of_beam.first_thing; i < of_beam.first_thing + of_beam.things; ++i) {
-    Thing thing = things[i];
-    if (thing.key == key && thing.low_azimuth < azimuth + 0.5 * slice.width_rad &&
-        thing.high_azimuth > azimuth - 0.5 * slice.width_rad) {
-      low = min(low, thing.low_t);
-      high = max(high, thing.high_t);
+  for (uint i = 0u; i < of_beam.things; i += things_a_round) {
+    for (uint k = 0u; k < things_a_round; ++k) {
+      Thing thing = things[of_beam.first_thing + min(i + k, of_beam.things - 1u)];
+      if (thing.key == key && thing.low_azimuth < azimuth + 0.5 * slice.width_rad &&
+          thing.high_azimuth > azimuth - 0.5 * slice.width_rad) {
+        low = min(low, thing.low_t);
+        high = max(high, thing.high_t);
+      }
     }
   }
   return max(high - low, 0.0);

@@ -44,4 +44,6 @@ bool loops_are_cut() {
   }
   return n < 2u;
 }
+// Loops over all things of a beam take so many in a round: compilers unroll the inner loop.
+const uint things_a_round = 8u;
 #define report_cut_loops() atomicAdd(counts.overflows, loops_are_cut() ? 1u : 0u)

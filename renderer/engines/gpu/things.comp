@@ -77,16 +77,18 @@ void list_things() {
 bool is_joined(uint i, bool at_high) {
   Thing thing = things[beam.first_thing + i];
   float at = at_high ? thing.high_azimuth : thing.low_azimuth;
-  for (uint k = 1u; k < beam.things; ++k) {
-    uint j = i + k < beam.things ? i + k : i + k - beam.things;  // neighbours of surfaces come first
-    Thing other = things[beam.first_thing + j];
-    bool goes_on = at_high ? other.high_azimuth > at || (other.high_azimuth == at && j < i)
-                           : other.low_azimuth < at || (other.low_azimuth == at && j < i);
-    if (other.key == thing.key && goes_on && other.low_azimuth <= at && other.high_azimuth >= at) {
-      return true;
+  bool joined = false;
+  for (uint first = 1u; first < beam.things && !joined; first += things_a_round) {
+    for (uint n = 0u; n < things_a_round; ++n) {
+      uint k = min(first + n, beam.things - 1u);
+      uint j = i + k < beam.things ? i + k : i + k - beam.things;  // neighbours of surfaces come first
+      Thing other = things[beam.first_thing + j];
+      bool goes_on = at_high ? other.high_azimuth > at || (other.high_azimuth == at && j < i)
+                             : other.low_azimuth < at || (other.low_azimuth == at && j < i);
+      joined = joined || (other.key == thing.key && goes_on && other.low_azimuth <= at && other.high_azimuth >= at);
     }
   }
-  return false;
+  return joined;
 }
 
 void list_ends() {
