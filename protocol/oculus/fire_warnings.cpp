@@ -40,7 +40,10 @@ bool FireWarnings::check(const Fire& fire, std::vector<Notice>& notices) {
     warnings_.warn(field, std::move(text), notices);
     changed = true;
   };
-  if (fire.master_mode != 1 && fire.master_mode != 2) {
+  if (fire.master_mode != 1 && !model_.has_high_frequency()) {
+    change("masterMode",
+           fmt::format("the client's masterMode {} is not 1: this head has one frequency", fire.master_mode));
+  } else if (fire.master_mode != 1 && fire.master_mode != 2) {
     change("masterMode",
            fmt::format("the client's masterMode {} is unknown: the head uses 2, the high frequency",
                        fire.master_mode));

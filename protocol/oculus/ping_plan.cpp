@@ -117,7 +117,6 @@ void report_readings(const SensorReadings& readings, const PlanConfig& config, P
 PingJob job_of(const PingPlan& plan, const PlanConfig& config) {
   const Fire& fire = plan.asked.fire;
   const PingResult& ping = plan.result;
-  const Mode& mode = config.model.mode(fire.master_mode);
   const double true_speed_mps =
       config.water_sound_speed_mps > 0.0 ? config.water_sound_speed_mps : ping.sound_speed_mps;
   PingJob job;
@@ -126,7 +125,7 @@ PingJob job_of(const PingPlan& plan, const PlanConfig& config) {
   job.native_bins = ping.ranges;
   job.native_bin_m = ping.range_resolution_m * true_speed_mps / ping.sound_speed_mps;
   job.sixteen_bit = ping.data_size != DataSize::bits_8;
-  job.mode = &mode == &config.model.modes[0] ? 0 : 1;
+  job.mode = static_cast<int>(config.model.mode_index(fire.master_mode));
   job.beams = ping.beams;
   job.amplitude_exponent = gamma_exponent(fire.gamma);
   job.sound_speed_mps = true_speed_mps;

@@ -48,7 +48,7 @@ DeviceConfig config_of(unsigned flags) {
   DeviceConfig config;
   config.plays_back = (flags & 0x01U) != 0;
   config.simulated_time = (flags & 0x02U) != 0;
-  config.plan.model = (flags & 0x04U) != 0 ? m1200d : m750d;
+  config.plan.model = (flags & 0x20U) != 0 ? m370s : (flags & 0x04U) != 0 ? m1200d : m750d;
   config.plan.rescales_high_frequency_gain = (flags & 0x08U) != 0;
   config.plan.reports_sound_speed_used = (flags & 0x10U) != 0;
   config.plan.most_ranges = 3;

@@ -196,13 +196,19 @@ INSTANTIATE_TEST_SUITE_P(Second, OculusForms,
 
 // 8: ranges of the models. A greater requested range is echoed, and the image reaches as far as the head can.
 TEST(OculusAcceptance, ModelsHaveRangesAndAperturesOfTheirOwn) {
+  EXPECT_EQ(m3000d.part_number, 2203);
+  EXPECT_EQ(m370s.part_number, 1041);
+  EXPECT_EQ(c550d.part_number, 4713);
   struct Case {
     Model model;
     int mode;
     double range_m, half_deg, frequency_hz;
   };
   for (const Case& it : {Case{m750d, 1, 120.0, 65.0, 750e3}, Case{m750d, 2, 40.0, 35.0, 1.2e6},
-                         Case{m1200d, 1, 40.0, 65.0, 1.2e6}, Case{m1200d, 2, 10.0, 30.0, 2098880.597}}) {
+                         Case{m1200d, 1, 40.0, 65.0, 1.2e6}, Case{m1200d, 2, 10.0, 30.0, 2098880.597},
+                         Case{m3000d, 1, 30.0, 65.0, 1.2e6}, Case{m3000d, 2, 5.0, 20.0, 3e6},
+                         Case{m370s, 1, 200.0, 65.0, 375e3}, Case{m370s, 2, 200.0, 65.0, 375e3},
+                         Case{c550d, 1, 100.0, 65.0, 550e3}, Case{c550d, 2, 30.0, 35.0, 820e3}}) {
     DeviceConfig config;
     config.plan.model = it.model;
     Line line(config);

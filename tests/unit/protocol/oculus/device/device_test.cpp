@@ -27,7 +27,9 @@ const Peer second_client{Device::stream_channel, {0xC0A80206, 40001}, 0};
 /// A head with a record of everything that it sent.
 class Bench : public DeviceBench {
  public:
-  Bench() : DeviceBench(device, [](const PingJob& job) { return test_image(job, job.bins(), 256); }) {
+  explicit Bench(const DeviceConfig& config = {})
+      : DeviceBench(device, [](const PingJob& job) { return test_image(job, job.bins(), 256); }),
+        device(config, TimePoint{}) {
     step(TimePassed{});
   }
 
@@ -39,7 +41,7 @@ class Bench : public DeviceBench {
     }));
   }
 
-  Device device{{}, TimePoint{}};
+  Device device;
   std::vector<Bytes> stream;
   std::vector<Bytes> statuses;
 
@@ -112,6 +114,19 @@ TEST(OculusDevice, WarnsOnceOfEachFieldOfAFireThatItChanges) {
                        "the client's speedOfSound 150 is out of range: the head uses 1400 to 1600",
                        "the client's masterMode 0 is unknown: the head uses 2, the high frequency",
                        "the client's pingRate 6 is unknown: the head uses 0, 10 pings per second"}));
+}
+
+TEST(OculusDevice, AHeadWithOneFrequencyWarnsOfAFireForAnother) {
+  DeviceConfig config;
+  config.plan.model = m370s;
+  Bench bench(config);
+  bench.connect();
+  SimpleFire fire = fire_at(0);
+  fire.fire.master_mode = 2;
+  bench.receive(encode(fire));
+  ASSERT_FALSE(bench.notices.empty());
+  EXPECT_EQ(bench.notices.back().text, "the client's masterMode 2 is not 1: this head has one frequency");
+  EXPECT_EQ(count_of(bench.device, "out_of_range"), 1U);
 }
 
 TEST(OculusDevice, LimitsOfARangeAreThoseOfTheFrequencyInMetresOrPercent) {
