@@ -20,9 +20,13 @@ _HEADER_BYTES, _STATUS_BYTES = 16, 142
 _MOST_BYTES = 1 << 23  # of one message
 _IN_METRES, _SIXTEEN_BIT, _SIMPLE, _BEAMS_512 = 0x01, 0x02, 0x08, 0x40  # 3.2
 _RATES = ((2.0, 4), (5.0, 3), (10.0, 0), (15.0, 1), (40.0, 2))  # Hz and pingRate (3.3)
-_M1200D = (1042, 2420, 1435, 2086, 1219, 1228)  # part numbers (1)
-# Horizontal and vertical beam of the low and the high frequency, in degrees (8).
-_BEAMS_DEG = {True: ((0.6, 20.0), (0.4, 12.0)), False: ((1.0, 20.0), (0.6, 12.0))}
+# By part numbers (1): horizontal and vertical beam of the low and the high frequency, in degrees (8).
+_M750D_BEAMS_DEG = ((1.0, 20.0), (0.6, 12.0))  # also of other part numbers
+_BEAMS_DEG = {
+    (1042, 2420, 1435, 2086, 1219, 1228, 2203, 2599, 2659, 2658): ((0.6, 20.0), (0.4, 12.0)),  # M1200d, M3000d
+    (1041, 2418, 1433, 2294, 1217, 1229): ((2.0, 20.0), (2.0, 20.0)),  # M370s
+    (4713,): ((1.4, 20.0), (0.9, 20.0)),  # C550d
+}
 # Offsets of frequency, sound speed, data size, ranges, image offset and bearings by version (4.1). The format of the
 # start time and the place of the data size behind it differ.
 _LAYOUTS = {1: (61, 85, 97, 122), 2: (97, 145, 161, 202)}
@@ -53,7 +57,8 @@ def _ping(message: bytes) -> Ping:
             image_at + image_bytes > len(message) or bearings_at + 2 * beams > image_at:
         raise ValueError(f"an image of {rows} rows of {beams} beams of {width} bytes has {image_bytes} bytes")
     image = np.frombuffer(message, np.uint8, image_bytes, image_at).reshape(rows, -1)[:, gain_bytes:]
-    horizontal_deg, vertical_deg = _BEAMS_DEG[part in _M1200D][mode != 1]
+    beams_deg = next((of_parts for parts, of_parts in _BEAMS_DEG.items() if part in parts), _M750D_BEAMS_DEG)
+    horizontal_deg, vertical_deg = beams_deg[mode != 1]
     return Ping(
         samples=np.ascontiguousarray(image).view("<u2" if width == 2 else np.uint8),
         ranges_m=(np.arange(rows) + 0.5) * row_m,

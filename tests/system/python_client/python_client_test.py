@@ -14,6 +14,7 @@ import glob
 import math
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import time
@@ -335,6 +336,14 @@ class OculusBytes(unittest.TestCase):
                 self.assertEqual(ping.samples.tobytes(), rows[:, 4 * (version == 1):].tobytes(), "version 1 has gains")
                 self.assertEqual(ping.transmit_us, start_us)
                 self.assertRaises(ValueError, oculus._ping, message["bytes"][:-1])
+
+    def test_beams_are_those_of_the_model(self):
+        message = bytearray(messages("oculus")["ping_result_v1"]["bytes"])
+        for part, mode, width_deg in ((1032, 1, 1.0), (1042, 2, 0.4), (2203, 2, 0.4), (2658, 1, 0.6), (1041, 1, 2.0),
+                                      (1041, 2, 2.0), (4713, 1, 1.4), (4713, 2, 0.9)):
+            message[14:16] = struct.pack("<H", part)
+            message[16] = mode
+            self.assertAlmostEqual(math.degrees(oculus._ping(bytes(message)).beamwidth_rad), width_deg)
 
 
 class OculusClient(OwnMachine):
