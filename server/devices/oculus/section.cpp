@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -18,10 +21,13 @@ namespace {
 constexpr double minute_ms = 60'000.0;
 
 void read_identity(YamlSection& section, oculus::DeviceConfig& device) {
-  enum class Name : std::uint8_t { m750d, m1200d } name = Name::m750d;
-  section.choice("model", name, {{"m750d", Name::m750d}, {"m1200d", Name::m1200d}},
-                 "model of the device; it sets frequencies, apertures and ranges");
-  device.plan.model = name == Name::m750d ? oculus::m750d : oculus::m1200d;
+  std::vector<std::pair<std::string_view, std::size_t>> names;
+  for (const oculus::Model& model : oculus::models) {
+    names.emplace_back(model.name, names.size());
+  }
+  std::size_t chosen = 0;
+  section.choice("model", chosen, names, "model of the device; it sets frequencies, apertures and ranges");
+  device.plan.model = oculus::models[chosen];
   section.integer("device_id", device.id, 1, 65535,
                   "unique ID of the head; clients drop messages without the ID of the status packets");
 }
@@ -141,6 +147,10 @@ void read_oculus_acoustics(YamlSection& section, HeadConfig& head, OculusConfig&
   section.section("high_frequency", "values that differ at the high frequency", [&](YamlSection& inner) {
     read_high_frequency(inner, model.modes[1], config.modes[1], high_absorption_db_per_km);
   });
+  if (section.has("high_frequency") && !model.has_high_frequency()) {
+    section.report("high_frequency",
+                   fmt::format("model {} has one frequency (expected no value)", model.name));
+  }
 }
 
 render::Water water_of(const WaterConfig& water) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include <CLI/Error.hpp>
 #include <nlohmann/json.hpp>
 
 #include "protocol/oculus/ping_plan.hpp"
@@ -25,6 +26,9 @@ oculus::SimpleFire fire_of(const SurveyOptions& options, const oculus::Model& mo
   taken.refuse("--sector", !options.sector_deg.empty());
   oculus::SimpleFire fire;
   const bool high = options.frequency == "high";
+  if (high && !model.has_high_frequency()) {
+    throw CLI::ValidationError("--frequency", "this Oculus has one frequency");
+  }
   const oculus::Mode& mode = model.modes[high ? 1 : 0];
   fire.fire.master_mode = high ? 2 : 1;
   fire.fire.ping_rate = 2;

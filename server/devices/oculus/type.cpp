@@ -28,7 +28,13 @@ class OculusType final : public DeviceType {
  public:
   std::string_view name() const override { return "oculus"; }
   std::string_view title() const override { return "Oculus"; }
-  std::vector<std::string_view> models() const override { return {"m750d", "m1200d"}; }
+  std::vector<std::string_view> models() const override {
+    std::vector<std::string_view> names;
+    for (const oculus::Model& model : oculus::models) {
+      names.push_back(model.name);
+    }
+    return names;
+  }
   bool scanning() const override { return false; }
   bool has_sensors() const override { return true; }
 
@@ -161,24 +167,20 @@ render::SonarSettings oculus_acoustics() {
   return acoustics;
 }
 
-// Data sheets: M750d 1.0 and 0.6 degrees, 4 and 2.5 mm; M1200d 0.6 and 0.4 degrees, 2.5 mm.
 std::array<OculusModeAcoustics, 2> oculus_modes(const oculus::Model& model) {
-  const bool m1200d = model.part_number == oculus::m1200d.part_number;
   const render::Water water;
   std::array<OculusModeAcoustics, 2> modes;
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const oculus::Mode& of_model = model.modes[i];
     modes[i].vertical_beamwidth_rad = of_model.vertical_deg * degree;
+    modes[i].receive_beamwidth_rad = of_model.resolution_deg * degree;
+    modes[i].range_cell_m = of_model.range_cell_m;
     modes[i].absorption_db_per_m =
         render::francois_garrison_absorption_db_per_m(of_model.frequency_hz, water);
     modes[i].wavelength_m = render::sound_speed_mps(water) / of_model.frequency_hz;
     modes[i].noise_db = render::thermal_noise_db(of_model.frequency_hz) -
                         render::thermal_noise_db(model.modes[0].frequency_hz);
   }
-  modes[0].receive_beamwidth_rad = (m1200d ? 0.6 : 1.0) * degree;
-  modes[1].receive_beamwidth_rad = (m1200d ? 0.4 : 0.6) * degree;
-  modes[0].range_cell_m = m1200d ? 2.5e-3 : 4.0e-3;
-  modes[1].range_cell_m = 2.5e-3;
   return modes;
 }
 

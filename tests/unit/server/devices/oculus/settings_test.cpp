@@ -79,6 +79,33 @@ TEST(OculusSettings, FrequenciesHaveBeamsWaterAndNoiseOfTheirOwn) {
               1e-9);
 }
 
+// docs/protocols/oculus.md 8.
+TEST(OculusSettings, ModelsHaveBeamsOfTheirOwn) {
+  struct Case {
+    oculus::Model model;
+    int mode;
+    double resolution_deg, vertical_deg, half_deg, frequency_hz;
+  };
+  for (const Case& it :
+       {Case{oculus::m1200d, 1, 0.6, 20.0, 65.0, 1.2e6}, Case{oculus::m3000d, 1, 0.6, 20.0, 65.0, 1.2e6},
+        Case{oculus::m3000d, 2, 0.4, 12.0, 20.0, 3e6}, Case{oculus::m370s, 1, 2.0, 20.0, 65.0, 375e3},
+        Case{oculus::m370s, 2, 2.0, 20.0, 65.0, 375e3}, Case{oculus::c550d, 1, 1.4, 20.0, 65.0, 550e3},
+        Case{oculus::c550d, 2, 0.9, 20.0, 35.0, 820e3}}) {
+    SCOPED_TRACE(it.model.name);
+    HeadConfig head = oculus_type().make_default();
+    auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
+    config->device.plan.model = it.model;
+    config->modes = oculus_modes(it.model);
+    head.device = config;
+    const render::SonarSettings settings = settings_of(fire_with(it.mode, 256), head);
+    EXPECT_NEAR(settings.aperture.receive_beamwidth_rad, it.resolution_deg * degree, 1e-12);
+    EXPECT_NEAR(settings.aperture.vertical_beamwidth_rad, it.vertical_deg * degree, 1e-12);
+    EXPECT_NEAR(std::sin(settings.aperture.beam_edges_rad.front()),
+                std::sin(it.half_deg * degree) * 256.0 / 255.0, 1e-9);
+    EXPECT_NEAR(1482.0 / settings.physical.multipath.wavelength_m, it.frequency_hz, 0.02 * it.frequency_hz);
+  }
+}
+
 TEST(OculusSettings, GammaAndGainAreTheClients) {
   oculus::SimpleFire fire = fire_with(1, 256);
   fire.fire.gamma = 127;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <CLI/Error.hpp>
 
+#include "server/devices/oculus/config.hpp"
 #include "server/devices/oculus/type.hpp"
 
 namespace sonard::server {
@@ -51,6 +52,20 @@ TEST(OculusSurvey, PingsAreThoseOfAClient) {
   EXPECT_EQ(pings->bearings_rad().size(), 512U);
   EXPECT_NEAR(pings->bearings_rad().front(), -65.0 * std::numbers::pi / 180, 1e-12);
   EXPECT_TRUE(survey(with(&SurveyOptions::bits, 16))->job(0).sixteen_bit);
+}
+
+TEST(OculusSurvey, AHeadWithOneFrequencyRefusesTheOther) {
+  HeadConfig head = oculus_type().make_default();
+  auto config = std::make_shared<OculusConfig>(device_settings<OculusConfig>(head));
+  config->device.plan.model = oculus::m370s;
+  head.device = config;
+  EXPECT_EQ(oculus_type().survey(head, {})->record(0, {}).settings.frequency_hz, 375e3);
+  try {
+    oculus_type().survey(head, with(&SurveyOptions::frequency, "high"));
+    ADD_FAILURE() << "not refused";
+  } catch (const CLI::ValidationError& error) {
+    EXPECT_STREQ(error.what(), "--frequency: this Oculus has one frequency");
+  }
 }
 
 TEST(OculusSurvey, RefusesWhatItDoesNotKnowOrCannotDo) {
