@@ -24,10 +24,9 @@ import yaml
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(REPOSITORY / "tests" / "support"))
-from fresh_system import make_fresh_system  # noqa: E402
+from container_image import BASE, build_image, set_up_engines  # noqa: E402
 
 KEEP = None  # folder of a storage that stays
-BASE = "docker.io/library/debian:12-slim"  # as the Dockerfile says
 MOST_MB = 300  # beside the base
 PATIENCE_S = 180
 COMPOSE = REPOSITORY / "docker" / "compose.yaml"
@@ -43,27 +42,6 @@ def run(*command, expected=0, timeout=PATIENCE_S, cwd=None):
 
 def podman(*arguments, **others):
     return run("podman", *map(str, arguments), **others)
-
-
-def set_up_engines(folder):
-    """Storage and networks below `folder`, and settings that need neither systemd nor a kernel with overlays."""
-    (folder / "storage.conf").write_text(f'[storage]\ndriver = "vfs"\ngraphroot = "{folder}/storage"\nrunroot = "{folder}/run"\n')
-    (folder / "containers.conf").write_text(
-        '[containers]\ndefault_ulimits = ["nofile=1024:1024", "nproc=20000:20000"]\nlog_driver = "k8s-file"\n'
-        f'[engine]\nruntime = "runc"\ncgroup_manager = "cgroupfs"\nevents_logger = "file"\ntmp_dir = "{folder}/tmp"\n'
-        f'[network]\nnetwork_backend = "netavark"\nnetwork_config_dir = "{folder}/networks"\n')
-    os.environ.update(CONTAINERS_CONF=str(folder / "containers.conf"), CONTAINERS_STORAGE_CONF=str(folder / "storage.conf"))
-
-
-def build_image(folder):
-    base = folder / "base"
-    make_fresh_system(base)
-    with subprocess.Popen(["tar", "-C", base, "-c", "."], stdout=subprocess.PIPE) as tree:
-        subprocess.run(["podman", "import", "-", BASE], stdin=tree.stdout, check=True, capture_output=True)
-    shutil.rmtree(base)
-    commit = run("git", "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*", cwd=REPOSITORY).strip()
-    subprocess.run(["buildah", "bud", "--pull-never", "--isolation=chroot", "--format", "docker", "--build-arg", f"COMMIT={commit}",
-                    "--tag", "sonard", "--file", REPOSITORY / "docker" / "Dockerfile", REPOSITORY], check=True)
 
 
 class Containers(unittest.TestCase):
