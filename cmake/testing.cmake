@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Registers all tests of this project. A label (unit, gl, system, deep, soak, logs, simulators, cluster) is a part of
+# Registers all tests of this project. A label (unit, gl, system, deep, soak, logs, simulators, cluster, release) is a part of
 # ./test. The target LABEL_tests builds all programs that the tests of this label start.
 
-foreach(label unit gl system deep soak logs simulators cluster)
+foreach(label unit gl system deep soak logs simulators cluster release)
   add_custom_target(${label}_tests)
 endforeach()
 
