@@ -431,8 +431,10 @@ const EchoImage& SonarRenderer::render_echo(const PingRequest& request, int head
   }
   cached.world_revision = 0;  // until the image is complete
   if (request.settings.directions.any()) {
+    cached.image = {};
     impl_->render_directions(request, head, motion.T_world_sonar, cached.directions);
   } else {
+    cached.directions = {};
     impl_->render_echo(request, head, motion, cached.image);
   }
   cached.sees_surface = impl_->statistics.sees_surface;

@@ -231,6 +231,18 @@ TEST_P(Directions, RepeatsAreEqualToTheBit) {
   EXPECT_EQ(first.intensity, second.intensity);
 }
 
+TEST_P(Directions, APingHasTheImageOrTheDirectionsThatItAsksFor) {
+  render::SonarRenderer renderer(
+      make_world({make_body("wall", make_quad({6, -40, -40}, {0, 80, 0}, {0, 0, 80}))}), options());
+  const render::PingRequest directions = request_of(wide_grid());
+  render::PingRequest fan = directions;
+  fan.settings.directions = {};
+  EXPECT_FALSE(renderer.render_echo(fan).intensity.empty());
+  EXPECT_TRUE(renderer.render_echo(directions).intensity.empty());
+  EXPECT_FALSE(renderer.render_directions(directions).range_m.empty());
+  EXPECT_TRUE(renderer.render_directions(fan).range_m.empty());
+}
+
 TEST_P(Directions, UnusableGridsAreRefused) {
   const render::World world = make_world({make_body("wall", make_quad({6, -1, -1}, {0, 2, 0}, {0, 0, 2}))});
   render::SonarRenderer renderer(world, options());
