@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "server/devices/device_type.hpp"
+
 namespace sonard::server {
 
 HeadRendering::HeadRendering(const HeadConfig& config, int head, RenderService& renderer, const Clock& clock,
@@ -15,7 +17,7 @@ HeadRendering::HeadRendering(const HeadConfig& config, int head, RenderService& 
       renderer_(renderer),
       clock_(clock),
       options_(options),
-      load_(config.acoustics, config.adaptive_quality) {}
+      load_(usual_settings(config), config.adaptive_quality) {}
 
 void HeadRendering::submit(PosedPing ping, std::chrono::nanoseconds period, RenderService::Done done) {
   submitted_ = true;

@@ -47,13 +47,16 @@ std::string name_of(Preset preset) {
   return preset == Preset::fast ? "fast" : preset == Preset::normal ? "default" : "reference";
 }
 
-std::string advice_for(const render::SonarSettings& configured) {
+std::string advice_for(const render::SonarSettings& usual) {
+  if (usual.directions.any()) {
+    return "fewer directions (device.width, device.height), or a GPU";
+  }
   std::string advice = "fewer range bins (a shorter range or more compression), ";
-  if (configured.aperture.azimuth == render::Aperture::Azimuth::array && configured.aperture.fine_beams > 1) {
+  if (usual.aperture.azimuth == render::Aperture::Azimuth::array && usual.aperture.fine_beams > 1) {
     advice += "acoustics.fine_beams: 1, ";
   }
-  if (configured.model == render::Model::physical &&
-      configured.physical.multipath.level != render::MultipathSettings::Level::off) {
+  if (usual.model == render::Model::physical &&
+      usual.physical.multipath.level != render::MultipathSettings::Level::off) {
     advice += "acoustics.physical.multipath.level: off, ";
   }
   return advice + "or a GPU";
@@ -61,11 +64,8 @@ std::string advice_for(const render::SonarSettings& configured) {
 
 }  // namespace
 
-RenderLoad::RenderLoad(const render::SonarSettings& configured, bool adaptive)
-    : asked_(configured.sampling.preset),
-      preset_(asked_),
-      adaptive_(adaptive),
-      advice_(advice_for(configured)) {}
+RenderLoad::RenderLoad(const render::SonarSettings& usual, bool adaptive)
+    : asked_(usual.sampling.preset), preset_(asked_), adaptive_(adaptive), advice_(advice_for(usual)) {}
 
 void RenderLoad::submitted(TimePoint now, std::chrono::nanoseconds period) {
   submitted_ = now;

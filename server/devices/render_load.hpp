@@ -23,9 +23,9 @@ namespace sonard::server {
 /// thread.
 class RenderLoad {
  public:
-  /// @param configured of the head: its preset is the upper limit; Preset::grid has no faster one. The
-  /// warning suggests settings that can be turned off.
-  RenderLoad(const render::SonarSettings& configured, bool adaptive);
+  /// @param usual settings of the head's usual ping: their preset is the upper limit; Preset::grid has no
+  /// faster one. The warning suggests settings that such a ping has and that can be turned off.
+  RenderLoad(const render::SonarSettings& usual, bool adaptive);
 
   /// The preset of the next ping.
   render::Sampling::Preset preset() const { return preset_; }

@@ -71,6 +71,18 @@ TEST(RenderLoad, AdvisesOnlyWhatIsNotSetAlready) {
   EXPECT_THAT(advice(), ::testing::EndsWith("more compression), or a GPU"));
 }
 
+TEST(RenderLoad, AdvisesFewerDirectionsWhereAHeadHasNeitherBinsNorMirrors) {
+  render::SonarSettings settings = with(Preset::fast);
+  settings.model = render::Model::physical;
+  settings.directions.columns = settings.directions.rows = 2;
+  RenderLoad load(settings, false);
+  Client client(load);
+  const auto lines = client.ask(std::chrono::seconds(3), milliseconds(40), milliseconds_of);
+  EXPECT_THAT(
+      lines,
+      ElementsAre(::testing::EndsWith("; try fewer directions (device.width, device.height), or a GPU")));
+}
+
 TEST(RenderLoad, SaysOnceWhatToDoWhereAClientAsksForTooMuch) {
   RenderLoad load(with(Preset::normal), false);
   Client client(load);
