@@ -295,7 +295,8 @@ std::string missing_subcommand(const CLI::App& app, const std::filesystem::path&
   }
   const std::string word = printable(first.string());
   const std::string suffix = first.extension().string();
-  const bool is_log = suffix == ".glf" || suffix == ".dat" || suffix == ".mcap" || suffix == ".pcapng";
+  const bool is_log =
+      suffix == ".glf" || suffix == ".dat" || suffix == ".mcap" || suffix == ".pcapng" || suffix == ".sonar";
   return suffix == ".yaml" || suffix == ".yml"
              ? fmt::format("'{0}' is not a subcommand; 'sonard run {0}' runs a configuration {1}", word,
                            expected)
@@ -384,7 +385,8 @@ int main_program(int argc, char** argv) {
 
   add_log_format(*replay_command, arguments.log_format);
 
-  CLI::App* info_command = app.add_subcommand("info", "Show the contents of a .glf, .dat, .mcap or .pcapng");
+  CLI::App* info_command =
+      app.add_subcommand("info", "Show the contents of a .glf, .dat, .mcap, .pcapng or .sonar");
   info_command->add_option("LOG", arguments.log, "The log (docs/logs.md)")->required();
   info_command->add_flag("--json", arguments.info.json, "Print JSON");
   CLI::Option* pictures = info_command->add_option("--png", arguments.info.pictures,

@@ -53,8 +53,8 @@ class ConnectedDevice {
   virtual std::optional<std::vector<Ipv4>> own_addresses() const { return std::nullopt; }
 };
 
-/// What the server knows of a type of device. A type with .glf logs is a GlfDevice, too; a type whose pings
-/// are recognised in captures is a CaptureReader.
+/// What the server knows of a type of device. A type with .glf logs is a GlfDevice, too; one with .sonar logs
+/// is a PacketLogDevice; a type whose pings are recognised in captures is a CaptureReader.
 class DeviceType : public HeadType {
  public:
   /// True if a ping is one beam, at the bearing of the job; false if it is a fan.

@@ -25,14 +25,15 @@ std::int32_t utc_offset_s(const LogSummary& log, const InfoOptions& options) {
 
 void info(const std::filesystem::path& path, const InfoOptions& options) {
   const LogFile file(path);
-  const LogSummary log = summarise(file, &ping_in);
+  const LogSummary log = summarise(file, &ping_in, &open_packet_log);
   const std::int32_t offset_s = utc_offset_s(log, options);
   fmt::print("{}", options.json ? info_json(log, offset_s) : info_text(log, offset_s));
   for (const std::string& problem : log.problems) {
     fmt::print(stderr, "warning: {}: {}\n", printable(path.string()), printable(problem));
   }
   if (options.pictures) {
-    const std::uint64_t written = write_thumbnails(*open_log(file), file, *options.pictures, options.every);
+    const std::uint64_t written =
+        write_thumbnails(*open_log(file, &open_packet_log), file, *options.pictures, options.every);
     fmt::print(stderr, "{} pictures in {}\n", written, options.pictures->string());
   }
 }

@@ -27,6 +27,7 @@ constexpr std::array starts{
     Start{{0xDE, 0xDE, 0, 0}, 2, LogKind::dat},
     Start{{0x89, 'M', 'C', 'A'}, 4, LogKind::mcap},
     Start{{0x0A, 0x0D, 0x0D, 0x0A}, 4, LogKind::pcapng},
+    Start{{'R', 'I', 'P', 0}, 3, LogKind::sonar},
 };
 
 /// The extension before the suffix with which a recorder keeps a damaged log: ".damaged", ".damaged-2".
@@ -46,9 +47,11 @@ std::string_view name_of(LogKind kind) {
     case LogKind::mcap:
       return ".mcap";
     case LogKind::pcapng:
+      return ".pcapng";
+    case LogKind::sonar:
       break;
   }
-  return ".pcapng";
+  return ".sonar";
 }
 
 LogFile::LogFile(std::filesystem::path path) : path_(std::move(path)), file_(path_) {
@@ -79,15 +82,18 @@ LogKind LogFile::find_kind() const {
   if (file_.bytes().empty() && extension == name_of(LogKind::dat)) {
     return LogKind::dat;  // nothing has been written yet
   }
-  // The first bytes may be damaged. Readers of .mcap and .pcapng search for the first readable record.
+  // The first bytes may be damaged. Readers of .mcap, .pcapng and .sonar search for the first readable
+  // record.
   for (const Start& start : starts) {
-    const bool searches = start.kind == LogKind::mcap || start.kind == LogKind::pcapng;
+    const bool searches =
+        start.kind == LogKind::mcap || start.kind == LogKind::pcapng || start.kind == LogKind::sonar;
     if (extension == name_of(start.kind) && file_.bytes().size() >= start.count &&
         (searches || differing(start) == 1)) {
       return start.kind;
     }
   }
-  throw error(file_.bytes().empty() ? "is empty" : "is not a log (expected a .glf, .dat, .mcap or .pcapng)");
+  throw error(file_.bytes().empty() ? "is empty"
+                                    : "is not a log (expected a .glf, .dat, .mcap, .pcapng or .sonar)");
 }
 
 }  // namespace sonard::server

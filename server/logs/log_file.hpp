@@ -17,9 +17,10 @@ enum class LogKind {
   dat,     ///< the records of a .glf without its archive
   mcap,    ///< sonard's own
   pcapng,  ///< packets
+  sonar,   ///< images of one head, packet after packet (protocol/sonar3d15/README.md 9)
 };
 
-/// ".glf", ".dat", ".mcap", ".pcapng".
+/// ".glf", ".dat", ".mcap", ".pcapng", ".sonar".
 std::string_view name_of(LogKind kind);
 
 /// Read-only. The bytes stay in place while the object lives (MappedFile).

@@ -30,17 +30,19 @@ void LogReader::sort_by_time() {
   }
 }
 
-std::unique_ptr<LogReader> open_log(const LogFile& file) {
+std::unique_ptr<LogReader> open_log(const LogFile& file, const PacketLogOpener& open_packet_log) {
   switch (file.kind()) {
     case LogKind::glf:
     case LogKind::dat:
       return std::make_unique<GlfLogReader>(file);
     case LogKind::mcap:
       return std::make_unique<McapLogReader>(file);
+    case LogKind::sonar:
+      return open_packet_log(file);
     case LogKind::pcapng:
       break;
   }
-  throw file.error("contains packets, but no images (expected a .glf, .dat or .mcap)");
+  throw file.error("contains packets, but no images (expected a .glf, .dat, .mcap or .sonar)");
 }
 
 }  // namespace sonard::server

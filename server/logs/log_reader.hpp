@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "protocol/common/ping_record.hpp"
@@ -58,6 +60,8 @@ class LogReader {
   virtual std::vector<std::string> problems() const = 0;
   /// True if the log was closed properly.
   virtual bool closed() const = 0;
+  /// Kind and number of the records that are not pings, if this reader counts them.
+  virtual std::vector<std::pair<std::string, std::uint64_t>> other_records() const { return {}; }
 
  protected:
   LoggedHead& head(const std::string& name, std::uint16_t device_id, bool scanning);
@@ -68,8 +72,24 @@ class LogReader {
   std::vector<LoggedHead> heads_;
 };
 
+/// A type of device (HeadType) of this class has logs of its own kind, which hold the datagrams of one head.
+class PacketLogDevice {
+ public:
+  PacketLogDevice() = default;
+  virtual ~PacketLogDevice() = default;
+  PacketLogDevice(const PacketLogDevice&) = delete;
+  PacketLogDevice& operator=(const PacketLogDevice&) = delete;
+
+  virtual LogKind packet_log() const = 0;
+  /// @throws Error as open_log()
+  virtual std::unique_ptr<LogReader> open_packet_log(const LogFile& file) const = 0;
+};
+
+/// Opens a log of a PacketLogDevice.
+using PacketLogOpener = std::function<std::unique_ptr<LogReader>(const LogFile& file)>;
+
 /// @throws Error if `file` is broken at its start or its kind holds no images (.pcapng). Undecodable pings
 /// are left out. `file` must outlive the recording.
-std::unique_ptr<LogReader> open_log(const LogFile& file);
+std::unique_ptr<LogReader> open_log(const LogFile& file, const PacketLogOpener& open_packet_log);
 
 }  // namespace sonard::server

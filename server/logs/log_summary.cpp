@@ -23,6 +23,9 @@ void add_pings(LogSummary& log, const LogReader& reader) {
   }
   log.problems = reader.problems();
   log.closed = reader.closed();
+  for (const auto& [what, records] : reader.other_records()) {
+    count(log, what, records);
+  }
 }
 
 void summarise_glf(LogSummary& log, const LogFile& file) {
@@ -86,7 +89,7 @@ PingRate ping_rate(const std::vector<std::int64_t>& times_ns) {
   return rate;
 }
 
-LogSummary summarise(const LogFile& file, const PingFinder& ping_in) {
+LogSummary summarise(const LogFile& file, const PingFinder& ping_in, const PacketLogOpener& open_packet_log) {
   LogSummary log;
   log.path = file.path().string();
   log.kind = file.kind();
@@ -101,6 +104,10 @@ LogSummary summarise(const LogFile& file, const PingFinder& ping_in) {
       break;
     case LogKind::pcapng:
       summarise_capture(log, file, ping_in);
+      break;
+    case LogKind::sonar:
+      add_pings(log, *open_packet_log(file));
+      log.closed.reset();
       break;
   }
   for (HeadSummary& head : log.heads) {

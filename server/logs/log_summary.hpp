@@ -78,7 +78,7 @@ using PingFinder = std::function<std::optional<CapturedPing>(std::span<const std
 
 /// @param ping_in finds the pings of a .pcapng
 /// @throws Error if the log is broken at its start
-LogSummary summarise(const LogFile& file, const PingFinder& ping_in);
+LogSummary summarise(const LogFile& file, const PingFinder& ping_in, const PacketLogOpener& open_packet_log);
 
 /// Adds a ping; times may come in any order, because summarise() sorts them.
 void add_ping(HeadSummary& head, std::int64_t time_ns, const RecordedSettings& settings);

@@ -6,13 +6,14 @@
 #include <spdlog/spdlog.h>
 
 #include "server/daemon/daemon.hpp"
+#include "server/devices/types/types.hpp"
 #include "server/replay/replay_config.hpp"
 
 namespace sonard::server {
 
 int replay(const std::filesystem::path& log, std::optional<DaemonConfig> config, const ReplayTiming& timing) {
   const LogFile file(log);
-  const std::unique_ptr<LogReader> reader = open_log(file);
+  const std::unique_ptr<LogReader> reader = open_log(file, &open_packet_log);
   for (const std::string& problem : reader->problems()) {
     spdlog::warn("{}: {}", log.string(), problem);
   }

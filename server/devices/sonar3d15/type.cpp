@@ -13,6 +13,7 @@
 #include "renderer/acoustics/water.hpp"
 #include "server/devices/sonar3d15/config.hpp"
 #include "server/devices/sonar3d15/connected.hpp"
+#include "server/devices/sonar3d15/packet_log.hpp"
 #include "server/devices/sonar3d15/section.hpp"
 #include "server/devices/sonar3d15/settings.hpp"
 #include "server/devices/sonar3d15/survey.hpp"
@@ -34,7 +35,7 @@ std::string destination_text(const sonar3d15::DeviceConfig& device) {
   }
 }
 
-class Sonar3d15Type final : public DeviceType, public CaptureReader {
+class Sonar3d15Type final : public DeviceType, public CaptureReader, public PacketLogDevice {
  public:
   std::string_view name() const override { return "sonar3d15"; }
   std::string_view title() const override { return "Sonar 3D-15"; }
@@ -110,6 +111,11 @@ class Sonar3d15Type final : public DeviceType, public CaptureReader {
                          .beams = static_cast<int>(image->width()),
                          .bin_m = static_cast<double>(image->range()) / sonar3d15::fan_bins,
                          .sound_speed_mps = static_cast<double>(image->speed_of_sound())}};
+  }
+
+  LogKind packet_log() const override { return LogKind::sonar; }
+  std::unique_ptr<LogReader> open_packet_log(const LogFile& file) const override {
+    return read_sonar3d15_log(file, std::string(name()));
   }
 
   // ---- Playing logs back

@@ -33,6 +33,16 @@ const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind l
   return found == types.end() ? nullptr : *found;
 }
 
+std::unique_ptr<LogReader> open_packet_log(const LogFile& file) {
+  for (const DeviceType* type : device_types()) {
+    const auto* const owner = dynamic_cast<const PacketLogDevice*>(type);
+    if (owner != nullptr && owner->packet_log() == file.kind()) {
+      return owner->open_packet_log(file);
+    }
+  }
+  throw file.error("is a log of no known device");
+}
+
 std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram) {
   for (const DeviceType* type : device_types()) {
     const auto* const reader = dynamic_cast<const CaptureReader*>(type);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -24,6 +25,9 @@ const DeviceType* type_named(std::string_view name);
 /// The type of a head in a log: named by the log, or the type that uses .glf and .dat logs; null if neither
 /// is known.
 const DeviceType* type_of_logged(std::string_view name, bool scanning, LogKind log);
+
+/// Opens a log of a PacketLogDevice. @throws Error as open_log()
+std::unique_ptr<LogReader> open_packet_log(const LogFile& file);
 
 /// The start of a ping of any type of device in a datagram; nullopt: the types find none.
 std::optional<CapturedPing> ping_in(std::span<const std::uint8_t> datagram);

@@ -157,7 +157,7 @@ class Logs(ReplayTest):
         text = os.path.join(self.folder, "text.glf")
         with open(text, "w", encoding="utf-8") as file:
             file.write("no log")
-        self.assertEqual(self.refused(text), f"{text}: is not a log (expected a .glf, .dat, .mcap or .pcapng)")
+        self.assertEqual(self.refused(text), f"{text}: is not a log (expected a .glf, .dat, .mcap, .pcapng or .sonar)")
         missing = os.path.join(self.folder, "missing.glf")
         self.assertEqual(self.refused(missing), f"{missing}: cannot be opened: No such file or directory")
         wide = self.log(3, beams=512)

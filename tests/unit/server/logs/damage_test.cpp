@@ -150,7 +150,7 @@ Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& w
   std::vector<std::string> read;
   try {
     const LogFile file(temporary.path());
-    const auto recording = open_log(file);
+    const auto recording = open_log(file, {});
     for (const LoggedHead& head : recording->heads()) {
       for (const LoggedPing& ping : head.pings) {
         try {
@@ -160,7 +160,7 @@ Outcome outcome_of(const std::string& suffix, const Bytes& bytes, const Pings& w
         }
       }
     }
-    outcome.problems = summarise(file, [](auto) { return std::nullopt; }).problems;
+    outcome.problems = summarise(file, [](auto) { return std::nullopt; }, {}).problems;
     outcome.opened = true;
   } catch (const Error& error) {
     outcome.problems.emplace_back(error.what());
@@ -359,7 +359,7 @@ TEST(Damage, ATextWithTheNameOfALogIsCalledNoLog) {
   EXPECT_THAT(outcome_of(".mcap", bytes, {}).problems, ElementsAre(HasSubstr("is not an .mcap log")));
   const test::TemporaryLog temporary(".pcapng", bytes);
   const LogFile file(temporary.path());
-  EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }), Error);
+  EXPECT_THROW(summarise(file, [](auto) { return std::nullopt; }, {}), Error);
 }
 
 TEST(Damage, AGlfWithoutBlocksAfterAPlaceSaysHowManyBytesAreNotRead) {
@@ -398,7 +398,7 @@ TEST(Damage, ReplayAndInfoTellAnImageThatDoesNotUnpackWhenTheyOpenTheLog) {
   dat.insert(dat.end(), glf::dat_terminator.begin(), glf::dat_terminator.end());
   const test::TemporaryLog temporary(".dat", dat);
   const LogFile file(temporary.path());
-  const auto recording = open_log(file);
+  const auto recording = open_log(file, {});
   ASSERT_EQ(recording->heads().at(0).pings.size(), 2U);
   EXPECT_LT(recording->heads()[0].bearings_rad.at(0), 0.0) << "the first beam is to port";
   EXPECT_EQ(recording->samples(recording->heads()[0].pings[1]), Bytes(60, 2));
@@ -435,7 +435,8 @@ LogSummary summary_of_capture(const Bytes& bytes) {
   return summarise(LogFile(temporary.path()),
                    [](std::span<const std::uint8_t> datagram) -> std::optional<CapturedPing> {
                      return datagram.size() == 20 ? std::optional(CapturedPing{"fan", 7, {}}) : std::nullopt;
-                   });
+                   },
+                   {});
 }
 
 LogSummary summary_of_capture(Bytes bytes, std::size_t at, int bit) {

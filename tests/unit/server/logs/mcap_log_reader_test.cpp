@@ -124,7 +124,7 @@ TEST(McapLogReader, ImagesThatMakeNoSenseAreLeftOutAndTold) {
 TEST(McapLogReader, SummaryCountsAllKinds) {
   McapLog log = small_log();
   const test::TemporaryLog temporary(".mcap", bytes_of(log));
-  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
+  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in, &open_packet_log);
   EXPECT_EQ(summary.kind, LogKind::mcap);
   EXPECT_EQ(summary.closed, true);
   EXPECT_FALSE(summary.local_time);
@@ -215,7 +215,7 @@ TEST(McapLogReader, SaysWhichDevicesItsHeadsWere) {
       {"bow", "gemini_720i"}, {"port", "blueview_p900"}, {"stern", ""}, {"mast", "micron"}};
   EXPECT_EQ(devices, expected);
   devices.clear();
-  for (const HeadSummary& head : summarise(file, &ping_in).heads) {
+  for (const HeadSummary& head : summarise(file, &ping_in, &open_packet_log).heads) {
     devices.emplace_back(head.name, head.type);
   }
   EXPECT_EQ(devices, expected);
@@ -237,7 +237,7 @@ TEST(McapLogReader, KeepsAFanAndALineOfOneNameAndIdApart) {
   EXPECT_TRUE(recording.heads()[1].scanning);
   EXPECT_EQ(recording.samples(recording.heads()[0].pings.at(0)).size(), 6U);
   EXPECT_EQ(recording.samples(recording.heads()[1].pings.at(0)).size(), 200U);
-  EXPECT_EQ(summarise(file, &ping_in).heads.size(), 2U);
+  EXPECT_EQ(summarise(file, &ping_in, &open_packet_log).heads.size(), 2U);
 }
 
 TEST(McapLogReader, AnUnfinishedOneHasItsWholeChunks) {
@@ -246,7 +246,7 @@ TEST(McapLogReader, AnUnfinishedOneHasItsWholeChunks) {
   std::vector<std::uint8_t> bytes = log.writer.take().append;
   bytes.resize(bytes.size() - 20);
   const test::TemporaryLog temporary(".mcap", bytes);
-  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
+  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in, &open_packet_log);
   EXPECT_EQ(summary.closed, false);
   EXPECT_FALSE(summary.problems.empty());
 }

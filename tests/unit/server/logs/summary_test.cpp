@@ -122,7 +122,7 @@ TEST(Capture, PingsAreCountedByTheirHeads) {
   }
   const auto whole = writer.take();
   const test::TemporaryLog temporary(".pcapng", std::span(whole).first(whole.size() - 3));
-  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
+  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in, &open_packet_log);
   ASSERT_EQ(summary.heads.size(), 1U);
   EXPECT_EQ(summary.heads[0].id, 600);
   EXPECT_EQ(summary.heads[0].type, "gemini_720i");
@@ -160,7 +160,7 @@ TEST(Capture, HasThePingsThatAKindOfDeviceFinds) {
     return seen;
   };
   const test::TemporaryLog temporary(".pcapng", capture_of({{7}, {7, 0}, {8}, {1, 2, 3}, {7}, {}}));
-  const LogSummary summary = summarise(LogFile(temporary.path()), find);
+  const LogSummary summary = summarise(LogFile(temporary.path()), find, {});
   ASSERT_EQ(summary.heads.size(), 3U);
   EXPECT_EQ(summary.heads[0].type, "fan");
   EXPECT_EQ(summary.heads[0].id, 7);
@@ -183,7 +183,7 @@ TEST(Capture, KeepsDevicesOfOneIdApart) {
     return seen;
   };
   const test::TemporaryLog temporary(".pcapng", capture_of({{1}, {2}, {1}}));
-  const LogSummary summary = summarise(LogFile(temporary.path()), find);
+  const LogSummary summary = summarise(LogFile(temporary.path()), find, {});
   ASSERT_EQ(summary.heads.size(), 2U);
   EXPECT_EQ(summary.heads[0].type, "one");
   EXPECT_EQ(summary.heads[0].pings(), 2U);
@@ -195,7 +195,7 @@ TEST(Capture, OfALineOfAMicronOnlyThePacketIsCounted) {
   const std::vector<std::uint8_t> bins(100, 1);
   line.data = bins;
   const test::TemporaryLog temporary(".pcapng", capture_of({micron::encode(micron::Report{line})}));
-  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in);
+  const LogSummary summary = summarise(LogFile(temporary.path()), &ping_in, &open_packet_log);
   EXPECT_TRUE(summary.heads.empty());
   EXPECT_EQ(summary.other_records,
             (std::vector<std::pair<std::string, std::uint64_t>>{{"interfaces", 1}, {"UDP packets", 1}}));
