@@ -318,9 +318,12 @@ void Check::check_recording() {
   const bool has_glf = recording.glf && std::ranges::any_of(config_.heads, [](const HeadConfig& head) {
                          return glf_device(*head.type) != nullptr;
                        });
-  report_.summary.push_back(fmt::format("records  into {}:{}{}{}", recording.directory.string(),
+  const bool has_sonar = recording.sonar && std::ranges::any_of(config_.heads, [](const HeadConfig& head) {
+                           return dynamic_cast<const PacketLogDevice*>(head.type) != nullptr;
+                         });
+  report_.summary.push_back(fmt::format("records  into {}:{}{}{}{}", recording.directory.string(),
                                         has_glf ? " glf" : "", recording.mcap ? " mcap" : "",
-                                        recording.pcapng ? " pcapng" : ""));
+                                        recording.pcapng ? " pcapng" : "", has_sonar ? " sonar" : ""));
 }
 
 /// Writes a temporary file into the folder, or into its nearest existing parent.

@@ -69,7 +69,8 @@ std::vector<HeadToRecord> recorded_heads(const std::vector<HeadConfig>& heads) {
   std::vector<HeadToRecord> recorded;
   for (const HeadConfig& head : heads) {
     const HeadType& type = *head.type;
-    recorded.push_back({head.name, std::string(type.name()), type.device_id(head), glf_device(type)});
+    recorded.push_back({head.name, std::string(type.name()), type.device_id(head), glf_device(type),
+                        dynamic_cast<const PacketLogDevice*>(&type) != nullptr});
   }
   return recorded;
 }

@@ -23,8 +23,9 @@ std::string plain(std::string_view head) {
 }
 
 bool is_free(const fs::path& directory, const std::string& stem) {
-  const std::array paths{mcap_path(directory, stem), pcapng_path(directory, stem), dat_path(directory, stem),
-                         glf_path(directory, stem), unfinished_glf_path(directory, stem)};
+  const std::array paths{mcap_path(directory, stem),  pcapng_path(directory, stem),
+                         sonar_path(directory, stem), dat_path(directory, stem),
+                         glf_path(directory, stem),   unfinished_glf_path(directory, stem)};
   std::error_code ignored;
   return std::ranges::none_of(paths, [&](const fs::path& path) { return fs::exists(path, ignored); });
 }
@@ -45,6 +46,9 @@ fs::path mcap_path(const fs::path& directory, const std::string& stem) {
 }
 fs::path pcapng_path(const fs::path& directory, const std::string& stem) {
   return directory / ("log_" + stem + ".pcapng");
+}
+fs::path sonar_path(const fs::path& directory, const std::string& stem) {
+  return directory / ("log_" + stem + ".sonar");
 }
 fs::path dat_path(const fs::path& directory, const std::string& stem) {
   return directory / glf::dat_name(stem);

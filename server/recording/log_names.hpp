@@ -16,6 +16,7 @@ std::string free_stem(const std::filesystem::path& directory, double time_s, std
 
 std::filesystem::path mcap_path(const std::filesystem::path& directory, const std::string& stem);
 std::filesystem::path pcapng_path(const std::filesystem::path& directory, const std::string& stem);
+std::filesystem::path sonar_path(const std::filesystem::path& directory, const std::string& stem);
 std::filesystem::path dat_path(const std::filesystem::path& directory, const std::string& stem);
 std::filesystem::path glf_path(const std::filesystem::path& directory, const std::string& stem);
 /// Name of a .glf until it is whole.

@@ -8,6 +8,7 @@
 #include "server/recording/glf_log_writer.hpp"
 #include "server/recording/log_names.hpp"
 #include "server/recording/mcap_log_writer.hpp"
+#include "server/recording/packet_log_writer.hpp"
 #include "server/recording/pcapng_log_writer.hpp"
 
 namespace sonard::server {
@@ -42,6 +43,11 @@ LogSet::LogSet(const RecordingConfig& config, const std::vector<HeadToRecord>& h
   for (std::size_t head = 0; config.glf && head < heads.size(); ++head) {
     if (heads[head].glf != nullptr) {
       logs_.push_back(std::make_unique<GlfLogWriter>(setting_, static_cast<int>(head)));
+    }
+  }
+  for (std::size_t head = 0; config.sonar && head < heads.size(); ++head) {
+    if (heads[head].has_packet_log) {
+      logs_.push_back(std::make_unique<PacketLogWriter>(setting_, static_cast<int>(head)));
     }
   }
 }

@@ -21,6 +21,7 @@ struct HeadToRecord {
   std::string type;                ///< its type in the configuration
   std::uint16_t device_id = 0;     ///< its ID on the wire
   const GlfDevice* glf = nullptr;  ///< null: the head has no .glf logs
+  bool has_packet_log = false;     ///< the head has .sonar logs
 };
 
 /// Shared by all logs that begin together. Both clocks are read at the beginning and kept, so that times in a

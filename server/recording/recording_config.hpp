@@ -28,6 +28,7 @@ struct RecordingConfig {
   bool mcap_foxglove = false;   ///< whether it holds images, poses and echoes for Foxglove
   bool mcap_zstd = false;       ///< whether its full chunks are compressed
   bool pcapng = true;
+  bool sonar = true;                                      ///< of heads whose type has this format
   std::uint64_t rotate_bytes = std::uint64_t{512} << 20;  ///< if a file reaches this size, all files end
   std::chrono::nanoseconds rotate_after{std::chrono::hours{1}};  ///< > 0; all files end after this time
   RecordingZone zone = RecordingZone::utc;

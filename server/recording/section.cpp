@@ -25,8 +25,11 @@ RecordingConfig read_recording(YamlSection& section, const std::filesystem::path
                  "compression of each chunk of the MCAP file (1 MiB or one second)");
   section.boolean("pcapng", recording.pcapng,
                   "writes one capture for Wireshark with the bytes of both directions");
-  if (!recording.glf && !recording.mcap && !recording.pcapng) {
-    section.report("directory", "no kind of log is selected (expected glf, mcap or pcapng to be true)");
+  section.boolean("sonar", recording.sonar,
+                  "writes a `.sonar` for each head of a type that has this format ([logs.md](logs.md))");
+  if (!recording.glf && !recording.mcap && !recording.pcapng && !recording.sonar) {
+    section.report("directory",
+                   "no kind of log is selected (expected glf, mcap, pcapng or sonar to be true)");
   }
   std::uint64_t mebibytes = recording.rotate_bytes >> 20;
   section.integer("rotate_mib", mebibytes, 1, 1800,  // a .glf holds 1907 MiB, and another ping may follow

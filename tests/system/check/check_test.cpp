@@ -290,7 +290,9 @@ TEST_F(CheckedWorld, IsRecordedInLogsThatTheHeadsWrite) {
        {std::pair{"{name: bow, type: ping360, udp: [{bind: 127.0.0.1:12345}]}", " mcap pcapng"},
         {"{name: bow, type: gemini_720i, sonar_id: 513, network: {alternate_address: 127.0.0.2, netmask: "
          "255.0.0.0}}",
-         " glf mcap pcapng"}}) {
+         " glf mcap pcapng"},
+        {"{name: bow, type: sonar3d15, network: {address: 127.0.0.2, http_port: 8080}}",
+         " mcap pcapng sonar"}}) {
     const ProcessResult result =
         run_process({SONARD_PROGRAM, "check", "--no-network",
                      write("sonard.yaml", std::string("world: {file: world.sdf}\nengine: cpu\n"

@@ -15,6 +15,7 @@ TEST(LogNames, AreMadeOfTheTime) {
   EXPECT_EQ(free_stem(folder.path(), time_s), "2026-11-20-142233");
   EXPECT_EQ(mcap_path("a", "s").string(), "a/log_s.mcap");
   EXPECT_EQ(pcapng_path("a", "s").string(), "a/log_s.pcapng");
+  EXPECT_EQ(sonar_path("a", "s").string(), "a/log_s.sonar");
   EXPECT_EQ(glf_path("a", "s").string(), "a/log_s.glf");
   EXPECT_EQ(dat_path("a", "s").string(), "a/data_s.dat");
   EXPECT_EQ(unfinished_glf_path("a", "s").string(), "a/log_s.glf.part");
@@ -28,7 +29,7 @@ TEST(LogNames, OfHeadsHoldNothingThatAFileNameMayNot) {
 TEST(LogNames, AreFreeWhateverStandsInTheWay) {
   for (const char* taken :
        {"log_2026-11-20-142233.mcap", "log_2026-11-20-142233.pcapng", "log_2026-11-20-142233.glf",
-        "data_2026-11-20-142233.dat", "log_2026-11-20-142233.glf.part"}) {
+        "log_2026-11-20-142233.sonar", "data_2026-11-20-142233.dat", "log_2026-11-20-142233.glf.part"}) {
     const test::TemporaryFolder folder;
     test::write_file(folder.path() / taken, {1});
     EXPECT_EQ(free_stem(folder.path(), time_s), "2026-11-20-142233-2") << taken;

@@ -142,6 +142,27 @@ TEST_F(RecorderTest, WritesOnlyTheKindsThatAreAskedFor) {
   EXPECT_EQ(files(".glf").size(), 1U);
 }
 
+TEST_F(RecorderTest, WritesTheDatagramsOfAHeadWithPacketLogsAsTheyAre) {
+  config.glf = config.mcap = config.pcapng = false;
+  std::vector<HeadToRecord> heads = test::one_head();
+  heads.push_back({"stern", "other", 0, nullptr, true});
+  Recorder recorder(config, heads);
+  recorder.push(test::wire_event(10, clock.now()));  // of the head without such logs
+  RecordingEvent sent = test::wire_event(0, clock.now());
+  sent.head = 1;
+  const Endpoint client = std::get<WirePassed>(sent.what).pieces.at(0).client;
+  for (const Bytes& bytes : {Bytes{1, 2, 3}, Bytes{4}}) {
+    std::get<WirePassed>(sent.what).pieces = {{client, {}, SharedBytes(bytes)}};
+    recorder.push(sent);
+  }
+  std::get<WirePassed>(sent.what).to_client = false;
+  recorder.push(sent);
+  recorder.stop();
+  ASSERT_EQ(files("").size(), 1U);
+  ASSERT_EQ(files("_stern.sonar").size(), 1U);
+  EXPECT_EQ(test::contents(files("_stern.sonar")[0]), (Bytes{1, 2, 3, 4}));
+}
+
 TEST_F(RecorderTest, MakesNoFileWithoutAnEvent) {
   Recorder(config, test::one_head()).stop();
   EXPECT_TRUE(files("").empty());
