@@ -26,13 +26,14 @@ if TYPE_CHECKING:
     from .ping import LoggedPing, NoHead, NoPing, Ping
     from .ping1d import Ping1D, Sounding
     from .ping360 import Ping360
+    from .sonar3d15 import Shot, Sonar3D15, read_sonar_file
 
 __all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Oculus", "Ping", "Ping1D",
-           "Ping360", "PosePublisher", "Sounding", "encode_pose", "read_log"]
+           "Ping360", "PosePublisher", "Shot", "Sonar3D15", "Sounding", "encode_pose", "read_log", "read_sonar_file"]
 
 _MODULES = {"DamagedLog": "damage", "Gemini": "gemini", "LoggedPing": "ping", "Micron": "micron", "NoHead": "ping",
-            "NoPing": "ping", "Oculus": "oculus", "Ping": "ping", "Ping1D": "ping1d", "Ping360": "ping360", "Sounding": "ping1d",
-            "read_log": "log"}
+            "NoPing": "ping", "Oculus": "oculus", "Ping": "ping", "Ping1D": "ping1d", "Ping360": "ping360", "Shot": "sonar3d15",
+            "Sonar3D15": "sonar3d15", "Sounding": "ping1d", "read_log": "log", "read_sonar_file": "sonar3d15"}
 
 
 def __getattr__(name: str) -> Any:

@@ -14,6 +14,7 @@ import numpy as np
 
 from .ping import Array, Ping
 from .ping1d import Sounding
+from .sonar3d15 import Shot
 
 _DTYPE_UINT8, _DTYPE_UINT16 = 0, 2  # constants of marine_acoustic_msgs/SonarImageData
 _FLOAT32 = 7  # constant of sensor_msgs/PointField
@@ -147,11 +148,47 @@ def points(ping: Ping, time_ns: int, frame_id: str, echoes: EchoFilter) -> Conte
     table = np.zeros((len(rows), 4), "<f4")
     table[:, 0], table[:, 1] = ranges_m * np.cos(bearings_rad), ranges_m * np.sin(bearings_rad)
     table[:, 3] = ping.samples[rows, beams]
+    return _cloud(table, time_ns, frame_id)
+
+
+def _cloud(table: Array, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/PointCloud2 with a point for each row of `table`."""
     fields = [content("sensor_msgs/PointField", name=name, offset=4 * place, datatype=_FLOAT32, count=1)
               for place, name in enumerate(("x", "y", "z", "intensity"))]
-    return content("sensor_msgs/PointCloud2", header=_header(time_ns, frame_id), height=1, width=len(rows), fields=fields,
-                   is_bigendian=False, point_step=16, row_step=16 * len(rows), is_dense=True,
+    return content("sensor_msgs/PointCloud2", header=_header(time_ns, frame_id), height=1, width=len(table), fields=fields,
+                   is_bigendian=False, point_step=16, row_step=16 * len(table), is_dense=True,
                    data=np.frombuffer(table.tobytes(), np.uint8))
+
+
+def shot_points(shot: Shot, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/PointCloud2 of the directions with an echo, with the signal as intensity."""
+    table = np.column_stack([shot.points_m(), shot.signals[shot.ranges_m > 0]]).astype("<f4")
+    return _cloud(table, time_ns, frame_id)
+
+
+def range_image(shot: Shot, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/Image of ranges in metres along each direction; NaN: no echo. The first row is the highest."""
+    return _shot_image(np.where(shot.ranges_m > 0, shot.ranges_m, np.nan).astype("<f4"), "32FC1", time_ns, frame_id)
+
+
+def signal_image(shot: Shot, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/Image of the signals; 0: no echo. The first row is the highest."""
+    return _shot_image(shot.signals, "mono8", time_ns, frame_id)
+
+
+def _shot_image(pixels: Array, encoding: str, time_ns: int, frame_id: str) -> Content:
+    height, width = pixels.shape
+    return content("sensor_msgs/Image", header=_header(time_ns, frame_id), height=height, width=width, is_bigendian=0,
+                   encoding=encoding, step=width * pixels.itemsize, data=_bytes(pixels[::-1]))
+
+
+def shot_calibration(shot: Shot, time_ns: int, frame_id: str) -> Content:
+    """A sensor_msgs/CameraInfo of both images. `d` holds the speed of sound in m/s, then the bearing of each column, positive
+    to port, and the elevation of each row, from the first, in radians."""
+    height, width = shot.signals.shape
+    parameters = np.concatenate([[shot.sound_speed_mps], shot.bearings_rad, shot.elevations_rad[::-1]])
+    return content("sensor_msgs/CameraInfo", header=_header(time_ns, frame_id), height=height, width=width,
+                   distortion_model="sonar_directions", d=parameters)
 
 
 def scan(turn: Ping, time_ns: int, frame_id: str, echoes: EchoFilter, scan_time_s: float) -> Content:

@@ -14,9 +14,11 @@ import glob
 import math
 import os
 import shutil
+import signal
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 import warnings
@@ -29,8 +31,8 @@ sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system",
                                                              ("clients", "python"))]
 from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping1D, Ping360, read_log  # noqa: E402
-from sonard_client import gemini, micron, oculus, ping360, ping_head  # noqa: E402
+from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping1D, Ping360, Sonar3D15  # noqa: E402
+from sonard_client import gemini, micron, oculus, ping360, ping_head, read_log, read_sonar_file, sonar3d15  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
 PROGRAMS = None  # folder of the programs under test
@@ -452,6 +454,124 @@ class Ping1DClient(OwnMachine):
     def test_a_head_that_is_not_there(self):
         with self.assertRaisesRegex(NoHead, "no answer from 127.0.0.1:9090 within 0.5 s"):
             Ping1D(patience_s=0.5)
+
+
+class Sonar3D15Bytes(unittest.TestCase):
+    """Uses packets that public clients read (tests/data/sonar3d15/messages.json)."""
+
+    # x ahead, y to port, z up, as the maker's library has them but for the signs of y and z
+    POINTS = ((0.907, 0.243, -0.342), (1.815, -0.486, -0.684), (1.993, -1.993, -1.026), (2.657, 2.657, 1.368),
+              (4.538, 1.216, 1.710), (3.987, -3.987, 2.052))
+
+    def test_both_images_are_a_shot(self):
+        for name in ("range_image", "range_image_compressed"):
+            shot, = sonar3d15.shots([example("sonar3d15", name), example("sonar3d15", "signal_image")])
+            numpy.testing.assert_allclose(shot.points_m(), self.POINTS, atol=6e-4)
+            self.assertEqual(shot.signals.tolist(), [[0, 20, 40, 60], [80, 100, 0, 170]])
+            numpy.testing.assert_allclose(shot.strengths(), [48, 75, 119, 189, 300, 1504], atol=0.6)
+            self.assertEqual((shot.number, shot.time_ns, shot.range_m, shot.sound_speed_mps),
+                             (7, 1_767_225_600_250_000_000, 15, 1491))
+
+    def test_readings_of_the_motion_sensor(self):
+        batch = sonar3d15.decode(example("sonar3d15", "imu_batch"))
+        self.assertEqual((batch.number, batch.times_ns.tolist()), (3, [1_767_225_600_000_000_000, 1_767_225_600_010_000_000]))
+        numpy.testing.assert_allclose(batch.specific_force_mps2, [[0.1, 0, -9.8]] * 2, atol=1e-6)
+        numpy.testing.assert_allclose(batch.rate_of_turn_radps, [[0, 0, 0.5]] * 2)
+
+    def test_packed_blocks(self):
+        """Copies of each kind, one that overlaps itself, and a literal with a length byte (Snappy's description of its format)."""
+        for elements, plain in ((b"\x04ab\x09\x02", b"abababab"), (b"\x08abc\x0a\x03\x00", b"abcabc"),
+                                (b"\x08abc\x0b\x03\x00\x00\x00", b"abcabc"), (b"\xf0\x3c" + b"x" * 61, b"x" * 61)):
+            self.assertEqual(sonar3d15._unpacked(bytes([len(plain)]) + elements), plain)
+            with self.assertRaisesRegex(ValueError, "packed wrongly"):
+                sonar3d15._unpacked(bytes([len(plain) + 1]) + elements)
+        with self.assertRaisesRegex(ValueError, "packed wrongly"):
+            sonar3d15._unpacked(b"\x04\x00a\x01\x02")  # a copy from before the start
+
+    def test_wrong_bytes_are_refused(self):
+        whole = example("sonar3d15", "range_image_compressed")
+        for place in range(len(whole)):
+            with self.assertRaises(ValueError, msg=place):
+                sonar3d15.decode(whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1:])
+            with self.assertRaises(ValueError, msg=place):
+                sonar3d15.decode(whole[:place])
+
+    def test_a_recording_is_read_behind_damage(self):
+        with tempfile.NamedTemporaryFile(suffix=".sonar") as file:
+            pair = example("sonar3d15", "range_image") + example("sonar3d15", "signal_image")
+            file.write(pair + b"RIP2 rubbish" + example("sonar3d15", "imu_batch") + pair[:-1] + pair)
+            file.flush()
+            self.assertEqual([shot.number for shot in read_sonar_file(file.name)], [7, 7])
+
+
+SONAR3D15_CONFIG = """
+engine: cpu
+world: {{file: {world}}}
+poses: {{initial: {{position_m: [0, 0, 0]}}}}
+recording: {{directory: {folder}/logs}}
+heads:
+  - name: bow
+    type: sonar3d15
+    network: {{address: 127.0.0.5, http_port: 8080}}
+    device: {{width: 128, height: 32}}
+"""
+
+
+class Sonar3D15Client(OwnMachine):
+    def test_it_sees_the_sphere_and_a_recording_has_the_same(self):
+        daemon = start(self, SONAR3D15_CONFIG)
+        with Sonar3D15() as sonar:
+            received = sonar.shots(range_m=6, sound_speed_mps=1500)
+            seen = [next(received) for _ in range(3)]
+            self.assertEqual(sonar.get("acoustics/range"), {"min": 0.3, "max": 6})
+            self.assertTrue(sonar.get("acoustics/enabled"))
+            with self.assertRaisesRegex(ValueError, "refuses POST acoustics/range .*status 400"):
+                sonar.shot(range_m=60)
+            inspected = sonar.shot(range_m=5, high_frequency=True)
+            self.assertAlmostEqual(inspected.bearings_rad[0], math.radians(20))
+            self.assertEqual(inspected.range_m, 5)
+        self.assertFalse(Sonar3D15().get("acoustics/enabled"))
+        self.assertEqual([shot.number for shot in seen], list(range(seen[0].number, seen[0].number + 3)))
+        for shot in seen:
+            self.assertEqual((shot.ranges_m.shape, shot.signals.dtype), ((32, 128), numpy.uint8))
+            points = shot.points_m()
+            distances = numpy.linalg.norm(points, axis=1)
+            self.assertAlmostEqual(distances.min(), math.hypot(3, 2) - 0.5, delta=0.02)
+            x, y, z = points[distances.argmin()]
+            self.assertAlmostEqual(math.atan2(y, x), math.atan2(2, 3), delta=math.radians(2))
+            self.assertAlmostEqual(z, 0, delta=0.15)
+        daemon.signal(signal.SIGTERM)
+        daemon.wait(START_S)
+        log, = glob.glob(os.path.join(self.folder.name, "logs", "*_bow.sonar"))
+        recorded = {shot.number: shot for shot in read_sonar_file(log)}
+        for shot in seen:
+            numpy.testing.assert_array_equal(recorded[shot.number].ranges_m, shot.ranges_m)
+            numpy.testing.assert_array_equal(recorded[shot.number].signals, shot.signals)
+
+    def test_a_recording_is_served_again(self):
+        daemon = start(self, SONAR3D15_CONFIG)
+        with Sonar3D15() as sonar:
+            shots = sonar.shots(range_m=6)
+            for _ in range(5):
+                next(shots)
+        daemon.signal(signal.SIGTERM)
+        daemon.wait(START_S)
+        log, = glob.glob(os.path.join(self.folder.name, "logs", "*_bow.sonar"))
+        recorded = list(read_sonar_file(log))
+        text = subprocess.run([os.path.join(PROGRAMS, "sonard"), "info", log], capture_output=True, text=True, check=True).stdout
+        self.assertIn("Sonar 3D-15", text)
+        self.assertRegex(text, rf"\b{len(recorded)} pings")
+        served = Program([os.path.join(PROGRAMS, "sonard"), "replay", log], "replay")
+        self.addCleanup(served.kill)
+        served.wait_for_line("sonard ready", START_S)
+        with Sonar3D15("127.0.0.2", 80) as sonar:
+            again = sonar.shot(range_m=6)
+        numpy.testing.assert_array_equal(again.ranges_m, recorded[0].ranges_m)
+        numpy.testing.assert_array_equal(again.signals, recorded[0].signals)
+
+    def test_a_head_that_is_not_there(self):
+        with self.assertRaisesRegex(NoHead, "no answer from 127.0.0.5:8080 within 0.5 s"):
+            Sonar3D15(patience_s=0.5)
 
 
 def main():
