@@ -35,5 +35,7 @@ SONAR_BRIDGE = (
     Parameter("bits", 8, "bits per sample; Gemini, Oculus", choices=(8, 16)),
     Parameter("step_deg", 1.8, "degrees from line to line; Micron, Ping360", 0.06, 14.3),
     Parameter("bins", 400, "bins per line; Micron, Ping360", 20, 1500),
+    Parameter("local", "", "address of this machine; empty: the one that routes to the head; Gemini, Sonar 3D-15"),
+    Parameter("high_frequency", False, "the higher of its two frequencies; Oculus, Sonar 3D-15"),
     *(parameter for head in HEADS.values() for parameter in head.PARAMETERS),
 )

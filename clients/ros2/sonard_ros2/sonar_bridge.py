@@ -4,7 +4,8 @@
     ros2 run sonard_ros2 sonar_bridge --ros-args -p type:=gemini -p range_m:=20.0
 
 Topics: `sonar` (marine_acoustic_msgs/ProjectedSonarImage) and `points` (sensor_msgs/PointCloud2) of each ping or line;
-`range` (sensor_msgs/Range) of each ping of an echo sounder;
+`range` (sensor_msgs/Range) of each ping of an echo sounder; `range_image` (sensor_msgs/Image) of each shot of a Sonar 3D-15,
+which has no `sonar`;
 `image` (sensor_msgs/Image), and `scan` (sensor_msgs/LaserScan) of a scanning head, of each ping or turn; `calibration`
 (sensor_msgs/CameraInfo) of the image when it changes, for late subscribers, too.
 """
@@ -17,7 +18,7 @@ from marine_acoustic_msgs.msg import ProjectedSonarImage
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2, Range
-from sonard_client import NoHead, NoPing, Ping, Sounding
+from sonard_client import NoHead, NoPing, Ping, Shot, Sounding
 from sonard_client import ros2_messages as contents
 from sonard_client.turn import TurnCollector
 from tf2_ros import StaticTransformBroadcaster
@@ -47,9 +48,12 @@ class SonarBridge(Node):
         self._echoes = contents.EchoFilter(options.threshold_percent, options.min_range_m)
         self._turn = TurnCollector(math.radians(options.step_deg)) if self._head.IS_SCANNING else None
         self._turn_ns = None  # stamp of the last turn
-        self._topics = {"sonar": self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE),
-                        "points": self.create_publisher(PointCloud2, "points", _QUEUE),
+        self._topics = {"points": self.create_publisher(PointCloud2, "points", _QUEUE),
                         "image": self.create_publisher(Image, "image", _QUEUE)}
+        if self._head is HEADS["sonar3d15"]:
+            self._topics["range_image"] = self.create_publisher(Image, "range_image", _QUEUE)
+        else:
+            self._topics["sonar"] = self.create_publisher(ProjectedSonarImage, "sonar", _QUEUE)
         if self._head is HEADS["ping1d"]:
             self._topics["range"] = self.create_publisher(Range, "range", _QUEUE)
         if self._turn:
@@ -102,7 +106,10 @@ class SonarBridge(Node):
             for ping in pings:
                 if not self._running():
                     return
-                self._pass_on(ping, self._transmit_ns(ping))
+                if isinstance(ping, Shot):
+                    self._pass_on_shot(ping, self._transmit_ns(ping.range_m))
+                else:
+                    self._pass_on(ping, self._transmit_ns(ping.ranges_m[-1]))
 
     def _pass_on(self, ping: Ping, time_ns: int) -> None:
         frame_id = self._options.frame_id
@@ -120,6 +127,13 @@ class SonarBridge(Node):
             self._offer("scan", contents.scan, picture, time_ns, frame_id, self._echoes, seconds)
             self._turn_ns = time_ns
 
+    def _pass_on_shot(self, shot: Shot, time_ns: int) -> None:
+        frame_id = self._options.frame_id
+        self._offer("points", contents.shot_points, shot, time_ns, frame_id)
+        self._calibrate(contents.shot_calibration(shot, time_ns, frame_id))
+        self._offer("range_image", contents.range_image, shot, time_ns, frame_id)
+        self._offer("image", contents.signal_image, shot, time_ns, frame_id)
+
     def _offer(self, topic: str, make, *arguments) -> None:
         """Makes and publishes a message if somebody listens."""
         if self._topics[topic].get_subscription_count():
@@ -131,10 +145,10 @@ class SonarBridge(Node):
             self._calibration.publish(message(calibration))
             self._calibrated = parameters_of_image
 
-    def _transmit_ns(self, ping: Ping) -> int:
-        """The transmit time as a client can estimate it: now, less the travel time of sound to the last bin and back. The
+    def _transmit_ns(self, last_m: float) -> int:
+        """The transmit time as a client can estimate it: now, less the travel time of sound to the last range and back. The
         delay of the network is not known."""
-        travel_ns = round(2e9 * float(ping.ranges_m[-1]) / self._options.sound_speed_mps)
+        travel_ns = round(2e9 * float(last_m) / self._options.sound_speed_mps)
         return max(0, self.get_clock().now().nanoseconds - travel_ns)
 
 

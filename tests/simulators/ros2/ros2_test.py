@@ -34,7 +34,7 @@ import wire_pings  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
 from ros2_messages import CLASSES  # noqa: E402
 from ros2_stand_ins import SENSOR_DATA, Time, ros  # noqa: E402
-from sonard_client import Ping, Sounding  # noqa: E402
+from sonard_client import Ping, Shot, Sounding  # noqa: E402
 from sonard_client import ros2_messages as contents  # noqa: E402
 from sonard_client.turn import TurnCollector  # noqa: E402
 from sonard_ros2 import parameters, running  # noqa: E402
@@ -77,6 +77,11 @@ PING1D = """
     type: ping1d
     udp: [{bind: 127.0.0.1:9090}]
     mount: {rpy_deg: [0, 0, 33.69]}    # towards the sphere
+"""
+SONAR3D15 = """
+    type: sonar3d15
+    network: {address: 127.0.0.5, http_port: 8080}
+    device: {width: 128, height: 32}
 """
 HEADS = {"gemini": GEMINI, "oculus": OCULUS, "micron": MICRON, "ping360": PING360}
 
@@ -214,6 +219,29 @@ class Messages(unittest.TestCase):
         zeros = dataclasses.replace(self.ping, samples=0 * self.ping.samples)
         self.assertEqual(self.made(contents.points, zeros, contents.EchoFilter(0.0, 0.0)).width, 0)
 
+    SHOT = Shot(ranges_m=numpy.array([[0, 2.0], [4.0, 6.0]]), signals=numpy.array([[0, 9], [20, 255]], numpy.uint8),
+                bearings_rad=numpy.radians([45, -45]), elevations_rad=numpy.radians([-20, 20]), number=3, time_ns=4, range_m=15,
+                sound_speed_mps=1480)
+
+    def test_points_of_a_shot(self):
+        message = self.made(contents.shot_points, self.SHOT)
+        self.assertEqual((message.height, message.width, message.point_step, message.row_step), (1, 3, 16, 48))
+        side, up = math.cos(math.radians(20)) * math.sqrt(0.5), math.sin(math.radians(20))
+        numpy.testing.assert_allclose(numpy.frombuffer(message.data, "<f4").reshape(-1, 4),
+                                      [(2 * side, -2 * side, -2 * up, 9), (4 * side, 4 * side, 4 * up, 20),
+                                       (6 * side, -6 * side, 6 * up, 255)], rtol=1e-6)
+
+    def test_images_of_a_shot(self):
+        message = self.made(contents.range_image, self.SHOT)
+        self.assertEqual((message.height, message.width, message.step, message.encoding), (2, 2, 8, "32FC1"))
+        numpy.testing.assert_array_equal(numpy.frombuffer(message.data, "<f4"), [4, 6, math.nan, 2])
+        message = self.made(contents.signal_image, self.SHOT)
+        self.assertEqual((message.height, message.width, message.step, message.encoding), (2, 2, 2, "mono8"))
+        self.assertEqual(list(message.data), [20, 255, 0, 9])
+        message = self.made(contents.shot_calibration, self.SHOT)
+        self.assertEqual((message.height, message.width, message.distortion_model), (2, 2, "sonar_directions"))
+        numpy.testing.assert_allclose(message.d, [1480, *numpy.radians([45, -45, 20, -20])])
+
     def test_scan(self):
         samples = numpy.array([[9, 9, 0, 9], [1, 7, 2, 0], [5, 6, 0, 0]], numpy.uint8)
         turn = dataclasses.replace(self.ping, samples=samples, ranges_m=numpy.array([0.5, 1.5, 2.5]),
@@ -250,8 +278,8 @@ class Parameters(unittest.TestCase):
         self.refused(PoseBridge, "source is 'gps', expected odometry or pose or tf", source="gps")
         self.refused(PoseBridge, "axes is 'flu', expected enu_flu or ned_frd", axes="flu")
         self.refused(PoseBridge, "^parameter port, UDP port .*: 0 is not within 1 to 65535", port=0)
-        self.refused(SonarBridge, "type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360", type="sidescan")
-        self.refused(SonarBridge, "device is 'sidescan', expected gemini or micron or oculus or ping1d or ping360", device="sidescan")
+        self.refused(SonarBridge, "type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360 or sonar3d15", type="sidescan")
+        self.refused(SonarBridge, "device is 'sidescan', expected gemini or micron or oculus or ping1d or ping360 or sonar3d15", device="sidescan")
         self.refused(SonarBridge, "^parameter range_m, range .* metres: 0.5 is not within 1 to 150", range_m=0.5)
         self.refused(SonarBridge, "range_m is 151, expected a number from 1 to 150", range_m=151)
         self.refused(SonarBridge, "mount_rpy_deg is .0, 20., expected 3 numbers", mount_rpy_deg=[0, 20])
@@ -273,7 +301,7 @@ class Parameters(unittest.TestCase):
                 limits = [(one.from_value, one.to_value) for one in [*descriptor.floating_point_range, *descriptor.integer_range]]
                 self.assertEqual(limits, [(parameter.lowest, parameter.highest)] if parameter.lowest is not None else [])
                 self.assertEqual(len(descriptor.integer_range), limits != [] and type(parameter.default) is int)
-        self.assertEqual(ros.descriptors["type"].additional_constraints, "gemini or micron or oculus or ping1d or ping360")
+        self.assertEqual(ros.descriptors["type"].additional_constraints, "gemini or micron or oculus or ping1d or ping360 or sonar3d15")
 
     def test_a_whole_number_for_one_with_decimals(self):
         ros.reset(range_m=30, type="micron")
@@ -298,14 +326,12 @@ class Parameters(unittest.TestCase):
 
 class Stamps(unittest.TestCase):
     def stamp(self, now_ns):
-        """The stamp of a ping with its last bin at 15 m (20 ms there and back), if it is complete at `now_ns`."""
+        """The stamp of a ping with a last range of 15 m (20 ms there and back), if it is complete at `now_ns`."""
         ros.reset(type="micron")
         node = SonarBridge()
         self.addCleanup(node.destroy_node)
         node.get_clock = lambda: SimpleNamespace(now=lambda: Time(nanoseconds=now_ns))
-        ping = Ping(samples=numpy.zeros((2, 1), numpy.uint8), ranges_m=numpy.array([5.0, 15.0]),
-                    bearings_rad=numpy.array([0.0]), transmit_us=None)
-        return divmod(node._transmit_ns(ping), 10**9)
+        return divmod(node._transmit_ns(15.0), 10**9)
 
     def test_when_it_was_sent(self):
         self.assertEqual(self.stamp(7_000_000_000), (6, 980_000_000))
@@ -529,6 +555,25 @@ class Ros2(OwnMachine):
         self.assertEqual(len(ros.published["calibration"]), 1, "it did not change")
         self.assertEqual(ros.qualities["calibration"].durability, "TRANSIENT_LOCAL")
 
+    def test_shots_of_a_sonar_3d_15(self):
+        self.start(SONAR3D15, has_pose=True)
+        self.nodes(SonarBridge, type="sonar3d15", range_m=6, min_range_m=0.5)
+        for topic in ("points", "range_image", "image"):
+            ros.wait(lambda topic=topic: len(ros.published[topic]) > 1, PATIENCE_S)
+        self.assertNotIn("sonar", ros.published)
+        points, ranges, signals, (calibration,) = (ros.published[topic] for topic in ("points", "range_image", "image", "calibration"))
+        self.assertEqual((ranges[0].height, ranges[0].width, ranges[0].header.frame_id), (32, 128, "sonar"))
+        seen = numpy.frombuffer(points[0].data, "<f4").reshape(-1, 4)
+        metres = numpy.frombuffer(ranges[0].data, "<f4")
+        self.assertEqual(numpy.isfinite(metres).sum(), len(seen))
+        self.assertEqual(numpy.count_nonzero(signals[0].data), len(seen))
+        x, y, z, _ = seen[numpy.linalg.norm(seen[:, :3], axis=1).argmin()]
+        self.assertAlmostEqual(math.hypot(x, y, z), math.hypot(3, 2) - 0.5, delta=0.02)
+        self.assertAlmostEqual(math.atan2(y, x), math.atan2(2, 3), delta=math.radians(2))
+        row, column = divmod(int(numpy.nanargmin(metres)), 128)
+        self.assertAlmostEqual(calibration.d[1 + column], math.atan2(2, 3), delta=math.radians(2))
+        self.assertAlmostEqual(calibration.d[129 + row], 0, delta=math.radians(3))
+
     def test_nothing_is_made_for_nobody(self):
         self.start(OCULUS, has_pose=True)
         ros.reset(type="oculus", range_m=2)
@@ -715,7 +760,7 @@ class Ros2(OwnMachine):
     def test_a_wrong_parameter_ends_it(self):
         program = self.node("sonar_bridge", "type=sidescan")
         self.assertEqual(program.wait(PATIENCE_S), 1)
-        self.assertEqual(program.output(), "parameter type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360")
+        self.assertEqual(program.output(), "parameter type is 'sidescan', expected gemini or micron or oculus or ping1d or ping360 or sonar3d15")
 
 
 def main():

@@ -11,7 +11,6 @@ IS_SCANNING = False
 PARAMETERS = (
     Parameter("compression", 1, "2^n range lines are averaged into one; Gemini", 0, 4),
     Parameter("sonar_id", 0, "ID of the head; 0: the first whose status arrives; Gemini", 0, 65535),
-    Parameter("local", "", "address of this machine to send from; empty: the one that routes to the head; Gemini"),
 )
 
 

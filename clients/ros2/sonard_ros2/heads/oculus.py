@@ -10,7 +10,6 @@ from ..parameter import Parameter
 IS_SCANNING = False
 PARAMETERS = (
     Parameter("oculus_host", "", "address of the Oculus; empty: the first whose status arrives"),
-    Parameter("high_frequency", False, "the higher of its two frequencies; Oculus"),
     Parameter("beams", 512, "number of beams; Oculus", choices=(256, 512)),
 )
 
