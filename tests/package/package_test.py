@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Debian package: checked by lintian, then installed, used and purged on a fresh system.
 
-    sudo package_test.py PACKAGE.deb
+    sudo package_test.py [--codename NAME] PACKAGE.deb [TestCase.test_name ...]
 
-The system is a folder made by debootstrap from this machine's mirror, for this machine's release. Its programs run in mount,
-process and network namespaces of their own. Needs root, debootstrap, lintian, iproute2, and systemd to check the unit.
+The system is a folder made by debootstrap from this machine's mirror, for the release NAME (this machine's). Its programs run
+in mount, process and network namespaces of their own. Needs root, debootstrap, lintian, iproute2, and systemd to check the unit.
 """
 
+import argparse
 import json
 import os
 import pathlib
@@ -25,6 +26,7 @@ from fresh_system import make_fresh_system  # noqa: E402
 from hardening import missing_protections  # noqa: E402
 
 PACKAGE = None
+CODENAME = None  # of the fresh system; None: this machine's
 PATH = "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 
 
@@ -41,7 +43,7 @@ class System:
 
     def __init__(self, root):
         self.root = pathlib.Path(root)
-        make_fresh_system(root)
+        make_fresh_system(root, CODENAME)
 
     def run(self, command, network=True, expected=0, timeout=600):
         """Output of a shell command in the system, standard error included."""
@@ -156,5 +158,10 @@ class Package(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PACKAGE = os.path.abspath(sys.argv.pop(1))
-    unittest.main(verbosity=2)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--codename", help="release of the fresh system, such as trixie; without it this machine's")
+    parser.add_argument("package")
+    parser.add_argument("tests", nargs="*")
+    options = parser.parse_args()
+    PACKAGE, CODENAME = os.path.abspath(options.package), options.codename
+    unittest.main(argv=[sys.argv[0], "-v", *options.tests])
