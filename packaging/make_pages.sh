@@ -1,10 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the manual pages from the programs' --help, and the changelog, both compressed.
-#   make_pages.sh PROGRAMS PACKAGING CHANGELOG OUT CONTACT
+#   make_pages.sh PROGRAMS PACKAGING CHANGELOG OUT CONTACT REVISION
 # at_commit_time.sh calls it, so that the pages have the commit's time.
 set -euo pipefail
-programs=$1 packaging=$2 changelog=$3 out=$4 contact=$5
+programs=$1 packaging=$2 changelog=$3 out=$4 contact=$5 revision=$6
 rm -rf "$out"
 mkdir -p "$out/man/man1" "$out/man/man5"
 version=$("$programs/sonard" --version | sed -E 's/^sonard ([^,]*).*/\1/')
@@ -28,7 +28,7 @@ cp "$packaging/sonard.yaml.5" "$out/man/man5/"
 find "$out/man" -type f -exec gzip -9n {} +
 gzip -9nc "$changelog" >"$out/changelog.gz"
 gzip -9n >"$out/changelog.Debian.gz" <<END
-sonard ($version-1) unstable; urgency=medium
+sonard ($version-$revision) unstable; urgency=medium
 
   * See changelog.gz for the changes.
 

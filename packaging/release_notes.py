@@ -16,10 +16,11 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 VERSIONS = {"CMakeLists.txt": r"^project\(sonard VERSION (\S+)", "CITATION.cff": r"^version: (\S+)",
             "clients/python/pyproject.toml": r'^version = "(.*)"', "clients/ros2/package.xml": r"<version>(.*)</version>",
             "clients/ros2/setup.py": r'version="(.*)"'}
-# How the loader reads former names: YamlSection::renamed, renamed_value, and the former key of an input of poses.
+# How the loader reads former names: YamlSection::renamed, renamed_value, retired, and the former key of an input of poses.
 RENAMED = re.compile(r'\brenamed\("(\w+)",\s*"(\w+)"\)')
 RENAMED_VALUE = re.compile(r'\brenamed_value\("(\w+)",\s*"(\w+)",\s*"(\w+)"\)')
 RENAMED_INPUT = re.compile(r'\.key = "(\w+)",\s*\.former_key = "(\w+)"')
+RETIRED = re.compile(r'\bretired\("(\w+)",\s*"([^"]+)"\)')
 # A sentence on a key, an option or a file that is removed.
 GONE = re.compile(r"`[^`]+`[^`]{0,30} (?:is|are) gone\b(?! (?:from|does))")
 
@@ -46,6 +47,11 @@ def renamed_keys(sources):
     return sorted(lines)
 
 
+def retired_keys(sources):
+    """Lines on the keys that the loader refuses, with what to write in their place."""
+    return sorted({f"`{key}`: {what_to_do}" for text in sources for key, what_to_do in RETIRED.findall(text)})
+
+
 def newest_section(changelog, wanted):
     """The text of the first section, which must be that of the version `wanted`."""
     match = re.search(r"^## (\S+)[^\n]*\n(.*?)(?=^## |\Z)", changelog, re.MULTILINE | re.DOTALL)
@@ -61,11 +67,12 @@ def entries(section):
 
 def notes(changelog):
     section = newest_section(changelog, version())
-    renamed = renamed_keys(path.read_text(encoding="utf-8") for path in sorted((ROOT / "server").rglob("*.cpp")))
+    sources = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "server").rglob("*.cpp"))]
     gone = [sentence for entry in entries(section) for sentence in re.split(r"(?<=\.) (?=[A-Z`])", entry) if GONE.search(sentence)]
     return "\n".join([f"# sonard {version()}", "", "## Before you upgrade", "",
                       "sonard reads these former names with a warning. `sonard check CONFIG` lists those in your file.", "",
-                      *(f"- {line}" for line in renamed), "", "These changes remove something:", "",
+                      *(f"- {line}" for line in renamed_keys(sources)), "", "sonard refuses these keys:", "",
+                      *(f"- {line}" for line in retired_keys(sources)), "", "These changes remove something:", "",
                       *(f"- {entry}" for entry in gone), "", "## Changes", "", section]) + "\n"
 
 

@@ -108,8 +108,14 @@ class Files(unittest.TestCase):
         self.release("--only", "notes", out)
         before, changes = (out / "notes.md").read_text(encoding="utf-8").split("## Changes\n")
         for line in ("- `surface_port` is now `client_port`", "- `poses.ignition` is now `poses.gazebo`",
-                     "- `clock: lock_step` is now `clock: simulated_lock_step`", "- The key `gpu.colour` is gone: remove it."):
+                     "- `clock: lock_step` is now `clock: simulated_lock_step`", "- The key `gpu.colour` is gone: remove it.",
+                     "- `gpu_binning`: remove it; engine `gpu` always bins on the GPU"):
             self.assertIn(line + "\n", before)
+        calls = sum(len(re.findall(r'(?:\.(?:renamed|renamed_value|retired)\(|\.former_key =)\s*"', path.read_text(encoding="utf-8")))
+                    for path in (self.source / "server").rglob("*.cpp"))
+        self.assertGreater(calls, 10)
+        self.assertEqual(sum("` is now `" in line or line.startswith("- `") and "`: " in line for line in before.split("These changes")[0].splitlines()),
+                         calls)
         self.assertNotIn("Grey stays", before)
         self.assertIn("Grey stays", changes)
 
@@ -142,7 +148,7 @@ class Files(unittest.TestCase):
         self.assertTrue((out / "notes.md").exists())
 
     def test_wrong_options_are_refused(self):
-        for arguments in ((), ("--only", "rpm", "out"), ("--fast", "out"), ("one", "two"), ("--only",)):
+        for arguments in ((), ("--only", "rpm", "out"), ("--fast", "out"), ("one", "two"), ("--only",), ("--repository", "javascript:1", "out")):
             self.release(*arguments, expected=64)
 
 
