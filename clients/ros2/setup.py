@@ -3,7 +3,7 @@ from setuptools import setup
 
 setup(
     name="sonard_ros2",
-    version="0.1.0",
+    version="0.2.0",
     packages=["sonard_ros2", "sonard_ros2.heads"],
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/sonard_ros2"]),
