@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds docker/Dockerfile with buildah in a storage of its own. Needs root, buildah, podman and debootstrap.
 
-    container_image.py FOLDER ARCHITECTURE OUT.tar     writes the image as an OCI archive; FOLDER has the storage
+    container_image.py FOLDER ARCHITECTURE OUT.tar [PACKAGE.deb]
+
+writes the image as an OCI archive; FOLDER has the storage. With a package for the image's release, it compiles nothing.
 """
 
 import os
@@ -26,6 +28,14 @@ def set_up_engines(folder):
     os.environ.update(CONTAINERS_CONF=str(folder / "containers.conf"), CONTAINERS_STORAGE_CONF=str(folder / "storage.conf"))
 
 
+def with_package(folder, package):
+    """Options that give the Dockerfile a package in place of its stage `build`."""
+    built = folder / "context" / "src" / "build" / "release"
+    built.mkdir(parents=True)
+    shutil.copy(package, built / "sonard_release.deb")
+    return ("--build-context", f"build={folder / 'context'}")
+
+
 def build_image(folder, options=()):
     """Tags the image `sonard`. Its base is made from this machine's mirror."""
     base = folder / "base"
@@ -44,7 +54,8 @@ def main():
     folder, architecture, out = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     folder.mkdir(parents=True, exist_ok=True)
     set_up_engines(folder)
-    build_image(folder, options=("--arch", architecture, "--timestamp", os.environ["SOURCE_DATE_EPOCH"]))
+    package = with_package(folder, sys.argv[4]) if len(sys.argv) > 4 else ()
+    build_image(folder, options=("--arch", architecture, "--timestamp", os.environ["SOURCE_DATE_EPOCH"], *package))
     subprocess.run(["buildah", "push", "--format", "oci", "sonard", f"oci-archive:{out}"], check=True)
 
 
