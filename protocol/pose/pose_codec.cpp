@@ -31,10 +31,10 @@ bool is_speed(const Vec3& v) {
   return is_finite(v) && std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}) <= max_speed;
 }
 
-Result<Velocity, PoseError> read(const Twist& message, Axes axes) {
+Result<Velocity, PoseError> read(const Twist& message, Axes axes, std::string_view field) {
   const Velocity twist{read(message.linear_mps()), read(message.angular_radps())};
   if (!is_speed(twist.linear_mps) || !is_speed(twist.angular_radps)) {
-    return PoseError{Kind::bad_value, "twist", "is not finite or beyond 1e6"};
+    return PoseError{Kind::bad_value, field, "is not finite or beyond 1e6"};
   }
   return axes == Axes::ned_frd ? flu_from_frd(twist) : twist;
 }
@@ -54,6 +54,13 @@ std::optional<PoseError> read_bodies(const PoseUpdate& update, Axes axes, PoseSa
       return transform.error();
     }
     sample.bodies.push_back({body.name(), *transform});
+    if (body.has_twist()) {
+      const auto twist = read(body.twist(), axes, "bodies.twist");
+      if (!twist) {
+        return twist.error();
+      }
+      sample.bodies.back().twist = *twist;
+    }
   }
   return std::nullopt;
 }
@@ -62,6 +69,11 @@ void write(const Vec3& v, Vector3& message) {
   message.set_x(v.x);
   message.set_y(v.y);
   message.set_z(v.z);
+}
+
+void write(const Velocity& twist, Twist& message) {
+  write(twist.linear_mps, *message.mutable_linear_mps());
+  write(twist.angular_radps, *message.mutable_angular_radps());
 }
 
 /// Value and length of the varint at the front of a buffer. length 0: incomplete; -1: longer than any
@@ -120,7 +132,7 @@ Result<PoseSample, PoseError> decode(std::span<const std::uint8_t> message) {
   }
   sample.T_world_vehicle = *vehicle;
   if (update.has_twist()) {
-    const auto twist = read(update.twist(), axes);
+    const auto twist = read(update.twist(), axes, "twist");
     if (!twist) {
       return twist.error();
     }
@@ -139,13 +151,15 @@ std::vector<std::uint8_t> encode(const PoseSample& sample) {
   update.set_frame(FRAME_ENU_FLU);
   pose::write(sample.T_world_vehicle, *update.mutable_vehicle());
   if (sample.twist) {
-    write(sample.twist->linear_mps, *update.mutable_twist()->mutable_linear_mps());
-    write(sample.twist->angular_radps, *update.mutable_twist()->mutable_angular_radps());
+    write(*sample.twist, *update.mutable_twist());
   }
   for (const NamedTransform& body : sample.bodies) {
     BodyPose& message = *update.add_bodies();
     message.set_name(body.name);
     pose::write(body.T_world_body, *message.mutable_pose());
+    if (body.twist) {
+      write(*body.twist, *message.mutable_twist());
+    }
   }
   std::vector<std::uint8_t> bytes(update.ByteSizeLong());
   update.SerializeToArray(bytes.data(), static_cast<int>(bytes.size()));

@@ -23,6 +23,7 @@ enum class Axes { enu_flu, ned_frd };
 struct NamedTransform {
   std::string name;
   Transform T_world_body;
+  std::optional<Velocity> twist = std::nullopt;  ///< relative to the world, in the body's axes
 };
 
 /// One message of a publisher. World axes east, north, up; vehicle axes forward, left, up. decode() ensures

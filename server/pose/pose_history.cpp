@@ -92,7 +92,7 @@ void PoseHistory::insert_body(const pose::NamedTransform& body, std::int64_t tim
     }
     track = bodies_.emplace(body.name, PoseTrack{points_kept(ping_clock_, body_points)}).first;
   }
-  track->second.insert({time_ns, body.T_world_body, std::nullopt});
+  track->second.insert({time_ns, body.T_world_body, body.twist});
 }
 
 std::optional<PoseEstimate> PoseHistory::at(TimePoint time) const {
@@ -157,7 +157,7 @@ std::vector<PosedBody> PoseHistory::bodies_at(TimePoint time) const {
   posed.reserve(bodies_.size());
   const std::int64_t time_ns = stamp_at(time);
   for (const auto& [name, track] : bodies_) {
-    posed.push_back({name, to_render(track.at(time_ns, 0))});
+    posed.push_back({name, to_render(track.at(time_ns, limit_.count()))});
   }
   return posed;
 }

@@ -101,8 +101,8 @@ class PoseHistory {
   /// its newest pose, and not in a gap longer than the extrapolation limit. nullopt: not yet known.
   std::optional<TimePoint> known_from(TimePoint time) const;
 
-  /// All named bodies received since the last clock restart, at a time. Bodies have no twist: past their
-  /// newest pose they stay there. They are never stale.
+  /// All named bodies received since the last clock restart, at a time. Past its newest pose a body follows
+  /// its twist, if it has one, until the extrapolation limit, and then stays there. It is never stale.
   std::vector<PosedBody> bodies_at(TimePoint time) const;
 
   const PoseHistoryCounters& counters() const { return counters_; }

@@ -30,6 +30,8 @@ void check_message(std::span<const std::uint8_t> message) {
   require(finite(sample->T_world_vehicle), "positions are finite");
   for (const NamedTransform& body : sample->bodies) {
     require(!body.name.empty() && finite(body.T_world_body), "bodies have names and finite positions");
+    require(!body.twist || (is_finite(body.twist->linear_mps) && is_finite(body.twist->angular_radps)),
+            "velocities of bodies are finite");
   }
   const auto again = decode(encode(*sample));
   require(again.has_value(), "what was decoded can be encoded");

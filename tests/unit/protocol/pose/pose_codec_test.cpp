@@ -126,7 +126,11 @@ TEST(PoseCodec, DecodesWhatProtocEncodes) {
   // This rotation maps forward to y (east), right to z (down) and down to x (north).
   EXPECT_THAT(rotate(sample->bodies[0].T_world_body.orientation, {1, 0, 0}), IsVec3(Vec3{1, 0, 0}, 1e-15));
   EXPECT_THAT(rotate(sample->bodies[0].T_world_body.orientation, {0, 1, 0}), IsVec3(Vec3{0, 0, 1}, 1e-15));
+  ASSERT_TRUE(sample->bodies[0].twist);
+  EXPECT_THAT(sample->bodies[0].twist->linear_mps, IsVec3(Vec3{4, -5, -6}, 0));
+  EXPECT_THAT(sample->bodies[0].twist->angular_radps, IsVec3(Vec3{0.4, -0.5, -0.6}, 0));
   EXPECT_EQ(sample->bodies[1].name, "buoy");
+  EXPECT_FALSE(sample->bodies[1].twist);
 }
 
 /// The text that protoc prints for a message.
@@ -151,15 +155,17 @@ TEST(PoseCodec, EncodesWhatProtocDecodes) {
   sample.time_ns = 42;
   sample.T_world_vehicle = {{1.5, -2.5, 0}, {0.6, 0.8, 0, 0}};
   sample.twist = Velocity{{0.25, 0, 0}, {0, 0, -0.125}};
-  sample.bodies = {{"crane", {{0, 0, 7}, {}}}};
-  EXPECT_EQ(read_by_protoc(encode(sample)),
-            "time_ns: 42\n"
-            "vehicle {\n  position_m {\n    x: 1.5\n    y: -2.5\n  }\n  orientation {\n    w: 0.6\n    x: "
-            "0.8\n  }\n}\n"
-            "twist {\n  linear_mps {\n    x: 0.25\n  }\n  angular_radps {\n    z: -0.125\n  }\n}\n"
-            "bodies {\n  name: \"crane\"\n  pose {\n    position_m {\n      z: 7\n    }\n    orientation {\n "
-            "     w: 1\n"
-            "    }\n  }\n}\n");
+  sample.bodies = {{"crane", {{0, 0, 7}, {}}, Velocity{{0, 0.5, 0}, {0, 0, 2}}}};
+  EXPECT_EQ(
+      read_by_protoc(encode(sample)),
+      "time_ns: 42\n"
+      "vehicle {\n  position_m {\n    x: 1.5\n    y: -2.5\n  }\n  orientation {\n    w: 0.6\n    x: "
+      "0.8\n  }\n}\n"
+      "twist {\n  linear_mps {\n    x: 0.25\n  }\n  angular_radps {\n    z: -0.125\n  }\n}\n"
+      "bodies {\n  name: \"crane\"\n  pose {\n    position_m {\n      z: 7\n    }\n    orientation {\n "
+      "     w: 1\n"
+      "    }\n  }\n  twist {\n    linear_mps {\n      y: 0.5\n    }\n    angular_radps {\n      z: 2\n    }\n"
+      "  }\n}\n");
 }
 
 TEST(PoseCodec, RoundTripKeepsEverything) {
@@ -181,6 +187,9 @@ TEST(PoseCodec, RoundTripKeepsEverything) {
     }
     for (int body = 0; body < i % 4; ++body) {
       sample.bodies.push_back({"body " + std::to_string(body), any_transform()});
+      if (body % 2 == 1) {
+        sample.bodies.back().twist = Velocity{{normal(random), 0, 0}, {0, 0, normal(random)}};
+      }
     }
     const auto back = decode(encode(sample));
     ASSERT_TRUE(back) << to_string(back.error());
@@ -197,6 +206,12 @@ TEST(PoseCodec, RoundTripKeepsEverything) {
       EXPECT_EQ(back->bodies[body].name, sample.bodies[body].name);
       EXPECT_THAT(back->bodies[body].T_world_body.position_m,
                   IsVec3(sample.bodies[body].T_world_body.position_m, 0));
+      ASSERT_EQ(back->bodies[body].twist.has_value(), sample.bodies[body].twist.has_value());
+      if (sample.bodies[body].twist) {
+        EXPECT_THAT(back->bodies[body].twist->linear_mps, IsVec3(sample.bodies[body].twist->linear_mps, 0));
+        EXPECT_THAT(back->bodies[body].twist->angular_radps,
+                    IsVec3(sample.bodies[body].twist->angular_radps, 0));
+      }
     }
   }
 }
@@ -276,6 +291,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadMessage{"body_nan",
                    joined(good_vehicle, Wire{}.nested(5, wire_body("a", wire_pose({nan, 0, 0}, {})))),
                    bad_value, "bodies.pose: position is not finite"},
+        BadMessage{
+            "body_twist_nan",
+            joined(good_vehicle, Wire{}.nested(5, joined(wire_body("a", wire_pose({}, {1, 0, 0, 0})),
+                                                         Wire{}.nested(3, wire_twist({0, 0, nan}, {}))))),
+            bad_value, "bodies.twist: is not finite or beyond 1e6"},
         BadMessage{
             "text", {'h', 'e', 'l', 'l', 'o', '\n'}, malformed, "message: is not a PoseUpdate (pose.proto)"},
         BadMessage{"cut_off", {0x1A, 0x20, 0x0A}, malformed, "message: is not a PoseUpdate (pose.proto)"},

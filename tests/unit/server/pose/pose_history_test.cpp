@@ -286,6 +286,99 @@ TEST(PoseHistory, BodiesMoveOnTheSameClock) {
   EXPECT_EQ(history.bodies_at(ours(1e6))[1].T_world_body.position_m.z, 2.0) << "bodies never get stale";
 }
 
+constexpr std::int64_t body_period_ms = 500;
+constexpr int ping_period_ms = 100;
+
+/// Inserts a pose of a body at 2 Hz, and calls `check` for pings at 10 Hz, each before the next pose arrives.
+/// @param at pose of the body at a time in seconds
+template <typename At, typename Check>
+void follow_body(PoseHistory& history, const At& at, const pose::Velocity& twist, const Check& check) {
+  for (std::int64_t i = 0; i < 8; ++i) {
+    PoseSample sample = at_x(i * body_period_ms, 0);
+    const double time_s = 1e-3 * static_cast<double>(i * body_period_ms);
+    sample.bodies = {{"rov", at(time_s), twist}};
+    insert(history, sample);
+    for (int past_ms = 0; past_ms < body_period_ms; past_ms += ping_period_ms) {
+      const double ping_ms = 1e3 * time_s + past_ms;
+      const auto bodies = history.bodies_at(ours(ping_ms));
+      ASSERT_EQ(bodies.size(), 1U);
+      check(bodies[0].T_world_body, at(1e-3 * ping_ms));
+    }
+  }
+}
+
+PoseConfig half_a_second() {
+  PoseConfig result = config();
+  result.extrapolation_limit = milliseconds{500};
+  return result;
+}
+
+// 3 m/s. Without the twist, the body would be up to 1.2 m behind.
+TEST(PoseHistory, ABodyWithATwistIsOnItsLineAtEachPing) {
+  PoseHistory history{half_a_second()};
+  const pose::Quat heading = yaw(0.5);
+  const auto at = [&](double time_s) {
+    return pose::Transform{pose::rotate(heading, {3 * time_s, 0, 0}), heading};
+  };
+  follow_body(history, at, {{3, 0, 0}, {}}, [](const render::Pose& pose, const pose::Transform& truth) {
+    EXPECT_NEAR(pose.position_m.x, truth.position_m.x, 1e-6);
+    EXPECT_NEAR(pose.position_m.y, truth.position_m.y, 1e-6);
+  });
+}
+
+// 10 m radius, 2 m/s: twist and pose are exact, so the helix is the circle.
+TEST(PoseHistory, ABodyWithATwistIsOnItsCircleAtEachPing) {
+  PoseHistory history{half_a_second()};
+  const auto at = [](double time_s) {
+    const double angle_rad = 0.2 * time_s;
+    return pose::Transform{{10 * std::sin(angle_rad), 10 - 10 * std::cos(angle_rad), -3}, yaw(angle_rad)};
+  };
+  follow_body(history, at, {{2, 0, 0}, {0, 0, 0.2}},
+              [](const render::Pose& pose, const pose::Transform& truth) {
+                EXPECT_NEAR(pose.position_m.x, truth.position_m.x, 1e-6);
+                EXPECT_NEAR(pose.position_m.y, truth.position_m.y, 1e-6);
+                EXPECT_NEAR(pose.position_m.z, -3.0, 1e-12);
+                EXPECT_NEAR(pose.orientation.z, truth.orientation.z, 1e-9);
+              });
+}
+
+// As for the vehicle: between two poses on a straight line, so a circle is cut by its sagitta, 10 (1 - cos
+// 0.05) m.
+TEST(PoseHistory, InSimulatedTimeABodyIsBetweenItsPoses) {
+  PoseConfig simulated = half_a_second();
+  simulated.clock = PingClock::simulated;
+  PoseHistory history{simulated};
+  const auto at = [](double time_s) {
+    const double angle_rad = 0.2 * time_s;
+    return pose::Transform{{10 * std::sin(angle_rad), 10 - 10 * std::cos(angle_rad), -3}, yaw(angle_rad)};
+  };
+  for (int i = 0; i < 8; ++i) {
+    PoseSample sample = at_x(i * body_period_ms, 0);
+    sample.bodies = {{"rov", at(0.5 * i), pose::Velocity{{2, 0, 0}, {0, 0, 0.2}}}};
+    insert(history, sample);
+  }
+  for (int ping_ms = 0; ping_ms < 3500; ping_ms += ping_period_ms) {
+    const auto bodies = history.bodies_at(TimePoint{ping_ms * ms_ns});
+    const pose::Vec3 truth = at(1e-3 * ping_ms).position_m;
+    EXPECT_LT(std::hypot(bodies[0].T_world_body.position_m.x - truth.x,
+                         bodies[0].T_world_body.position_m.y - truth.y),
+              10 * (1 - std::cos(0.05)) + 1e-9);
+  }
+}
+
+TEST(PoseHistory, ABodyFollowsItsTwistUpToTheLimit) {
+  PoseHistory history{config()};  // 200 ms
+  PoseSample sample = at_x(0, 0);
+  sample.bodies = {{"rov", {}, pose::Velocity{{1, 0, 0}, {}}}};
+  insert(history, sample);
+  EXPECT_NEAR(history.bodies_at(ours(150))[0].T_world_body.position_m.x, 0.15, 1e-9);
+  EXPECT_NEAR(history.bodies_at(ours(1e6))[0].T_world_body.position_m.x, 0.2, 1e-9);
+  sample = at_x(400, 0);
+  sample.bodies = {{"rov", {{5, 0, 0}, {}}}};
+  insert(history, sample);
+  EXPECT_EQ(history.bodies_at(ours(500))[0].T_world_body.position_m.x, 5.0) << "this pose has no twist";
+}
+
 TEST(PoseHistory, PublishersCannotInventBodiesForEver) {
   PoseHistory history{config()};
   for (int i = 0; i < 2000; ++i) {
