@@ -7,7 +7,7 @@
         ping = sonar.ping(range_m=20)
     print(ping.samples.shape, ping.ranges_m[-1], ping.bearings_rad[[0, -1]])
 
-PosePublisher and encode_pose() need no NumPy. All other names do, when they are first used.
+PosePublisher, MovingBody and encode_pose() need no NumPy. All other names do, when they are first used.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-from .poses import PosePublisher, encode_pose
+from .poses import MovingBody, PosePublisher, encode_pose
 
 if TYPE_CHECKING:
     from .damage import DamagedLog
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from .ping360 import Ping360
     from .sonar3d15 import Shot, Sonar3D15, read_sonar_file
 
-__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "NoHead", "NoPing", "Oculus", "Ping", "Ping1D",
+__all__ = ["DamagedLog", "Gemini", "LoggedPing", "Micron", "MovingBody", "NoHead", "NoPing", "Oculus", "Ping", "Ping1D",
            "Ping360", "PosePublisher", "Shot", "Sonar3D15", "Sounding", "encode_pose", "read_log", "read_sonar_file"]
 
 _MODULES = {"DamagedLog": "damage", "Gemini": "gemini", "LoggedPing": "ping", "Micron": "micron", "NoHead": "ping",

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import socket
 import struct
-from typing import Optional, Sequence
+from typing import NamedTuple, Optional, Sequence
 
 _FRAMES = {"enu_flu": 0, "ned_frd": 1}
 _MAX_TIME_NS = 4 * 10**18
@@ -58,10 +58,43 @@ def _quaternion(values: Sequence[float]) -> bytes:
     return _doubles((w, x, y, z))
 
 
+class MovingBody(NamedTuple):
+    """A moving object of the world, by the name of its model. The numbers are as for the vehicle in encode_pose(); the
+    velocities are in the axes of the body."""
+
+    name: str
+    position_m: Sequence[float]
+    quaternion_xyzw: Sequence[float]
+    linear_mps: Optional[Sequence[float]] = None
+    angular_radps: Optional[Sequence[float]] = None
+
+
+def _pose(position_m: Sequence[float], quaternion_xyzw: Sequence[float]) -> bytes:
+    return _message_field(1, _vector("position_m", position_m, _MAX_COORDINATE_M)) + \
+        _message_field(2, _quaternion(quaternion_xyzw))
+
+
+def _twist(linear_mps: Optional[Sequence[float]], angular_radps: Optional[Sequence[float]]) -> bytes:
+    twist = b""
+    if linear_mps is not None:
+        twist += _message_field(1, _vector("linear_mps", linear_mps, _MAX_SPEED))
+    if angular_radps is not None:
+        twist += _message_field(2, _vector("angular_radps", angular_radps, _MAX_SPEED))
+    return twist
+
+
+def _body(body: MovingBody) -> bytes:
+    if not body.name:
+        raise ValueError("name is empty, expected the name of a body")
+    twist = _twist(body.linear_mps, body.angular_radps)
+    return _message_field(1, body.name.encode()) + _message_field(2, _pose(body.position_m, body.quaternion_xyzw)) + \
+        (_message_field(3, twist) if twist else b"")
+
+
 def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
                 linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
-                axes: str = "enu_flu") -> bytes:
-    """Encodes one PoseUpdate of the vehicle.
+                axes: str = "enu_flu", bodies: Sequence[MovingBody] = ()) -> bytes:
+    """Encodes one PoseUpdate.
 
     time_ns          time of the pose, on any clock of the publisher
     position_m       of the vehicle's origin in the world
@@ -71,6 +104,7 @@ def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequ
                      holds until the next one
     axes             enu_flu: world x east, y north, z up, vehicle x forward, y to port, z up, as in ROS;
                      ned_frd: world x north, y east, z down, vehicle x forward, y to starboard, z down
+    bodies           other moving objects, with the same axes, each once
 
     Raises ValueError, which names the argument, if sonard would reject a number.
     """
@@ -78,15 +112,13 @@ def encode_pose(time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequ
         raise ValueError(f"time_ns is {time_ns}, expected a number within 4e18")
     if axes not in _FRAMES:
         raise ValueError(f"axes is '{axes}', expected enu_flu or ned_frd")
-    vehicle = _message_field(1, _vector("position_m", position_m, _MAX_COORDINATE_M)) + \
-        _message_field(2, _quaternion(quaternion_xyzw))
-    update = _varint_field(1, time_ns) + _varint_field(2, _FRAMES[axes]) + _message_field(3, vehicle)
-    twist = b""
-    if linear_mps is not None:
-        twist += _message_field(1, _vector("linear_mps", linear_mps, _MAX_SPEED))
-    if angular_radps is not None:
-        twist += _message_field(2, _vector("angular_radps", angular_radps, _MAX_SPEED))
-    return update + _message_field(4, twist) if twist else update
+    if len({body.name for body in bodies}) < len(bodies):
+        raise ValueError("bodies has a name twice")
+    update = _varint_field(1, time_ns) + _varint_field(2, _FRAMES[axes]) + \
+        _message_field(3, _pose(position_m, quaternion_xyzw))
+    twist = _twist(linear_mps, angular_radps)
+    return update + (_message_field(4, twist) if twist else b"") + \
+        b"".join(_message_field(5, _body(body)) for body in bodies)
 
 
 class PosePublisher:
@@ -116,10 +148,10 @@ class PosePublisher:
 
     def send(self, time_ns: int, position_m: Sequence[float], quaternion_xyzw: Sequence[float],
              linear_mps: Optional[Sequence[float]] = None, angular_radps: Optional[Sequence[float]] = None,
-             axes: str = "enu_flu") -> None:
+             axes: str = "enu_flu", bodies: Sequence[MovingBody] = ()) -> None:
         """Sends one pose (arguments of encode_pose()); send at least 20 per second. Raises OSError if the host has no
         address or no route, and by TCP if sonard closed the connection. UDP does not report whether sonard listens."""
-        message = encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes)
+        message = encode_pose(time_ns, position_m, quaternion_xyzw, linear_mps, angular_radps, axes, bodies)
         if self._tcp:
             self._socket.sendall(_varint(len(message)) + message)
         else:

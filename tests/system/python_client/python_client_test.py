@@ -19,6 +19,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import warnings
@@ -31,7 +32,8 @@ sys.path[:0] = [os.path.join(SOURCE, *folder) for folder in (("tests", "system",
                                                              ("clients", "python"))]
 from example_messages import example, messages  # noqa: E402
 from lab import OwnMachine, Program  # noqa: E402
-from sonard_client import DamagedLog, Gemini, Micron, NoHead, NoPing, Oculus, Ping1D, Ping360, Sonar3D15  # noqa: E402
+from sonard_client import (DamagedLog, Gemini, Micron, MovingBody, NoHead, NoPing, Oculus, Ping1D, Ping360,  # noqa: E402
+                           PosePublisher, Sonar3D15)
 from sonard_client import gemini, micron, oculus, ping360, ping_head, read_log, read_sonar_file, sonar3d15  # noqa: E402
 
 WORLD = os.path.join(SOURCE, "tests", "data", "system", "sphere_to_port.sdf")
@@ -370,6 +372,38 @@ class OculusClient(OwnMachine):
             Oculus(patience_s=0.5)
         with self.assertRaisesRegex(NoHead, "cannot connect to 127.0.0.3:52100"):
             Oculus("127.0.0.3")
+
+
+class MovingBodies(OwnMachine):
+    SPEED_MPS = 1.0
+
+    def publish(self, ended):
+        """The vehicle at rest, and the sphere on the x axis, from 2 m on: 2 poses per second."""
+        with PosePublisher() as poses:
+            begin = time.monotonic()
+            while not ended.wait(0.5 - (time.monotonic() - begin) % 0.5):
+                passed_s = time.monotonic() - begin
+                poses.send(time.monotonic_ns(), (0, 0, 0), (0, 0, 0, 1), bodies=[
+                    MovingBody("sphere", (2 + self.SPEED_MPS * passed_s, 0, 0), (0, 0, 0, 1), (self.SPEED_MPS, 0, 0))])
+
+    def test_a_sphere_at_two_poses_per_second_does_not_step(self):
+        start(self, OCULUS_CONFIG.replace(
+            "poses: {{", "poses: {{udp: {{bind: 127.0.0.1:14600}}, extrapolation_limit_ms: 1000, "))
+        ended = threading.Event()
+        publisher = threading.Thread(target=self.publish, args=(ended,))
+        publisher.start()
+        self.addCleanup(publisher.join)
+        self.addCleanup(ended.set)
+        time.sleep(1.5)
+        with Oculus() as sonar:
+            pings = [ping for ping, _ in zip(sonar.pings(0.1, range_m=8), range(30))]
+        times_s = numpy.array([ping.transmit_us for ping in pings]) * 1e-6
+        ranges_m = numpy.array([ping.ranges_m[numpy.unravel_index(ping.samples.argmax(), ping.samples.shape)[0]]
+                                for ping in pings])
+        speed_mps, start_m = numpy.polyfit(times_s, ranges_m, 1)
+        self.assertAlmostEqual(speed_mps, self.SPEED_MPS, delta=0.05)
+        # Steps of 0.5 m would differ by up to 0.25 m from the line. Ranges have rows of 7 mm, stamps a delay of a few ms.
+        self.assertLess(numpy.abs(ranges_m - start_m - speed_mps * times_s).max(), 0.06)
 
 
 class Ping360Bytes(unittest.TestCase):

@@ -16,7 +16,7 @@ import unittest
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", "..", "..", ".."))
 sys.path.insert(0, os.path.join(SOURCE, "clients", "python"))
 
-from sonard_client import PosePublisher, encode_pose  # noqa: E402
+from sonard_client import MovingBody, PosePublisher, encode_pose  # noqa: E402
 
 POSITION_M, QUATERNION_XYZW = (1.5, -2.25, -30.0), (0.1, -0.2, 0.3, 0.9)
 
@@ -61,6 +61,19 @@ class Encoding(unittest.TestCase):
                 self.assertTrue(update.HasField("twist"))
                 for name in ("linear_mps", "angular_radps"):
                     self.assertEqual(numbers(getattr(update.twist, name)), names.get(name, (0, 0, 0)))
+
+    def test_bodies(self):
+        buoy, rov = decoded(1, POSITION_M, QUATERNION_XYZW, bodies=[
+            MovingBody("buoy", (1, 2, 3), (0, 0, 0, 1)),
+            MovingBody("rov é", (4, 5, 6), (0.5, 0.5, 0.5, 0.5), linear_mps=(1, 0, 0), angular_radps=(0, 0, 0.5))]).bodies
+        self.assertEqual((buoy.name, numbers(buoy.pose.position_m)), ("buoy", (1, 2, 3)))
+        self.assertFalse(buoy.HasField("twist"))
+        self.assertEqual((rov.name, numbers(rov.pose.orientation, "xyzw")), ("rov é", (0.5, 0.5, 0.5, 0.5)))
+        self.assertEqual((numbers(rov.twist.linear_mps), numbers(rov.twist.angular_radps)), ((1, 0, 0), (0, 0, 0.5)))
+        for names, reason in ((("", ), "name is empty"), (("rov", "rov"), "bodies has a name twice")):
+            with self.assertRaisesRegex(ValueError, reason):
+                encode_pose(1, POSITION_M, QUATERNION_XYZW,
+                            bodies=[MovingBody(name, POSITION_M, QUATERNION_XYZW) for name in names])
 
     def test_what_sonard_refuses(self):
         good = {"time_ns": 1, "position_m": (1, 2, 3), "quaternion_xyzw": (0, 0, 0, 1), "linear_mps": (0, 0, 0),
