@@ -86,6 +86,13 @@ inline std::string EncodePose(const Vector& position, const Rotation& orientatio
   return pose;
 }
 
+inline std::string EncodeTwist(const Vector& velocity, const Vector& turnRate) {
+  std::string twist;
+  AppendPart(twist, 1, Encode(velocity));
+  AppendPart(twist, 2, Encode(turnRate));
+  return twist;
+}
+
 // A datagram. Results of EncodeBody() may be appended to it, for other moving objects.
 inline std::string EncodeUpdate(double seconds, const Vector& position, const Rotation& orientation,
                                 const Vector& velocity, const Vector& turnRate) {
@@ -93,18 +100,17 @@ inline std::string EncodeUpdate(double seconds, const Vector& position, const Ro
   AppendVarint(update, 1 << 3);  // time_ns
   AppendVarint(update, static_cast<std::uint64_t>(seconds * 1e9));
   AppendPart(update, 3, EncodePose(position, orientation));
-  std::string twist;
-  AppendPart(twist, 1, Encode(velocity));
-  AppendPart(twist, 2, Encode(turnRate));
-  AppendPart(update, 4, twist);
+  AppendPart(update, 4, EncodeTwist(velocity, turnRate));
   return update;
 }
 
-// Another moving object, by the name of its model in sonard's world.
-inline std::string EncodeBody(const std::string& name, const Vector& position, const Rotation& orientation) {
+// Another moving object, by the name of its model in sonard's world. Velocity and turn rate are in its axes.
+inline std::string EncodeBody(const std::string& name, const Vector& position, const Rotation& orientation,
+                              const Vector& velocity, const Vector& turnRate) {
   std::string body;
   AppendPart(body, 1, name);
   AppendPart(body, 2, EncodePose(position, orientation));
+  AppendPart(body, 3, EncodeTwist(velocity, turnRate));
   std::string field;
   AppendPart(field, 5, body);
   return field;

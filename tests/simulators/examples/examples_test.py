@@ -65,9 +65,16 @@ class Examples(walls.WallTest):
                 self.check_ranges(expected)
         if "body" in states:  # in front of the north wall again, with all walls 0.75 m further north
             numbers = [*states["north"], *[0] * 6, *states["body"]]
-            self.lab.start(self.lab.head, *command, PORT, "0", *map(str, numbers))
+            vehicle = self.lab.start(self.lab.head, *command, PORT, "0", *map(str, numbers))
             with self.subTest("body"):
                 self.check_ranges({AHEAD: 3.25})
+            vehicle.kill()
+        if "moving_body" in states:  # one message; the daemon moves the walls by 0.75 m within 300 ms, from 1 m further south
+            numbers = [*states["north"], *[0] * 6, *states["moving_body"]]
+            once = self.lab.start(self.lab.head, *command, PORT, "1", *map(str, numbers))
+            self.assertEqual(once.wait(link_test.PATIENCE_S), 0, once.tail())
+            with self.subTest("moving body"):
+                self.check_ranges({AHEAD: 2.25})
         self.end_daemon(self.daemon)
         self.assertNotIn("is refused", self.daemon.output())
 
@@ -116,7 +123,8 @@ class Examples(walls.WallTest):
                     east=(275, -50, -100, 0, 0, 0), down=(0, 0, -100, -90, -90, 0), rolled=(0, 0, -100, 0, -90, 90),
                     turning=(0, 0, -100, 0, 0, 0, 0, -500, 0, 0, 0, -TURN),
                     diving=(0, 0, -100, 0, -90, 0, 0, -500, 0, TURN, 0, 0),
-                    rolling=(0, 0, -100, 0, -90, 0, 0, 0, 500, 0, TURN, 0), body=(0, -75, 0, 0, 0, 0))
+                    rolling=(0, 0, -100, 0, -90, 0, 0, 0, 500, 0, TURN, 0), body=(0, -75, 0, 0, 0, 0),
+                    moving_body=(0, 100, 0, 0, 0, 0, 0, -250, 0))
 
     def test_unity(self):
         """East, up, north; angles about these axes; velocities in the world's axes. A positive turn about up is to starboard,

@@ -55,9 +55,12 @@ int main(int argc, char** argv) {
             sonard_unreal::TurnRate(rotation.UnrotateVector(vector(state.turn_rate))));
         if (state.with_body) {
           const auto& angles = state.body_angles_rad;
-          message +=
-              sonard_unreal::EncodeBody("walls", sonard_unreal::Position(vector(state.body_position)),
-                                        sonard_unreal::Orientation(rotator(angles[0], angles[1], angles[2])));
+          const FQuat turned = rotator(angles[0], angles[1], angles[2]);
+          message += sonard_unreal::EncodeBody(
+              "walls", sonard_unreal::Position(vector(state.body_position)),
+              sonard_unreal::Orientation(turned),
+              sonard_unreal::Velocity(turned.UnrotateVector(vector(state.body_velocity))),
+              sonard_unreal::TurnRate(FVector{}));
         }
         sockaddr_in to{};
         to.sin_family = AF_INET;
