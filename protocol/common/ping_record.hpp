@@ -26,6 +26,14 @@ struct RecordedSettings {
   bool operator==(const RecordedSettings&) const = default;
 };
 
+/// An echo at a place. Axes of the head as in REP-103: x forward, y to port, z up, in metres.
+struct EchoPoint {
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+  float intensity = 0.0F;  ///< the sample
+
+  bool operator==(const EchoPoint&) const = default;
+};
+
 /// A ping that a head has sent, for logs.
 struct PingRecord {
   std::uint64_t number = 0;  ///< PingJob::number
@@ -40,6 +48,8 @@ struct PingRecord {
   /// Bin after bin from near to far, each bin from port to starboard, as a client has them after decoding.
   std::vector<std::uint8_t> samples;
   std::vector<std::uint8_t> wire;  ///< the message on the wire without its samples; empty: not kept
+  /// The echoes of a head that measures directions, whose `samples` are a fan of them; nullopt: another head.
+  std::optional<std::vector<EchoPoint>> points;
 };
 
 /// The record of a scanning head's ping, without samples, `wire`, number and transmit time.
