@@ -168,11 +168,13 @@ struct Resources {
     return body == "salt" || body == "fresh" ? 204 : 400;
   }
 
-  static int set_speed(Controls& controls, TimePoint, json& body) {
+  static int set_speed(Controls& controls, TimePoint now, json& body) {
     const bool automatic = body == 0 && controls.config_.release >= with_automatic_speed;
     if (!body.is_number() || (!automatic && (body < least_speed_mps || body > most_speed_mps))) {
       return 400;
     }
+    controls.former_speed_mps_ = controls.sound_speed_mps(now);
+    controls.speed_since_ = now + controls.config_.speed_change_time;
     controls.settings_.sound_speed_mps = body;
     return 204;
   }
@@ -287,7 +289,11 @@ constexpr std::array resources{
 
 }  // namespace
 
-Controls::Controls(const DeviceConfig& config, TimePoint start) : config_(config), synced_at_(start) {
+Controls::Controls(const DeviceConfig& config, TimePoint start)
+    : config_(config),
+      clock_shift_(config.ntp_synced ? std::chrono::nanoseconds{} : config.clock_offset),
+      speed_since_(start),
+      synced_at_(start) {
   settings_.acoustics = config.acoustics && config.temperature_c < too_hot_c;
   settings_.least_range_m = config.least_range_m;
   settings_.range_m = config.range_m;
@@ -330,7 +336,10 @@ Reply Controls::answer(TimePoint now, const Request& request) {
                                   : Reply{405, "\"use GET or POST\""};
 }
 
-double Controls::sound_speed_mps() const {
+double Controls::sound_speed_mps(TimePoint now) const {
+  if (now < speed_since_) {
+    return former_speed_mps_;
+  }
   return settings_.sound_speed_mps > 0.0 ? settings_.sound_speed_mps : config_.automatic_sound_speed_mps;
 }
 

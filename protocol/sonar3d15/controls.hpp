@@ -37,7 +37,7 @@ class Controls {
 
   const Settings& settings() const { return settings_; }
   /// The speed that the head computes ranges with, and reports.
-  double sound_speed_mps() const;
+  double sound_speed_mps(TimePoint now) const;
   /// Destination of the images; nullopt: they are not sent.
   std::optional<Endpoint> destination() const;
   /// Time of the head's clock, since 1970.
@@ -49,8 +49,10 @@ class Controls {
   const DeviceConfig& config_;
   Settings settings_;
   std::map<std::string_view, std::string> values_;  ///< JSON of each setting as a client set it, by its path
-  std::chrono::nanoseconds clock_shift_{};          ///< set by a client
-  TimePoint synced_at_;                             ///< with a time server
+  std::chrono::nanoseconds clock_shift_;            ///< of the head's clock from that of the network
+  double former_speed_mps_ = 0.0;                   ///< that holds until speed_since_
+  TimePoint speed_since_;
+  TimePoint synced_at_;  ///< with a time server
 };
 
 }  // namespace sonard::sonar3d15

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "protocol/common/noise.hpp"
 #include "protocol/common/once_warnings.hpp"
 #include "protocol/sonar3d15/controls.hpp"
 #include "protocol/sonar3d15/http.hpp"
@@ -56,6 +57,11 @@ const DeviceConfig& validated(const DeviceConfig& config) {
           "pixel_scale_m and range_step_s must be positive");
   require(config.gain > 0.0 && config.threshold >= 30.0, "gain must be positive, threshold at least 30");
   require(config.range_bin_m >= 0.001, "range_bin_m must be at least 0.001");
+  require(config.speed_change_time >= nanoseconds{0}, "speed_change_time must not be negative");
+  require(config.imu_force_noise_mps2 >= 0.0 && config.imu_rate_noise_radps >= 0.0,
+          "imu noise must not be negative");
+  require(config.imu_batch_samples >= 0 && config.imu_batch_samples <= most_imu_samples,
+          "imu_batch_samples must be 0..1000");
   require(speed(config.water_sound_speed_mps) && speed(config.automatic_sound_speed_mps),
           "a speed of sound must be 500..5000");
   return config;
@@ -71,7 +77,8 @@ class Device::Impl {
         cycle_({.simulated_time = config.simulated_time, .plays_back = config.plays_back}, boot_time,
                counters_),
         next_shot_(boot_time),
-        sequence_(config.first_sequence) {}
+        sequence_(config.first_sequence),
+        imu_noise_(config.seed) {}
 
   void take(TimePoint, const TimePassed&) {}
   void take(TimePoint now, const BytesReceived& received);
@@ -88,7 +95,7 @@ class Device::Impl {
   void take(TimePoint, const NextPingDue&) { cycle_.grant(); }
 
   void advance(TimePoint now);
-  Actions actions();
+  Actions actions(TimePoint now);
   PingProgress progress() const { return {counters_.pings_sent, counters_.pings_ended(), datagrams_}; }
   std::vector<Counter> counts() const;
   const PingCounters& counters() const { return counters_; }
@@ -106,13 +113,15 @@ class Device::Impl {
 
   Reply answer(TimePoint now, const Peer& client, const Request& request);
   void answer_broken(const Peer& client, int status);
-  PingJob job() const { return make_job(config_, controls_.settings(), controls_.sound_speed_mps()); }
+  PingJob job(TimePoint now) const {
+    return make_job(config_, controls_.settings(), controls_.sound_speed_mps(now));
+  }
   std::optional<TimePoint> next_start() const;
   std::optional<TimePoint> send_due() const;
   void begin_shot(TimePoint now);
   void send_shot(TimePoint now);
   std::vector<std::uint8_t> send_image(const google::protobuf::Message& image);
-  void send_imu_batch();
+  void send_imu_batches();
 
   const DeviceConfig config_;
   Controls controls_;
@@ -123,6 +132,8 @@ class Device::Impl {
   TimePoint next_shot_;
   std::uint32_t sequence_;
   std::uint32_t imu_sequence_ = 0;
+  Noise imu_noise_;
+  ImuBatch imu_waiting_;                       ///< samples of no batch yet
   SensorReadings readings_, readings_before_;  ///< at the last two shots
   TimePoint read_at_{}, read_before_{};        ///< their times; equal if there is one
   OnceWarnings warnings_;
@@ -203,13 +214,13 @@ void Device::Impl::begin_shot(TimePoint now) {
   }
   const Settings& settings = controls_.settings();
   const ModeConfig& mode = config_.mode(settings.high_frequency);
-  ping_ = {make_shot(config_, settings, controls_.sound_speed_mps()),
+  ping_ = {make_shot(config_, settings, controls_.sound_speed_mps(now)),
            settings.least_range_m,
            mode.latency,
            mode.carrier_hz,
            {},
            {}};
-  PingJob job = this->job();
+  PingJob job = this->job(now);
   if (const std::optional<ReplayedPing>& fed = cycle_.fed()) {
     const Shot recorded = *recorded_form(fed->wire);
     job.differences = differences(ping_.shot, recorded);
@@ -263,9 +274,14 @@ void Device::Impl::send_shot(TimePoint now) {
     record.samples = std::move(ping_.samples);
   }
   cycle_.put_on_wire(std::move(record));
+  if (config_.sends_shaded) {
+    send_image(shaded(ping_.shot));
+  }
   ++counters_.pings_sent;
   if (controls_.settings().imu_batches) {
-    send_imu_batch();
+    send_imu_batches();
+  } else {
+    imu_waiting_.Clear();
   }
 }
 
@@ -281,11 +297,17 @@ std::vector<std::uint8_t> Device::Impl::send_image(const google::protobuf::Messa
   return packet;
 }
 
-void Device::Impl::send_imu_batch() {
+void Device::Impl::send_imu_batches() {
   const auto samples = static_cast<int>(
       std::clamp<std::int64_t>(cycle_.job().period / nanoseconds{imu_period}, 1, most_imu_samples));
-  send_image(make_imu_batch(imu_sequence_++, samples, controls_.utc(read_at_), readings_before_, readings_,
-                            read_at_ - read_before_));
+  ImuBatch batch = make_imu_batch(0, samples, controls_.utc(read_at_), readings_before_, readings_,
+                                  read_at_ - read_before_);
+  add_noise(config_, imu_noise_, batch);
+  imu_waiting_.MergeFrom(batch);
+  const int size = config_.imu_batch_samples > 0 ? config_.imu_batch_samples : imu_waiting_.timestamps_size();
+  while (imu_waiting_.timestamps_size() >= size) {
+    send_image(take_batch(imu_sequence_++, size, imu_waiting_));
+  }
 }
 
 // ---- Time
@@ -298,14 +320,14 @@ void Device::Impl::advance(TimePoint now) {
   begin_shot(now);
 }
 
-Actions Device::Impl::actions() {
+Actions Device::Impl::actions(TimePoint now) {
   Actions actions = std::exchange(actions_, {});
   cycle_.report(actions);
   actions.nobody_there = !controls_.settings().acoustics;
   actions.wake_at = send_due();
   if (const std::optional<TimePoint> start = next_start()) {
     if (config_.simulated_time) {
-      const PingJob next = job();
+      const PingJob next = job(now);
       actions.next_ping = NextPing{*start, next.period, next.listening_time};
     } else {
       actions.wake_at = start;  // no shot can begin while one is under way
@@ -345,7 +367,7 @@ Device::~Device() = default;
 Actions Device::step(TimePoint now, const Event& event) {
   std::visit([&](const auto& what) { impl_->take(now, what); }, event);
   impl_->advance(now);
-  return impl_->actions();
+  return impl_->actions(now);
 }
 
 PingProgress Device::progress() const {

@@ -69,6 +69,17 @@ struct DeviceConfig {
   /// UTC since 1970, minus the clock of Device::step(): of the clock in the head, when it is synchronised.
   std::chrono::nanoseconds utc_offset{};
   bool ntp_synced = true;  ///< false: no time server answers, and a client may set the time (5)
+  /// Without a time server: how much the head's clock is ahead until a client sets it.
+  std::chrono::nanoseconds clock_offset{};
+  std::chrono::nanoseconds
+      speed_change_time{};  ///< >= 0; until shots have a speed of sound that a client set
+
+  bool sends_shaded = false;  ///< a third image of each shot (2.3)
+
+  // Motion sensor (2.4).
+  double imu_force_noise_mps2 = 0.0, imu_rate_noise_radps = 0.0;  ///< standard deviations, >= 0
+  int imu_batch_samples = 0;                                      ///< of a batch; 0: those of one shot
+  std::uint64_t seed = 0;                                         ///< of the noise
 
   /// A shot begins at NextPingDue if acoustics are on, and is sent when it is rendered.
   bool simulated_time = false;

@@ -52,4 +52,32 @@ ImuBatch make_imu_batch(std::uint32_t sequence, int samples, nanoseconds utc, co
   return batch;
 }
 
+void add_noise(const DeviceConfig& config, Noise& noise, ImuBatch& batch) {
+  const auto add_to = [&noise](google::protobuf::RepeatedField<float>& numbers, double deviation) {
+    for (float& number : numbers) {
+      number += deviation > 0.0 ? static_cast<float>(deviation * noise.next()) : 0.0F;
+    }
+  };
+  add_to(*batch.mutable_specific_force(), config.imu_force_noise_mps2);
+  add_to(*batch.mutable_rate_of_turn(), config.imu_rate_noise_radps);
+}
+
+ImuBatch take_batch(std::uint32_t sequence, int size, ImuBatch& waiting) {
+  ImuBatch batch;
+  batch.set_batch_sequence_id(sequence);
+  batch.set_samples(static_cast<std::uint32_t>(size));
+  for (int i = 0; i < size; ++i) {
+    *batch.add_timestamps() = waiting.timestamps(i);
+  }
+  waiting.mutable_timestamps()->DeleteSubrange(0, size);
+  const auto take = [size](google::protobuf::RepeatedField<float>& from,
+                           google::protobuf::RepeatedField<float>& to) {
+    to.Add(from.begin(), from.begin() + 3 * size);
+    from.erase(from.begin(), from.begin() + 3 * size);
+  };
+  take(*waiting.mutable_specific_force(), *batch.mutable_specific_force());
+  take(*waiting.mutable_rate_of_turn(), *batch.mutable_rate_of_turn());
+  return batch;
+}
+
 }  // namespace sonard::sonar3d15

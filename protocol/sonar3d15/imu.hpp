@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cstdint>
 
+#include "protocol/common/noise.hpp"
 #include "protocol/common/ping_job.hpp"
 #include "protocol/sonar3d15/codec.hpp"
+#include "protocol/sonar3d15/device_config.hpp"
 
 namespace sonard::sonar3d15 {
 
@@ -23,6 +25,12 @@ inline constexpr std::chrono::milliseconds imu_period{10};
 ImuBatch make_imu_batch(std::uint32_t sequence, int samples, std::chrono::nanoseconds utc,
                         const SensorReadings& before, const SensorReadings& now,
                         std::chrono::nanoseconds span);
+
+/// Adds the noise of the configuration to each sample.
+void add_noise(const DeviceConfig& config, Noise& noise, ImuBatch& batch);
+
+/// A batch of the first `size` samples of `waiting`, which has as many; they are removed from there.
+ImuBatch take_batch(std::uint32_t sequence, int size, ImuBatch& waiting);
 
 /// Sets a message of Protobuf to a time since 1970.
 google::protobuf::Timestamp timestamp_of(std::chrono::nanoseconds utc);

@@ -45,6 +45,25 @@ char signal_code(double strength) {
   return static_cast<char>(static_cast<std::uint8_t>(std::clamp(code, 1.0, 255.0)));
 }
 
+/// How fast the range changes with the angle from pixel to pixel, over the range: the tangent of the angle
+/// at which the surface leans. 0 beside pixels without an echo.
+double lean(const RangeImage& image, int before, int after, double angle_rad) {
+  const double near_m = distance_m(image, before), far_m = distance_m(image, after);
+  return near_m > 0.0 && far_m > 0.0 ? 2.0 * (far_m - near_m) / ((far_m + near_m) * angle_rad) : 0.0;
+}
+
+char shade_of(const RangeImage& image, int row, int column) {
+  const auto columns = static_cast<int>(image.width()), rows = static_cast<int>(image.height());
+  const int left = std::max(column - 1, 0), right = std::min(column + 1, columns - 1);
+  const int below = std::max(row - 1, 0), above = std::min(row + 1, rows - 1);
+  const double across = lean(image, row * columns + left, row * columns + right,
+                             column_rad(image, right) - column_rad(image, left));
+  const double along = lean(image, below * columns + column, above * columns + column,
+                            row_rad(image, above) - row_rad(image, below));
+  const double facing = 1.0 / std::sqrt(1.0 + across * across + along * along);
+  return static_cast<char>(static_cast<std::uint8_t>(std::max(1.0, std::round(255.0 * facing))));
+}
+
 nanoseconds seconds(double value) {
   return std::chrono::duration_cast<nanoseconds>(std::chrono::duration<double>(value));
 }
@@ -135,6 +154,20 @@ double row_rad(const RangeImage& image, int row) {
   return row * fov / (image.height() - 1) - fov / 2;
 }
 
+BitmapImageGreyscale8 shaded(const Shot& shot) {
+  const auto columns = static_cast<int>(shot.range.width()), rows = static_cast<int>(shot.range.height());
+  BitmapImageGreyscale8 image = shot.signal;
+  image.set_type(waterlinked::sonar::protocol::SHADED_IMAGE);
+  std::string& pixels = *image.mutable_image_pixel_data();
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      char& pixel = pixels[static_cast<std::size_t>(row * columns + column)];
+      pixel = pixel == 0 ? pixel : shade_of(shot.range, row, column);
+    }
+  }
+  return image;
+}
+
 PingRecord record_of(const Shot& shot, double carrier_hz, std::vector<std::uint8_t> wire) {
   const RangeImage& range = shot.range;
   const auto columns = static_cast<int>(range.width());
@@ -149,9 +182,20 @@ PingRecord record_of(const Shot& shot, double carrier_hz, std::vector<std::uint8
   }
   record.sector_rad = static_cast<double>(range.fov_horizontal()) * degree;
   record.samples.resize(static_cast<std::size_t>(fan_bins) * range.width());
+  std::vector<EchoPoint>& points = record.points.emplace();
   for (int pixel = 0; pixel < range.image_pixel_data_size(); ++pixel) {
     const int bin =
         std::min(static_cast<int>(distance_m(range, pixel) / record.settings.bin_m), fan_bins - 1);
+    const double range_m = distance_m(range, pixel), bearing_rad = column_rad(range, pixel % columns),
+                 elevation_rad = row_rad(range, pixel / columns);
+    if (range_m > 0.0) {
+      const double level_m = range_m * std::cos(elevation_rad);
+      const char code = shot.signal.image_pixel_data()[static_cast<std::size_t>(pixel)];
+      points.push_back({static_cast<float>(level_m * std::cos(bearing_rad)),
+                        static_cast<float>(-level_m * std::sin(bearing_rad)),
+                        static_cast<float>(range_m * std::sin(elevation_rad)),
+                        static_cast<float>(static_cast<std::uint8_t>(code))});
+    }
     std::uint8_t& sample = record.samples[static_cast<std::size_t>(bin * columns + pixel % columns)];
     sample = std::max(
         sample, static_cast<std::uint8_t>(shot.signal.image_pixel_data()[static_cast<std::size_t>(pixel)]));

@@ -40,6 +40,10 @@ bool add_echoes(const DirectionRanges& echoes, const DeviceConfig& config, doubl
 /// Sets the header of both images: time since 1970, and number of the shot.
 void set_header(std::chrono::nanoseconds utc, std::uint32_t sequence, Shot& shot);
 
+/// The shaded image of a shot: how directly each surface faces the head, by the places of the echoes around
+/// it, from 1 (along the direction) to 255.
+BitmapImageGreyscale8 shaded(const Shot& shot);
+
 /// Distance of a pixel along its direction; 0: no echo.
 double distance_m(const RangeImage& image, int pixel);
 /// Angle of a column about the head's vertical, positive to starboard. Column 0 is the port edge.

@@ -14,7 +14,9 @@ void Shots::receive(TimePoint at, std::span<const std::uint8_t> datagram) {
   } else if (const auto* const range = std::get_if<sonar3d15::RangeImage>(&*message)) {
     range_ = *range;
   } else if (const auto* const signal = std::get_if<sonar3d15::BitmapImageGreyscale8>(&*message)) {
-    pair(at, *signal);
+    if (signal->type() == waterlinked::sonar::protocol::SIGNAL_STRENGTH_IMAGE) {
+      pair(at, *signal);
+    }
   }
 }
 

@@ -18,8 +18,9 @@
 namespace sonard::server {
 namespace {
 
-sonar3d15::DeviceConfig with_clock(sonar3d15::DeviceConfig device) {
+sonar3d15::DeviceConfig with_clock(sonar3d15::DeviceConfig device, std::uint64_t seed) {
   device.utc_offset = unix_time_offset();
+  device.seed = seed;
   return device;
 }
 
@@ -29,7 +30,7 @@ class ConnectedSonar3d15 final : public ConnectedDevice {
       : name_(head.name),
         config_(device_settings<Sonar3d15Config>(head)),
         address_(config_.address),
-        device_(with_clock(config_.device), clock.now()),
+        device_(with_clock(config_.device, head.seed), clock.now()),
         transport_(open_transports(io, clock)) {}
 
   Device& device() override { return device_; }

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "renderer/acoustics/water.hpp"
@@ -74,6 +75,15 @@ void read_start(YamlSection& section, sonar3d15::DeviceConfig& device) {
   }
 }
 
+void read_imu(YamlSection& section, sonar3d15::DeviceConfig& device) {
+  section.number("force_noise_mps2", device.imu_force_noise_mps2, Range::from(0.0, 100.0),
+                 "standard deviation of each specific force");
+  section.number("rate_noise_dps", device.imu_rate_noise_radps, Range::from(0.0, 100.0),
+                 "standard deviation of each rate of turn", 180.0 / std::numbers::pi);
+  section.integer("batch_samples", device.imu_batch_samples, 0, 1000,
+                  "samples of a batch, 100 a second; 0: those of one shot");
+}
+
 void read_device(YamlSection& section, sonar3d15::DeviceConfig& device) {
   section.parsed("release", device.release, &parse_release, release_form,
                  "version of the software: selects paths, packets and status");
@@ -96,6 +106,14 @@ void read_device(YamlSection& section, sonar3d15::DeviceConfig& device) {
                  "temperature inside; from 60 on, acoustics stay off");
   section.boolean("ntp_synced", device.ntp_synced,
                   "false: no time server answers, and a client may set the time");
+  section.duration("clock_offset_s", device.clock_offset, Range::from(-1e9, 1e9),
+                   "with `ntp_synced: false`: how much the head's clock is ahead until a client sets it");
+  section.duration(
+      "speed_change_s", device.speed_change_time, Range::from(0.0, 3600.0),
+      "time until shots have a speed of sound that a client has set; a real head takes about 20 s");
+  section.boolean("sends_shaded", device.sends_shaded,
+                  "sends a third image of each shot, type 1: how directly each surface faces the head");
+  section.section("imu", "motion sensor", [&](YamlSection& inner) { read_imu(inner, device); });
   section.section("start", "settings until a client changes them",
                   [&](YamlSection& inner) { read_start(inner, device); });
   if (device.range_m > device.most_range_m) {

@@ -28,6 +28,9 @@ TEST(Config, TheErrorNamesTheField) {
       {"gain", [](DeviceConfig& config) { config.gain = 0.0; }},
       {"threshold", [](DeviceConfig& config) { config.threshold = 29.0; }},
       {"range_bin_m", [](DeviceConfig& config) { config.range_bin_m = 0.0; }},
+      {"speed_change_time", [](DeviceConfig& config) { config.speed_change_time = -1ns; }},
+      {"imu noise", [](DeviceConfig& config) { config.imu_rate_noise_radps = -0.1; }},
+      {"imu_batch_samples", [](DeviceConfig& config) { config.imu_batch_samples = 1001; }},
       {"speed of sound", [](DeviceConfig& config) { config.water_sound_speed_mps = 0.0; }}};
   EXPECT_NO_THROW((Device{DeviceConfig{}, TimePoint{}}));
   for (const auto& [field, spoil] : wrong) {

@@ -197,7 +197,9 @@ TEST(Controls, AClientSetsTheTimeOnlyWithoutATimeServer) {
   EXPECT_EQ(json::parse(forced.body).at("status").at("ntp_seconds_since_last_sync"), 0);
 
   config.ntp_synced = false;
+  config.clock_offset = -3600s;
   Bench alone(config);
+  EXPECT_EQ(json::parse(alone.get("time/status")).at("system_time"), "2025-12-31T23:00:00.000000Z");
   alone.run_for(5s);
   EXPECT_EQ(alone.post("time/manual", R"({"now":"2027-01-01T00:00:00Z"})"), 204);
   alone.run_for(1s);

@@ -145,6 +145,61 @@ TEST(Device, ABatchFollowsEachShotIfItIsEnabled) {
   EXPECT_EQ(bench.images<ImuBatch>().back().samples(), 5U);
 }
 
+TEST(Device, BatchesHaveAsManySamplesAsTheConfigurationSays) {
+  DeviceConfig config = small();
+  config.imu_batch_samples = 7;
+  Bench bench(config);
+  ASSERT_EQ(bench.post("output/imu-batch/enabled", "true"), 204);
+  switch_on(bench);
+  bench.run_for(450ms);  // three shots of 20 samples
+  const auto batches = bench.images<ImuBatch>();
+  ASSERT_EQ(batches.size(), 8U);
+  std::chrono::nanoseconds last{};
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(batches[i].batch_sequence_id(), i);
+    EXPECT_EQ(batches[i].samples(), 7U);
+    EXPECT_EQ(batches[i].specific_force_size(), 21);
+    EXPECT_EQ(batches[i].rate_of_turn_size(), 21);
+    ASSERT_EQ(batches[i].timestamps_size(), 7);
+    for (const auto& stamp : batches[i].timestamps()) {
+      const auto time = std::chrono::seconds{stamp.seconds()} + std::chrono::nanoseconds{stamp.nanos()};
+      EXPECT_TRUE(i == 0 || time - last == 10ms);
+      last = time;
+    }
+  }
+}
+
+TEST(Device, AShadedImageFollowsTheSignalsIfTheConfigurationSaysSo) {
+  DeviceConfig config = small();
+  config.sends_shaded = true;
+  Bench bench(config);
+  switch_on(bench);
+  bench.run_for(100ms);
+  ASSERT_EQ(bench.messages.size(), 3U);
+  const auto images = bench.images<BitmapImageGreyscale8>();
+  ASSERT_EQ(images.size(), 2U);
+  EXPECT_EQ(images[0].type(), waterlinked::sonar::protocol::SIGNAL_STRENGTH_IMAGE);
+  EXPECT_EQ(images[1].type(), waterlinked::sonar::protocol::SHADED_IMAGE);
+  EXPECT_EQ(images[1].header().sequence_id(), images[0].header().sequence_id());
+  for (std::size_t i = 0; i < 32; ++i) {
+    EXPECT_EQ(images[0].image_pixel_data()[i] == 0, images[1].image_pixel_data()[i] == 0);
+  }
+}
+
+TEST(Device, ANewSpeedOfSoundTakesTheTimeOfTheConfiguration) {
+  DeviceConfig config = small();
+  config.speed_change_time = 1s;
+  Bench bench(config);
+  switch_on(bench);
+  EXPECT_EQ(bench.post("acoustics/speed_of_sound", "1450"), 204);
+  EXPECT_EQ(bench.get("acoustics/speed_of_sound"), "1450");
+  bench.run_for(1300ms);
+  const auto images = bench.images<RangeImage>();
+  ASSERT_EQ(images.size(), 7U);
+  EXPECT_EQ(images[4].speed_of_sound(), 1491.0F);
+  EXPECT_EQ(images[5].speed_of_sound(), 1450.0F);
+}
+
 TEST(Device, ASettingTakesEffectWithTheNextShot) {
   Bench bench;
   switch_on(bench);

@@ -48,6 +48,23 @@ TEST(Imu, RatesAreThoseOfTheBody) {
   expect_vector(rate(attitude(0.0, 0.0, quarter), attitude(0.05, 0.0, quarter)), 0, 0, 0.5, 0);
 }
 
+TEST(Imu, NoiseHasItsDeviation) {
+  DeviceConfig config;
+  config.imu_force_noise_mps2 = 0.5;
+  ImuBatch batch = make_imu_batch(0, 1000, 1000s, {}, {}, 0s);
+  Noise noise(1);
+  add_noise(config, noise, batch);
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    const double error = static_cast<double>(batch.specific_force(3 * i + 2)) + 9.8;
+    sum += error;
+    squares += error * error;
+    ASSERT_EQ(batch.rate_of_turn(3 * i), 0.0F);
+  }
+  EXPECT_NEAR(sum / 1000, 0.0, 0.06);
+  EXPECT_NEAR(std::sqrt(squares / 1000), 0.5, 0.05);
+}
+
 TEST(Imu, SamplesLeadToTheNewestReading) {
   const ImuBatch batch = make_imu_batch(7, 20, 1000s, {}, attitude(0.0, 0.0, quarter), 190ms);
   EXPECT_EQ(batch.batch_sequence_id(), 7U);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/unit/protocol/sonar3d15/device/bench.hpp"
 
@@ -89,6 +90,27 @@ TEST(Shot, AnImageOfAnotherSizeIsRefused) {
   EXPECT_FALSE(add_echoes({8, 4, std::vector<float>(32), std::vector<float>(31)}, still_water(), 0.0, shot));
 }
 
+TEST(Shot, ShadesShowHowSurfacesLean) {
+  // Columns and rows lie 1 degree apart. A wall at 45 degrees: the range changes by as much as a step across.
+  Shot shot;
+  shot.range.set_width(3);
+  shot.range.set_height(2);
+  shot.range.set_fov_horizontal(2.0F);
+  shot.range.set_fov_vertical(1.0F);
+  shot.range.set_image_pixel_scale(0.001F);
+  for (const std::uint32_t code : {9825U, 10000U, 10175U, 10000U, 10000U, 0U}) {
+    shot.range.add_image_pixel_data(code);
+  }
+  shot.signal.set_image_pixel_data(std::string("\x01\x01\x01\x01\x01\x00", 6));
+  const std::string shades = shaded(shot).image_pixel_data();
+  const auto shade = [&](std::size_t pixel) {
+    return static_cast<int>(static_cast<std::uint8_t>(shades[pixel]));
+  };
+  EXPECT_NEAR(shade(1), 255 * std::sqrt(0.5), 2);
+  EXPECT_EQ(shade(4), 255) << "beside a pixel without an echo";
+  EXPECT_EQ(shade(5), 0);
+}
+
 TEST(Shot, AJobHasTheDirectionsOfTheMode) {
   DeviceConfig config;
   config.water_sound_speed_mps = 1500.0;
@@ -133,6 +155,24 @@ TEST(Shot, ARecordIsAFanAndKeepsBothImages) {
   ASSERT_TRUE(played);
   EXPECT_EQ(played->range.SerializeAsString(), shot.range.SerializeAsString());
   EXPECT_EQ(played->signal.SerializeAsString(), shot.signal.SerializeAsString());
+}
+
+TEST(Shot, ARecordHasThePointsOfItsEchoes) {
+  Shot shot = shot_of(still_water());
+  DirectionRanges echoes{8, 4, std::vector<float>(32), std::vector<float>(32)};
+  echoes.range_m[7] = 6.0F;  // the lowest row, the last column: 20 degrees down, 45 to starboard
+  echoes.intensity[7] = 1e6F;
+  ASSERT_TRUE(add_echoes(echoes, still_water(), 0.0, shot));
+  const PingRecord record = record_of(shot, 1.2e6, {});
+  ASSERT_TRUE(record.points.has_value());
+  ASSERT_EQ(record.points->size(), 1U);
+  const EchoPoint& point = record.points->front();
+  constexpr double down_rad = 20.0 * std::numbers::pi / 180.0;
+  const double side_m = 6.0 * std::cos(down_rad) * std::sqrt(0.5);
+  EXPECT_NEAR(static_cast<double>(point.x), side_m, 0.003);
+  EXPECT_NEAR(static_cast<double>(point.y), -side_m, 0.003);
+  EXPECT_NEAR(static_cast<double>(point.z), -6.0 * std::sin(down_rad), 0.003);
+  EXPECT_EQ(point.intensity, 152.0F);
 }
 
 TEST(Shot, AWireThatIsNotOneShotIsNoRecording) {

@@ -65,6 +65,19 @@ TEST_F(Sonar3d15Section, TakesEveryKind) {
   EXPECT_NEAR(config.modes[1].absorption_db_per_m, 1.95, 1e-12);
 }
 
+TEST_F(Sonar3d15Section, TakesWhatRealHeadsMayDoOtherwise) {
+  const HeadConfig head = read(
+      "device: {sends_shaded: true, speed_change_s: 20, ntp_synced: false, clock_offset_s: -3600, "
+      "imu: {force_noise_mps2: 0.05, rate_noise_dps: 2, batch_samples: 10}}");
+  const sonar3d15::DeviceConfig& device = device_settings<Sonar3d15Config>(head).device;
+  EXPECT_TRUE(device.sends_shaded);
+  EXPECT_EQ(device.speed_change_time, 20s);
+  EXPECT_EQ(device.clock_offset, -3600s);
+  EXPECT_EQ(device.imu_force_noise_mps2, 0.05);
+  EXPECT_NEAR(device.imu_rate_noise_radps, 2 * degree, 1e-12);
+  EXPECT_EQ(device.imu_batch_samples, 10);
+}
+
 TEST_F(Sonar3d15Section, JobsSetDirectionsRangeAndWater) {
   const HeadConfig head = read("low_frequency: {absorption_db_per_km: 495}");
   PingJob job = sonar3d15_type().usual_job(head);
