@@ -6,7 +6,8 @@ namespace {
 
 std::size_t payload(const PingSent& event) {
   const PingRecord& ping = event.ping;
-  return ping.samples.size() + ping.wire.size() + ping.bearings_rad.size() * sizeof(double);
+  return ping.samples.size() + ping.wire.size() + ping.bearings_rad.size() * sizeof(double) +
+         (ping.points ? ping.points->size() * sizeof(EchoPoint) : 0);
 }
 std::size_t payload(const StatusSent& event) {
   return event.message.size();

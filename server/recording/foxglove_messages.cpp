@@ -17,10 +17,8 @@ void set(google::protobuf::Timestamp& timestamp, std::int64_t time_ns) {
   timestamp.set_nanos(static_cast<std::int32_t>(time_ns - seconds * second_ns));
 }
 
-using Point = std::array<float, 4>;  // x, y, z, intensity
-
 /// The centre of a bin, in the plane through the acoustic axis.
-Point point_at(const PingRecord& ping, std::size_t bin, std::size_t beam) {
+EchoPoint point_at(const PingRecord& ping, std::size_t bin, std::size_t beam) {
   const double range_m = (static_cast<double>(bin) + 0.5) * ping.settings.bin_m;
   const double bearing_rad = ping.bearings_rad[beam];  // positive to starboard
   const std::uint8_t sample = ping.samples[bin * ping.bearings_rad.size() + beam];
@@ -39,9 +37,9 @@ std::size_t strongest_bin(const PingRecord& ping, std::size_t beam) {
   return strongest;
 }
 
-void append(std::string& data, const Point& point) {
-  std::array<char, sizeof(Point)> bytes;
-  std::memcpy(bytes.data(), point.data(), bytes.size());
+void append(std::string& data, const EchoPoint& point) {
+  std::array<char, sizeof(EchoPoint)> bytes;
+  std::memcpy(bytes.data(), &point, bytes.size());
   data.append(bytes.data(), bytes.size());
 }
 
@@ -80,7 +78,7 @@ foxglove::PointCloud foxglove_echoes(const PingRecord& ping, const std::string& 
   cloud.set_frame_id(head);
   cloud.mutable_pose()->mutable_position();
   cloud.mutable_pose()->mutable_orientation()->set_w(1.0);
-  cloud.set_point_stride(sizeof(Point));
+  cloud.set_point_stride(sizeof(EchoPoint));
   std::uint32_t offset = 0;
   for (const char* const name : {"x", "y", "z", "intensity"}) {
     foxglove::PackedElementField& field = *cloud.add_fields();
@@ -90,7 +88,11 @@ foxglove::PointCloud foxglove_echoes(const PingRecord& ping, const std::string& 
     offset += sizeof(float);
   }
   std::string data;
-  if (ping.settings.beams == 1) {
+  if (ping.points) {
+    for (const EchoPoint& point : *ping.points) {
+      append(data, point);
+    }
+  } else if (ping.settings.beams == 1) {
     for (std::size_t bin = 0; bin < ping.samples.size(); ++bin) {
       append(data, point_at(ping, bin, 0));
     }

@@ -19,8 +19,9 @@ foxglove::CompressedImage foxglove_image(std::string jpeg, const std::string& he
 foxglove::FrameTransform foxglove_transform(const render::Pose& T_world_sonar, const std::string& head,
                                             std::int64_t time_ns);
 
-/// The strongest echo of each beam of a multibeam head, or every bin of the line of a scanning head. Points
-/// are x, y, z of the centre of a bin, in metres, and `intensity`, the sample: four 32-bit floats.
+/// The echoes of a head that measures directions, the strongest echo of each beam of another multibeam head,
+/// or every bin of the line of a scanning head. Points are x, y, z of the centre of a bin, in metres, and
+/// `intensity`, the sample: four 32-bit floats.
 foxglove::PointCloud foxglove_echoes(const PingRecord& ping, const std::string& head, std::int64_t time_ns);
 
 }  // namespace sonard::server
