@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "server/recording/foxglove_messages.hpp"
 #include "server/web/assets.hpp"
+#include "server/web/base64.hpp"
 #include "server/web/foxglove_time.hpp"
 #include "server/web/json.hpp"
 #include "server/web/little_endian.hpp"
@@ -29,7 +31,7 @@ json object_schema(json properties) {
   return {{"type", "object"}, {"properties", std::move(properties)}};
 }
 
-/// Schemas of foxglove.CompressedImage and foxglove.FrameTransform, with the fields of
+/// Schemas of foxglove.CompressedImage, FrameTransform and PointCloud, with the fields of
 /// docs.foxglove.dev/docs/visualization/message-schemas.
 json timestamp_schema() {
   return object_schema({{"sec", {{"type", "integer"}}}, {"nsec", {{"type", "integer"}}}});
@@ -58,6 +60,19 @@ json transform_schema() {
                         {"rotation", numbers_schema("xyzw")}});
 }
 
+json echoes_schema() {
+  const json field = object_schema({{"name", {{"type", "string"}}},
+                                    {"offset", {{"type", "integer"}, {"minimum", 0}}},
+                                    {"type", {{"type", "integer"}}}});
+  return object_schema({{"timestamp", timestamp_schema()},
+                        {"frame_id", {{"type", "string"}}},
+                        {"pose", object_schema({{"position", numbers_schema("xyz")},
+                                                {"orientation", numbers_schema("xyzw")}})},
+                        {"point_stride", {{"type", "integer"}, {"minimum", 0}}},
+                        {"fields", {{"type", "array"}, {"items", field}}},
+                        {"data", {{"type", "string"}, {"contentEncoding", "base64"}}}});
+}
+
 std::string status_schema() {
   const Asset* const schema = find_asset("/status.schema.json");
   return schema == nullptr ? "{}" : std::string(schema->bytes);
@@ -71,6 +86,22 @@ json transform_json(const render::Pose& T_world_head, const std::string& head, j
           {"child_frame_id", head},
           {"translation", {{"x", p.x}, {"y", p.y}, {"z", p.z}}},
           {"rotation", {{"x", q.x}, {"y", q.y}, {"z", q.z}, {"w", q.w}}}};
+}
+
+json echoes_json(const PingRecord& ping, const std::string& head, json timestamp) {
+  const foxglove::PointCloud cloud = foxglove_echoes(ping, head, 0);
+  json fields = json::array();
+  for (const foxglove::PackedElementField& field : cloud.fields()) {
+    fields.push_back({{"name", field.name()}, {"offset", field.offset()}, {"type", field.type()}});
+  }
+  return {{"timestamp", std::move(timestamp)},
+          {"frame_id", head},
+          {"pose",
+           {{"position", {{"x", 0}, {"y", 0}, {"z", 0}}},
+            {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}},
+          {"point_stride", cloud.point_stride()},
+          {"fields", std::move(fields)},
+          {"data", base64(cloud.data())}};
 }
 
 /// @throws std::invalid_argument if the value is not an unsigned 32-bit integer
@@ -125,6 +156,8 @@ void FoxgloveSession::advertise(const DaemonStatus& status) {
         text_of(image_schema()));
     add({place, Kind::transform}, fmt::format("/{}/transform", head.name), "foxglove.FrameTransform",
         text_of(transform_schema()));
+    add({place, Kind::echoes}, fmt::format("/{}/echoes", head.name), "foxglove.PointCloud",
+        text_of(echoes_schema()));
   }
   add({0, Kind::status}, "/status", "sonard.Status", status_schema());
   send_text(text_of({{"op", "advertise"}, {"channels", std::move(list)}}));
@@ -198,6 +231,10 @@ void FoxgloveSession::show(const std::shared_ptr<const ShownPing>& ping) {
   if (subscriptions_.contains({head, Kind::transform}) && ping->T_world_mount && has_room()) {
     send_on({head, Kind::transform}, std::make_shared<const std::string>(text_of(transform_json(
                                          *ping->T_world_mount, heads_[head], foxglove_time(ping->time)))));
+  }
+  if (subscriptions_.contains({head, Kind::echoes}) && has_room()) {
+    send_on({head, Kind::echoes}, std::make_shared<const std::string>(text_of(
+                                      echoes_json(ping->record, heads_[head], foxglove_time(ping->time)))));
   }
   if (subscriptions_.contains({head, Kind::image}) && has_room()) {
     show_picture(ping->head, site().picture_of(ping->head, heads_[head]));

@@ -34,7 +34,7 @@ class FoxgloveSession final : public WebSocket {
   void close() override;
 
  private:
-  enum class Kind : std::uint8_t { image, transform, status };
+  enum class Kind : std::uint8_t { image, transform, echoes, status };
   struct Channel {
     std::size_t head = 0;  ///< index in the configuration; 0 for the status
     Kind kind = Kind::status;

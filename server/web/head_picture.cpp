@@ -3,25 +3,12 @@
 
 #include <utility>
 
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
-
 #include "renderer/picture/picture_file.hpp"
+#include "server/web/base64.hpp"
 #include "server/web/foxglove_time.hpp"
 #include "server/web/json.hpp"
 
 namespace sonard::server {
-namespace {
-
-std::string base64(const std::string& bytes) {
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  std::string text(Digits(bytes.begin()), Digits(bytes.end()));
-  return text.append((4 - text.size() % 4) % 4, '=');
-}
-
-}  // namespace
-
 bool HeadPicture::begin(const std::shared_ptr<const ShownPing>& newest, TimePoint now,
                         std::chrono::nanoseconds interval) {
   if (under_way_ || (begun_ && (begun_ == newest || now - begun_at_ < interval))) {

@@ -14,7 +14,7 @@ import { PNG } from "pngjs";
 import { WebSocket } from "ws";
 import { startProgram } from "./programs.js";
 
-const { CompressedImage, FrameTransform } = schemas;
+const { CompressedImage, FrameTransform, PointCloud } = schemas;
 const { FoxgloveClient } = protocol;
 const [programs, data] = process.argv.slice(2);
 const ADDRESS = "127.0.0.1:8014";
@@ -102,7 +102,7 @@ after(() => {
 test("every channel is made known with its schema", async () => {
   const { client, seen } = await connect();
   assert.equal(seen.info.name, "sonard");
-  assert.deepEqual([...seen.channels.keys()].sort(), ["/bow/image", "/bow/transform", "/status", "/stern/image", "/stern/transform"]);
+  assert.deepEqual([...seen.channels.keys()].sort(), ["/bow/echoes", "/bow/image", "/bow/transform", "/status", "/stern/echoes", "/stern/image", "/stern/transform"]);
   assert.equal(seen.channels.get("/bow/image").schemaName, "foxglove.CompressedImage");
   for (const { encoding, schema, schemaEncoding } of seen.channels.values()) {
     assert.deepEqual([encoding, schemaEncoding], ["json", "jsonschema"]);
@@ -143,6 +143,27 @@ for (const head of ["bow", "stern"]) {
     assert.ok(picture.width > 400 && picture.height > 300, `${picture.width} x ${picture.height}`);
     const bright = picture.data.filter((value, i) => i % 4 === 0 && value > 150).length;
     assert.ok(bright > 20, `${bright} bright pixels`);
+    client.close();
+  });
+}
+
+for (const [head, count] of [["bow", 256], ["stern", null]]) {
+  test(`points of ${head} come`, async () => {
+    const { client, seen, subscribe, first } = await connect();
+    const topic = `/${head}/echoes`;
+    const message = await first(subscribe(topic));
+    expectValid(PointCloud, message);
+    expectValid(JSON.parse(seen.channels.get(topic).schema), message);
+    assert.deepEqual(message.fields.map(({ name, offset, type }) => [name, offset, type]),
+      [["x", 0, 7], ["y", 4, 7], ["z", 8, 7], ["intensity", 12, 7]]);
+    const data = Buffer.from(message.data, "base64");
+    assert.equal(data.length % message.point_stride, 0);
+    const points = data.length / message.point_stride;
+    assert.ok(count === null ? points > 0 : points === count, `${points} points`);
+    for (let i = 0; i < points; ++i) {
+      const range = Math.hypot(data.readFloatLE(16 * i), data.readFloatLE(16 * i + 4), data.readFloatLE(16 * i + 8));
+      assert.ok(range > 0 && range < 10.2, `${range} m`);
+    }
     client.close();
   });
 }
