@@ -58,6 +58,17 @@ void keep_loudest(const render::EchoImage& echo, int compression_log2, std::uint
   }
 }
 
+/// Takes the directions in which this body is louder than all earlier ones.
+void keep_loudest(const render::DirectionEchoes& echoes, std::uint16_t id, std::vector<float>& loudest,
+                  std::vector<std::uint16_t>& ids) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (echoes.range_m[i] > 0.0F && echoes.intensity[i] > loudest[i]) {
+      loudest[i] = echoes.intensity[i];
+      ids[i] = id;
+    }
+  }
+}
+
 }  // namespace
 
 BodyTruth::BodyTruth(render::World world, const render::RendererOptions& options)
@@ -121,23 +132,28 @@ render::SonarRenderer& BodyTruth::renderer_of(std::size_t body) {
 }
 
 std::vector<std::uint16_t> BodyTruth::bodies_in(const render::PingRequest& request) {
-  if (request.settings.directions.any()) {
-    throw render::RequestError("directions: the truth of bodies has range bins, which this ping has not");
-  }
   render::PingRequest alone = request;
   alone.settings = truth_settings(request.settings);
   const render::RangeBins& range = request.settings.range;
-  const auto bins = static_cast<std::size_t>(range.output_count()) *
-                    static_cast<std::size_t>(request.settings.aperture.beam_count());
+  const render::DirectionGrid& grid = request.settings.directions;
+  const std::size_t samples =
+      grid.any() ? static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows)
+                 : static_cast<std::size_t>(range.output_count()) *
+                       static_cast<std::size_t>(request.settings.aperture.beam_count());
   const bool paper = request.settings.model == render::Model::paper;
-  std::vector<float> loudest(bins,
+  std::vector<float> loudest(samples,
                              paper ? paper_silence * static_cast<float>(1 << range.compression_log2) : 0.0F);
-  std::vector<std::uint16_t> ids(bins, 0);
+  std::vector<std::uint16_t> ids(samples, 0);
   for (std::size_t body = 0; body < balls_.size(); ++body) {
     const double distance_m = glm::length(balls_[body].centre_m - request.T_world_sonar.position_m);
-    if (distance_m - balls_[body].radius_m < range.max_range_m()) {
-      keep_loudest(renderer_of(body).render_echo(alone), range.compression_log2,
-                   static_cast<std::uint16_t>(body + 1), loudest, ids);
+    if (distance_m - balls_[body].radius_m >= range.max_range_m()) {
+      continue;
+    }
+    const auto id = static_cast<std::uint16_t>(body + 1);
+    if (grid.any()) {
+      keep_loudest(renderer_of(body).render_directions(alone), id, loudest, ids);
+    } else {
+      keep_loudest(renderer_of(body).render_echo(alone), range.compression_log2, id, loudest, ids);
     }
   }
   return ids;

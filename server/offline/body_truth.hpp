@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the body with the strongest echo in each bin of a ping.
+// Finds the body with the strongest echo in each bin, or each direction, of a ping.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ class BodyTruth {
   void set_body_pose(const std::string& name, const render::Pose& T_world_body);
 
   /// For each sample of the ping, [line * beams + beam], the id of the body with most of its echo; 0 if no
-  /// body echoes.
+  /// body echoes. For each direction of a ping with directions, [row * columns + column], the body with the
+  /// strongest echo.
   /// @throws render::RequestError, render::RendererError
   std::vector<std::uint16_t> bodies_in(const render::PingRequest& request);
 

@@ -52,12 +52,13 @@ std::string ply_of(const npy::Table& points) {
 
 DirectionFrames::DirectionFrames(const HeadConfig& head, const HeadPlace& place,
                                  std::unique_ptr<Survey> survey, const VehicleTrajectory& trajectory,
-                                 const OfflineOptions& options)
+                                 const OfflineOptions& options, BodyTruth* truth)
     : head_(head),
       options_(options),
       place_(place),
       trajectory_(trajectory),
       survey_(std::move(survey)),
+      truth_(truth),
       times_(frame_times(trajectory, options, *survey_)),
       count_(static_cast<int>(survey_->frames(times_.count_until(trajectory.end_ns())).size()) - 1),
       job_(survey_->job(0)) {}
@@ -87,7 +88,7 @@ picture::DirectionImage DirectionFrames::image_of(const DirectionRanges& sent) c
 
 Frame DirectionFrames::render(render::SonarRenderer& renderer, int frame) {
   const render::PingRequest ping = request(frame);
-  place_bodies(trajectory_, times_.at(frame), renderer, nullptr);
+  place_bodies(trajectory_, times_.at(frame), renderer, truth_);
   const PingImage rendered =
       server::image_of(ping.ping_number, renderer.render_ping(ping, place_.head), std::nullopt);
   const DirectionRanges sent = survey_->measured(rendered.directions);
@@ -98,6 +99,9 @@ Frame DirectionFrames::render(render::SonarRenderer& renderer, int frame) {
   made.view.add(renderer.last_statistics());
   made.npy = npy::encode(table_of(sent));
   made.more = {{name(frame) + "_points.npy", npy::encode(points)}, {name(frame) + ".ply", ply_of(points)}};
+  if (truth_ != nullptr) {
+    made.bodies_npy = npy::encode(truth_->table(sent.rows, sent.columns, bodies_of(sent, ping)));
+  }
   made.sidecar = sidecar(frame, ping);
   made.draw = [this, image, frame] {
     return picture::draw(*image, options_.radius_px,
@@ -105,6 +109,16 @@ Frame DirectionFrames::render(render::SonarRenderer& renderer, int frame) {
                                      1e-9 * static_cast<double>(times_.at(frame)), image->most_range_m));
   };
   return made;
+}
+
+/// 0 also where the head sends no echo.
+std::vector<std::uint16_t> DirectionFrames::bodies_of(const DirectionRanges& sent,
+                                                      const render::PingRequest& ping) {
+  std::vector<std::uint16_t> ids = truth_->bodies_in(ping);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    ids[i] = sent.range_m[i] > 0.0F ? ids[i] : std::uint16_t{0};
+  }
+  return ids;
 }
 
 std::vector<PingSent> DirectionFrames::pings(int frame, std::string_view npy) const {
@@ -153,7 +167,7 @@ std::string DirectionFrames::sidecar(int frame, const render::PingRequest& reque
   json["settings"] = settings_json();
   json["T_world_vehicle"] = pose_json(trajectory_.T_world_vehicle(times_.at(frame)));
   json["T_world_sonar"] = pose_json(request.T_world_sonar);
-  json["truth"] = nullptr;
+  json["truth"] = truth_json(name(frame), truth_);
   return sidecar_text(json);
 }
 

@@ -10,6 +10,7 @@
 #include "renderer/picture/direction_picture.hpp"
 #include "server/devices/survey.hpp"
 #include "server/heads/head_config.hpp"
+#include "server/offline/body_truth.hpp"
 #include "server/offline/frame_source.hpp"
 #include "server/offline/options.hpp"
 #include "server/offline/vehicle_trajectory.hpp"
@@ -21,9 +22,9 @@ namespace sonard::server {
 /// to starboard, z down: NAME_points.npy, with a signal for each, and NAME.ply.
 class DirectionFrames final : public FrameSource {
  public:
-  /// All references must outlive this object.
+  /// All references, and `truth`, must outlive this object. @param truth null: no masks of bodies
   DirectionFrames(const HeadConfig& head, const HeadPlace& place, std::unique_ptr<Survey> survey,
-                  const VehicleTrajectory& trajectory, const OfflineOptions& options);
+                  const VehicleTrajectory& trajectory, const OfflineOptions& options, BodyTruth* truth);
 
   int count() const override { return count_; }
   std::string name(int frame) const override;
@@ -40,6 +41,7 @@ class DirectionFrames final : public FrameSource {
 
  private:
   render::PingRequest request(int frame) const;
+  std::vector<std::uint16_t> bodies_of(const DirectionRanges& sent, const render::PingRequest& ping);
   picture::DirectionImage image_of(const DirectionRanges& sent) const;
   std::string sidecar(int frame, const render::PingRequest& request) const;
 
@@ -48,6 +50,7 @@ class DirectionFrames final : public FrameSource {
   HeadPlace place_;
   const VehicleTrajectory& trajectory_;
   std::unique_ptr<Survey> survey_;
+  BodyTruth* truth_;
   PingTimes times_;
   int count_;
   PingJob job_;  ///< the same for all pings, except its number

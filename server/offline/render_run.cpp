@@ -170,7 +170,7 @@ std::unique_ptr<FrameSource> make_source(const std::vector<HeadConfig>& heads, s
   }
   if (survey->job(0).directions.any()) {
     return std::make_unique<DirectionFrames>(heads[head], place_of(heads, head), std::move(survey),
-                                             trajectory, options);
+                                             trajectory, options, truth);
   }
   return std::make_unique<FanFrames>(heads[head], place_of(heads, head), std::move(survey), trajectory,
                                      options, truth);
@@ -282,10 +282,10 @@ RenderRun::RenderRun(const LoadedConfig& loaded, const OfflineOptions& options)
       findings_(world_, config_, head_, trajectory_),
       folder_(options.out) {
   warn_of_rate(*frames_, config_.heads[head_].name);
-  if (usual_settings(config_.heads[head_]).directions.any() && (options.truth || options.clean_pictures)) {
+  if (usual_settings(config_.heads[head_]).directions.any() && options.clean_pictures) {
     throw Error(ErrorKind::configuration,
-                fmt::format("{}: head '{}' has directions, not range bins (omit the option)",
-                            options.truth ? "--truth" : "--clean-png", config_.heads[head_].name),
+                fmt::format("--clean-png: head '{}' has directions, not range bins (omit the option)",
+                            config_.heads[head_].name),
                 "heads");
   }
   if (options.clean_pictures && options.truth && world_.bodies.size() > 255) {

@@ -206,13 +206,16 @@ class Sonar3d15(HeadCase):
             file.write("t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0,1\n")
         out = os.path.join(self.folder, "rendered")
         subprocess.run([os.path.join(self.PROGRAMS, "sonard"), "render", self.configuration(), "--trajectory", way, "--out",
-                        out, "--mcap"], capture_output=True, timeout=120, check=True)
+                        out, "--mcap", "--truth"], capture_output=True, timeout=120, check=True)
         frame = numpy.load(os.path.join(out, "ping_000000.npy"))
         self.assertEqual((frame.shape, frame.dtype), ((128, 256), numpy.float32))
         points = numpy.load(os.path.join(out, "ping_000000_points.npy"))
         self.assertEqual(len(points), int((frame[:64] > 0).sum()))
         with open(os.path.join(out, "ping_000000.ply"), "rb") as file:
             self.assertIn(f"element vertex {len(points)}\n".encode(), file.read(200))
+        bodies = numpy.load(os.path.join(out, "ping_000000_bodies.npy"))
+        self.assertEqual(bodies.shape, (64, 256))
+        numpy.testing.assert_array_equal(bodies > 0, frame[:64] > 0)
         log, = glob.glob(os.path.join(out, "*.mcap"))
         said = subprocess.run([os.path.join(self.PROGRAMS, "sonard"), "info", log], capture_output=True, text=True, check=True)
         self.assertIn("Sonar 3D-15", said.stdout)

@@ -69,6 +69,30 @@ TEST_F(BodyTruthTest, EachBlockIsInItsBinsAndHidesTheWall) {
   EXPECT_EQ(at(ids, 4.0 / std::cos(port_rad) + 0.01, -port_rad), 0);  // the other side
 }
 
+TEST_F(BodyTruthTest, EachDirectionHasTheBodyBeforeIt) {
+  render::DirectionGrid& grid = request.settings.directions;
+  grid.columns = 65;
+  grid.rows = 5;
+  grid.azimuth_fov_rad = 1.0;
+  grid.elevation_fov_rad = 0.2;
+  grid.azimuth_beamwidth_rad = grid.elevation_beamwidth_rad = 0.01;
+  request.settings.aperture = direction_aperture(grid);
+  request.settings.model = render::Model::physical;
+  world.bodies[0] = board("wall", 8.0, 20.0, -1.0);  // ends to starboard
+  BodyTruth truth(world, {});
+  const std::vector<std::uint16_t> ids = truth.bodies_in(request);
+  ASSERT_EQ(ids.size(), 325U);
+  const auto at_azimuth = [&](double azimuth_rad, int row) {
+    return ids[static_cast<std::size_t>(65 * row + std::lround((0.5 - azimuth_rad) * 64))];
+  };
+  for (int row = 0; row < 5; ++row) {
+    EXPECT_EQ(at_azimuth(std::atan2(1.0, 4.0), row), 2);
+    EXPECT_EQ(at_azimuth(std::atan2(-1.0, 5.0), row), 3);
+    EXPECT_EQ(at_azimuth(0.0, row), 1);
+    EXPECT_EQ(at_azimuth(-0.45, row), 0) << "water";
+  }
+}
+
 TEST_F(BodyTruthTest, FollowsABodyThatMovesAndLeavesOutOneWithoutParts) {
   world.bodies[2].parts.clear();
   BodyTruth truth(world, {});
