@@ -130,6 +130,7 @@ RULES = [
     NotRun(r"tshark .*", "needs a capture with traffic of all heads; tests/logs runs it"),
     NotRun(r"protoc .*|cp clients/examples/stonefish/.*", "writes into the reader's simulator; tests/simulators builds these examples"),
     NotRun(SONARD + r"selftest --gpu-device NAME", "needs a GPU"),
+    NotRun(r"(python3 )?clients/examples/dataset/.*", "504 images take minutes; tests/system/dataset makes fewer"),
     Mention(r"sonard (render|check) --(?!help)\w+|sonarview micron --raw"),
     # sonard
     Run(SONARD + r"--version|" + SONARD + r"render --help|" + VIEW + r"(micron )?--help"),
@@ -175,6 +176,9 @@ RULES = [
                                                "cp made/ping_000001.png other/polar-last.png"),
     Run(COMPARE + r"dump/.*", beside=("dump.yaml",), before="sonarview --range 3 --pings 16 --quiet"),
     Run(COMPARE + r"turn.jsonl.*", before=TURNS),
+    Run(r"PYTHONPATH=clients/python python3 -m sonard_client.to_dataset pings more .*",
+        before="head -n 2 harbour.csv > way.csv && for folder in pings more; do sonard render harbour.yaml --trajectory way.csv "
+               "--out $folder --truth; done"),
     Run(CAST + r"(configs/trajectories/docking_demo.csv( --loop)?|FILE|survey.tum .*)", until=POSES_ARRIVE, beside=GEMINI),
     Run(CAST + r"dive.csv --tcp --to 10.61.19.200:14601 .*", until="test -s taken", addresses=VEHICLE, before=TAKE_POSES),
     Run(CAST + r"dive.csv --tcp --to 127.0.0.1:14601 .*", before=TAKE_POSES),
