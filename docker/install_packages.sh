@@ -5,46 +5,54 @@
 set -euo pipefail
 list="$(dirname "${BASH_SOURCE[0]}")/packages.txt"
 
+lines=()
+for section in "$@"; do
+  grep -qx "\[$section\]" "$list" || { echo "$list has no section [$section]" >&2; exit 64; }
+  mapfile -t -O "${#lines[@]}" lines < <(awk -v want="[$section]" '/^\[/ { inside = ($0 == want); next } inside && NF && !/^#/' "$list")
+done
+
 # Names of installed packages, and names that they provide: a nodejs that is not Debian's includes npm.
 installed=$(dpkg-query -W -f '${db:Status-Status},${Package},${Provides}\n' | sed -n 's/^installed,//p' | tr ',' '\n' |
   sed 's/^ *//; s/ .*//' | sort -u)
+is_installed() { grep -qxF -- "$1" <<<"$installed"; }
+is_known() { apt-cache show --no-all-versions "$1" >/dev/null 2>&1; }
 
-# The lines without an installed package.
-missing=()
-for section in "$@"; do
-  grep -qx "\[$section\]" "$list" || { echo "$list has no section [$section]" >&2; exit 64; }
-  while read -r line; do
-    grep -qxF -f <(tr '|' '\n' <<<"${line#optional }" | tr -d ' ') <<<"$installed" || missing+=("$line")
-  done < <(awk -v want="[$section]" '/^\[/ { inside = ($0 == want); next } inside && NF && !/^#/' "$list")
-done
-((${#missing[@]})) || exit 0
+# libraries_of DEV: the shared libraries that package DEV depends on, without those of the C library.
+libraries_of() {
+  apt-cache depends --important "$1" | sed -n 's/^ *|\?Depends: \(lib[^<>]*\)$/\1/p' | grep -vE -e '-dev$|^libc6|-lite|^libtiffxx' | sort -u
+}
 
-as_root=()
-if ((EUID != 0)); then
-  command -v sudo >/dev/null || { printf 'To install packages, you need root or sudo. Missing packages:\n'; printf '  %s\n' "${missing[@]}"; exit 1; } >&2
-  as_root=(sudo)
-fi
-
-# The first name in each line that this release has.
+# Sorts the lines: `missing` are packages that can be installed, `left_out` lines that this release does not have.
 choose() {
-  local line name
-  chosen=() left_out=()
-  for line in "${missing[@]}"; do
-    for name in $(tr '|' ' ' <<<"${line#optional }"); do
-      if apt-cache show --no-all-versions "$name" >/dev/null 2>&1; then
-        chosen+=("$name")
-        continue 2
-      fi
+  local line name names package
+  missing=() left_out=()
+  for line in "${lines[@]}"; do
+    names=${line#optional }
+    for name in $(tr '|' ' ' <<<"${names#libraries of }"); do
+      [[ $names == "libraries of "* ]] || ! is_installed "$name" || continue 2
+      is_known "$name" || continue
+      [[ $names != "libraries of "* ]] || name=$(libraries_of "$name")
+      for package in $name; do
+        is_installed "$package" || missing+=("$package")
+      done
+      continue 2
     done
     [[ $line == optional\ * ]] || left_out+=("$line")
   done
 }
 
 choose
-if ((${#chosen[@]} + ${#left_out[@]})); then  # else only what this release does not have anyway
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
-  choose
-  ((${#left_out[@]} == 0)) || { echo "This release has no packages with these names: ${left_out[*]} (listed in $list)" >&2; exit 1; }
-  echo "Installing ${#chosen[@]} packages with apt: ${chosen[*]}"
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${chosen[@]}" >/dev/null
+((${#missing[@]} + ${#left_out[@]})) || exit 0
+
+as_root=()
+if ((EUID != 0)); then
+  command -v sudo >/dev/null ||
+    { printf 'To install packages, you need root or sudo. Missing packages:\n'; printf '  %s\n' "${missing[@]}" "${left_out[@]}"; exit 1; } >&2
+  as_root=(sudo)
 fi
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+choose
+((${#left_out[@]} == 0)) || { echo "This release has no packages with these names: ${left_out[*]} (listed in $list)" >&2; exit 1; }
+((${#missing[@]})) || exit 0
+echo "Installing ${#missing[@]} packages with apt: ${missing[*]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
