@@ -17,6 +17,9 @@ find_package(Protobuf REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(Threads REQUIRED)
 find_package(yaml-cpp REQUIRED)
+if(NOT TARGET yaml-cpp::yaml-cpp)  # before version 0.8
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()
 find_package(ZLIB REQUIRED)
 # These have no CMake package on Ubuntu 22.04.
 pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/read_until.hpp>

@@ -31,7 +31,7 @@ namespace {
 
 /// Lets Assimp open only regular files below the folders of the world. Keeps a message about the first other
 /// file that a mesh names.
-class WorldFiles : public Assimp::DefaultIOSystem {
+class WorldFiles : public Assimp::IOSystem {
  public:
   /// @param text in place of the file, if it names no others
   WorldFiles(const MeshSource& source, const std::optional<std::string>& text, std::string& refusal)
@@ -48,7 +48,12 @@ class WorldFiles : public Assimp::DefaultIOSystem {
     if (text_) {
       return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_->data()), text_->size());
     }
-    return DefaultIOSystem::Open(path.c_str(), mode);
+    return disk_.Open(path.c_str(), mode);
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+  char getOsSeparator() const override { return disk_.getOsSeparator(); }
+  bool ComparePaths(const char* one, const char* other) const override {
+    return disk_.ComparePaths(one, other);
   }
 
  private:
@@ -103,6 +108,7 @@ class WorldFiles : public Assimp::DefaultIOSystem {
   std::vector<std::filesystem::path> folders_;
   const std::optional<std::string>& text_;
   std::string& refusal_;
+  Assimp::DefaultIOSystem disk_;
 };
 
 glm::dmat4 matrix_of(const aiMatrix4x4& m) {

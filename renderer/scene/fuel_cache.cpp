@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/text/lower_case.hpp"
 #include "common/text/percent_decoding.hpp"

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 

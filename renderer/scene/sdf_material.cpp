@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/text/edit_distance.hpp"
 #include "common/text/lower_case.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "renderer/scene/sdf_frames.hpp"
 #include "renderer/scene/world.hpp"

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "renderer/scene/grouped_warnings.hpp"
 #include "renderer/scene/image_file.hpp"

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/text/lower_case.hpp"
 #include "common/text/printable.hpp"

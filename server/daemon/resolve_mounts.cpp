@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "server/heads/head_type.hpp"
 #include "server/pose/pose_input.hpp"

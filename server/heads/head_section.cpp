@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "renderer/acoustics/noise.hpp"
 #include "renderer/acoustics/water.hpp"

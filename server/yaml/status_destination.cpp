@@ -2,6 +2,7 @@
 #include "server/yaml/status_destination.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace sonard::server {
 

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/text/edit_distance.hpp"
 #include "server/net/interfaces.hpp"

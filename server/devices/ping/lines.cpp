@@ -2,6 +2,7 @@
 #include "server/devices/ping/lines.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <boost/asio/io_context.hpp>
 
 #include "server/net/serial_transport.hpp"
