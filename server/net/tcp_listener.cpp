@@ -114,7 +114,7 @@ void TcpListener::refuse(const Endpoint& peer, const char* reason) {
 void TcpListener::close() {
   error_code ignored;
   acceptor_.close(ignored);
-  retry_.cancel(ignored);
+  retry_.cancel();
 }
 
 }  // namespace sonard::server

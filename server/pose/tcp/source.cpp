@@ -80,8 +80,8 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
   void close() {
     error_code ignored;
     socket_.close(ignored);
-    timer_.cancel(ignored);
-    hold_timer_.cancel(ignored);
+    timer_.cancel();
+    hold_timer_.cancel();
     source_->sessions.erase(shared_from_this());
   }
 
@@ -187,8 +187,7 @@ class TcpPoseSource::Impl::Session : public std::enable_shared_from_this<Session
 
   void stop_watching() {
     unfinished_ = false;
-    error_code ignored;
-    timer_.cancel(ignored);
+    timer_.cancel();
   }
 
   /// @param bytes of the message, from its length on

@@ -78,8 +78,7 @@ void TrajectoryPoseSource::start() {
 
 void TrajectoryPoseSource::stop() {
   impl_->running = false;
-  error_code ignored;
-  impl_->timer.cancel(ignored);
+  impl_->timer.cancel();
 }
 
 std::string TrajectoryPoseSource::description() const {
