@@ -4,15 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
+#include "protocol/dvl_a50/layout.hpp"
 #include "protocol/dvl_a50/utc.hpp"
 
 namespace sonard::dvl_a50 {
 namespace {
 
-constexpr std::size_t pd4_bytes = 47;
+constexpr std::int16_t bad_velocity = -32768;
 constexpr std::array<std::size_t, 4> pd4_beams{2, 0, 3, 1};  ///< ids, in the order of BM1 to BM4
 
 int millimetres(double metres) {
@@ -44,34 +46,31 @@ std::string encode_pd6(const Velocity& report, double sound_speed_mps, Release r
 }
 
 std::vector<std::uint8_t> encode_pd4(const Velocity& report, double sound_speed_mps) {
-  std::vector<std::uint8_t> bytes(pd4_bytes);
-  const auto put = [&](std::size_t offset, int value) {
-    bytes[offset] = static_cast<std::uint8_t>(value & 0xFF);
-    bytes[offset + 1] = static_cast<std::uint8_t>(value >> 8 & 0xFF);
-  };
-  constexpr int bad = -32768;
-  bytes[0] = 0x7D;
-  put(2, pd4_bytes - 2);
-  bytes[4] = 0xA3;  // ship coordinates, tilt used, 600 kHz
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    put(5 + 2 * axis, report.valid ? millimetres(report.velocity_mps[axis]) : bad);
+  Pd4 packet;
+  packet.velocity_mmps.fill(bad_velocity);
+  packet.bottom_status = report.valid ? 0 : 1;
+  for (std::size_t axis = 0; axis < 3 && report.valid; ++axis) {
+    packet.velocity_mmps[axis] = static_cast<std::int16_t>(millimetres(report.velocity_mps[axis]));
+    packet.velocity_mmps[3] = 0;
   }
-  put(11, report.valid ? 0 : bad);  // the error velocity
-  for (std::size_t i = 0; i < pd4_beams.size(); ++i) {
-    const double distance_m = report.valid ? std::max(0.0, report.beams[pd4_beams[i]].distance_m) : 0.0;
-    put(13 + 2 * i, static_cast<int>(std::lround(std::min(1e2 * distance_m, 65'535.0))));
+  for (std::size_t i = 0; i < pd4_beams.size() && report.valid; ++i) {
+    const double distance_cm = 1e2 * report.beams[pd4_beams[i]].distance_m;
+    packet.range_cm[i] = static_cast<std::uint16_t>(std::lround(std::clamp(distance_cm, 0.0, 65'535.0)));
   }
-  bytes[21] = report.valid ? 0 : 1;
   const Utc t = utc_of(report.validity_us);
   const std::array<int, 4> clock{t.hour, t.minute, t.second, t.microsecond / 10'000};
-  std::ranges::copy(clock, bytes.begin() + 35);
-  put(41, static_cast<int>(std::lround(sound_speed_mps)));
-  int sum = 0;
-  for (const std::uint8_t byte : bytes) {
-    sum += byte;
-  }
-  put(pd4_bytes - 2, sum);
-  return bytes;
+  std::ranges::copy(clock, packet.clock.begin());
+  packet.sound_speed_mps = static_cast<std::uint16_t>(std::lround(sound_speed_mps));
+
+  const auto bytes_of = [&packet] {
+    std::vector<std::uint8_t> bytes;
+    ByteWriter writer(bytes);
+    write_fields<Pd4Layout>(writer, packet);
+    return bytes;
+  };
+  const std::vector<std::uint8_t> summed = bytes_of();  // with a checksum of 0
+  packet.checksum = static_cast<std::uint16_t>(std::accumulate(summed.begin(), summed.end(), 0));
+  return bytes_of();
 }
 
 }  // namespace sonard::dvl_a50
