@@ -34,12 +34,14 @@ struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
       : io(used_io),
         clock(used_clock),
         allow(config.allow),
+        stall_limit(config.stall_limit),
         listener(std::make_shared<TcpListener>(io, "tcp", config.bind, config.allow)) {}
 
   void listen();
 
   void admit(tcp::socket socket, const Endpoint& remote);
   void close_stalled();
+  void close(const std::shared_ptr<Session>& session);
   void left(const std::shared_ptr<Session>& session);
   std::shared_ptr<Session> find(const Peer& peer) const;
   void stop();
@@ -47,6 +49,7 @@ struct TcpTransport::Impl : std::enable_shared_from_this<TcpTransport::Impl> {
   asio::io_context& io;
   const Clock& clock;
   AllowList allow;
+  std::chrono::nanoseconds stall_limit;
   std::shared_ptr<TcpListener> listener;
   TransportEvents events;
   std::vector<std::shared_ptr<Session>> sessions;
@@ -99,8 +102,9 @@ class TcpTransport::Impl::Session : public std::enable_shared_from_this<Session>
   }
 
   bool is_open() const { return socket_.is_open(); }
-  bool is_stalled() const {
-    return !waiting_.empty() && transport_->clock.now() - write_begun_at_ >= most_stall;
+  /// Whether the client has not taken a message for this long.
+  bool stalls_for(std::chrono::nanoseconds time) const {
+    return !waiting_.empty() && transport_->clock.now() - write_begun_at_ >= time;
   }
   /// Pending handlers find the socket closed.
   void close() {
@@ -178,7 +182,7 @@ void TcpTransport::Impl::listen() {
 void TcpTransport::Impl::close_stalled() {
   const auto present = sessions;  // a copy, because left() changes the list
   for (const auto& session : present) {
-    if (session->is_stalled()) {
+    if (session->stalls_for(most_stall)) {
       session->close();
       left(session);
     }
@@ -218,6 +222,17 @@ std::shared_ptr<TcpTransport::Impl::Session> TcpTransport::Impl::find(const Peer
   const auto found = std::ranges::find_if(
       sessions, [&](const auto& session) { return session->peer().remote == peer.remote; });
   return found == sessions.end() ? nullptr : *found;
+}
+
+// Reports the departure after the caller has returned.
+void TcpTransport::Impl::close(const std::shared_ptr<Session>& session) {
+  session->close();
+  asio::post(io, [weak = weak_from_this(), session] {
+    const auto self = weak.lock();
+    if (self && std::ranges::count(self->sessions, session) > 0) {
+      self->left(session);
+    }
+  });
 }
 
 void TcpTransport::Impl::stop() {
@@ -266,27 +281,22 @@ void TcpTransport::send(std::vector<Outgoing> messages) {
     if (message.to == Outgoing::To::everybody || message.bytes.size() == 0) {
       continue;
     }
-    if (const auto session = impl_->find(message.peer)) {
-      session->send(message.bytes);
-    } else {
+    const auto session = impl_->find(message.peer);
+    if (!session) {
       ++impl_->lost;
+    } else if (impl_->stall_limit > std::chrono::nanoseconds{0} && session->stalls_for(impl_->stall_limit)) {
+      ++impl_->dropped;
+      impl_->close(session);
+    } else {
+      session->send(message.bytes);
     }
   }
 }
 
-// Reports the departure after the caller has returned.
 void TcpTransport::disconnect(const Peer& client) {
-  const auto session = impl_->find(client);
-  if (!session) {
-    return;
+  if (const auto session = impl_->find(client)) {
+    impl_->close(session);
   }
-  session->close();
-  asio::post(impl_->io, [weak = impl_->weak_from_this(), session] {
-    const auto self = weak.lock();
-    if (self && std::ranges::count(self->sessions, session) > 0) {
-      self->left(session);
-    }
-  });
 }
 
 std::vector<std::string> TcpTransport::descriptions() const {

@@ -22,16 +22,11 @@ namespace sonard::server {
 struct TcpTransportConfig {
   Endpoint bind;
   AllowList allow;  ///< permitted clients
+  /// A client that has not taken a message for this long is closed at the next message to it, too; zero:
+  /// never.
+  std::chrono::nanoseconds stall_limit{};
 };
 
-/// Each client is a separate stream, from ClientCame to ClientGone. A client that ends its sending direction
-/// has left. Messages go to the Peer that they name. Messages to everybody are broadcasts and are not sent on
-/// streams.
-///
-/// A client that reads too slowly misses whole messages: while a message is being sent, only short ones are
-/// queued, and others are dropped. A started message is always sent completely. When a new client connects,
-/// clients that have not taken a message for most_stall are closed, because a device that serves one client
-/// at a time would otherwise be blocked.
 /// Counts of a TcpTransport; they only grow.
 struct TcpTransportCounts {
   std::uint64_t connections = 0;
@@ -43,6 +38,14 @@ struct TcpTransportCounts {
 };
 std::vector<Counter> tcp_counters(const TcpTransportCounts& counts);
 
+/// Each client is a separate stream, from ClientCame to ClientGone. A client that ends its sending direction
+/// has left. Messages go to the Peer that they name. Messages to everybody are broadcasts and are not sent on
+/// streams.
+///
+/// A client that reads too slowly misses whole messages: while a message is being sent, only short ones are
+/// queued, and others are dropped. A started message is always sent completely. When a new client connects,
+/// clients that have not taken a message for most_stall are closed, because a device that serves one client
+/// at a time would otherwise be blocked.
 class TcpTransport final : public Transport {
  public:
   /// Further clients are closed at once and counted as refused.

@@ -205,6 +205,34 @@ TEST_F(TcpTransportTest, WhoTakesNoMessageForHalfAMinuteIsClosedWhenAnotherComes
   EXPECT_EQ(gone_, std::vector<Peer>{came_[0]}) << "nothing was sent to the others";
 }
 
+TEST_F(TcpTransportTest, WithAStallLimitWhoTakesNoMessageIsClosedAtTheNextOne) {
+  TcpTransport strict(io_, {{localhost, 0}, {{0x7F000000, 8}}, std::chrono::seconds{10}}, clock_);
+  std::vector<Peer> came, gone;
+  TransportEvents events;
+  events.received = [](const BytesReceived&) {};
+  events.came = [&](const ClientCame& who) { came.push_back(who.who); };
+  events.gone = [&](const ClientGone& who) { gone.push_back(who.who); };
+  strict.start(events);
+  Client deaf = Client::tcp(strict.local_endpoint(), localhost, 4096);
+  Client idle = Client::tcp(strict.local_endpoint());
+  ASSERT_TRUE(run_until([&] { return came.size() == 2; }));
+  const auto say = [&](const Peer& to, std::size_t size) {
+    strict.send({{Outgoing::To::peer, to, SharedBytes(numbered(1, size))}});
+    io_.poll();
+    io_.restart();
+  };
+  say(came[0], 3'000'000);
+  clock_.time += std::chrono::seconds{10} - TimePoint{1};
+  say(came[0], 100);
+  EXPECT_THAT(gone, IsEmpty());
+  clock_.time += TimePoint{1};
+  say(came[1], 100);
+  EXPECT_THAT(gone, IsEmpty()) << "only a message to it closes it";
+  say(came[0], 100);
+  EXPECT_EQ(gone, std::vector<Peer>{came[0]});
+  EXPECT_TRUE(run_until([&] { return idle.heard().size() == 100; }));
+}
+
 TEST_F(TcpTransportTest, DisconnectsAClientAndTellsSoAfterwards) {
   Client one = client();
   Client two = client();
