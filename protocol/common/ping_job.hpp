@@ -87,6 +87,8 @@ struct SensorReadings {
   /// Unit quaternion from the axes of the head to those of the world (x east, y north, z up).
   std::array<double, 4> orientation_wxyz{1.0, 0.0, 0.0, 0.0};
   std::array<double, 3> velocity_mps{};  ///< of the head over ground, in its axes
+  /// In simulated time, the time of SensorsRead on the clock of the simulation.
+  std::optional<std::chrono::nanoseconds> simulated_time = {};
 
   bool operator==(const SensorReadings&) const = default;
 };

@@ -20,7 +20,8 @@ void DeadReckoning::move(std::chrono::nanoseconds now, const Motion& vehicle, bo
   if (!moved_at_) {
     start_ = vehicle.axes;
   }
-  const double passed_s = moved_at_ ? 1e-9 * static_cast<double>((now - *moved_at_).count()) : 0.0;
+  const double passed_s =
+      moved_at_ ? std::max(0.0, 1e-9 * static_cast<double>((now - *moved_at_).count())) : 0.0;
   drift_rad_ += config_.heading_drift_radps * passed_s;
   // Row i of the axes in the start frame: component i of each axis. The drift turns it about z.
   Matrix axes{};

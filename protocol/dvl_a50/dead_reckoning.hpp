@@ -22,8 +22,8 @@ class DeadReckoning {
   DeadReckoning(const DeadReckoningConfig& config, std::uint64_t seed) : config_(config), noise_(seed) {}
 
   void reset();
-  /// Goes on with the motion of the vehicle at a time, which must not be before the last one. Between two
-  /// times the velocity is the mean of both.
+  /// Goes on with the motion of the vehicle at a time. Between two times the velocity is the mean of both; if
+  /// the time goes backwards, as that of a restarted simulation, the vehicle stays where it is.
   void move(std::chrono::nanoseconds now, const Motion& vehicle, bool bottom_lock);
   /// Without a time.
   Position position() const;

@@ -607,10 +607,13 @@ void Device::Impl::take(TimePoint now, const SensorsRead& sensors) {
   move(now);
 }
 
+/// Goes on with dead reckoning: in simulated time up to the time of the readings, whatever the clock says.
 void Device::Impl::move(TimePoint now) {
   if (readings_) {
+    const nanoseconds moved_to =
+        config_.simulated_time ? readings_->simulated_time.value_or(nanoseconds{0}) : now;
     const double turn_rad = settings_.mounting_rotation_offset_deg * std::numbers::pi / 180.0;
-    dead_reckoning_.move(now, vehicle_motion(device_motion(*readings_), turn_rad), locked_);
+    dead_reckoning_.move(moved_to, vehicle_motion(device_motion(*readings_), turn_rad), locked_);
   }
 }
 

@@ -449,8 +449,10 @@ void Head::Impl::sense(TimePoint now) {
 }
 
 void Head::Impl::read_sensors(TimePoint now, TimePoint present, const render::Pose& T_world_mount) {
-  const SensorReadings read =
-      sensor_readings(T_world_mount, water_surface_z_m, poses.mount_velocity_mps(present));
+  SensorReadings read = sensor_readings(T_world_mount, water_surface_z_m, poses.mount_velocity_mps(present));
+  if (poses.in_simulated_time()) {
+    read.simulated_time = present;
+  }
   if (std::exchange(readings, read) != read) {
     step(now, SensorsRead{read});
   }

@@ -64,6 +64,29 @@ TEST(DvlPositions, YawDriftsAndTheErrorGrowsFasterWithoutBottom) {
   EXPECT_NEAR(bench.positions.back().report.std_m, 0.1 * std::sqrt(60.0), 0.03);
 }
 
+TEST(DvlPositions, InSimulatedTimeTheMotionIsAddedByTheTimeOfTheReadings) {
+  DeviceConfig config = quiet();
+  config.simulated_time = true;
+  Bench bench(config);
+  const auto at = [&](std::chrono::nanoseconds time, double ahead_mps) {
+    SensorReadings readings = moving({ahead_mps, 0.0, 0.0});
+    readings.simulated_time = time;
+    bench.move(readings);
+  };
+  at(100s, 1.0);
+  bench.ask("reset_dead_reckoning");
+  bench.run_for(3s);
+  EXPECT_EQ(bench.positions.back().report.position_m[0], 0.0) << "the simulation rests";
+  at(104s, 1.0);
+  at(106s, 2.0);
+  bench.run_for(1s);
+  EXPECT_NEAR(bench.positions.back().report.position_m[0], 4.0 + 3.0, 1e-9);
+  at(1s, 2.0);  // the simulation begins again
+  at(2s, 2.0);
+  bench.run_for(1s);
+  EXPECT_NEAR(bench.positions.back().report.position_m[0], 7.0 + 2.0, 1e-9);
+}
+
 TEST(DvlPositions, RollAndPitchAreThoseOfTheVehicle) {
   // The head looks down and ahead: the vehicle's nose is up by 0.1 rad from the reset on.
   Bench bench;
