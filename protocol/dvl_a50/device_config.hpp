@@ -79,4 +79,7 @@ struct DeviceConfig {
 
 inline constexpr int json_channel = 0;
 
+/// @return `config` @throws std::invalid_argument naming the field that is out of range
+const DeviceConfig& validated(const DeviceConfig& config);
+
 }  // namespace sonard::dvl_a50

@@ -86,11 +86,11 @@ std::string old_distance_sentence(const Velocity& report) {
                                    beams[1].distance_m, beams[2].distance_m, beams[3].distance_m));
 }
 
-std::string settings_sentence(const Settings& settings) {
-  return with_checksum(fmt::format("wrc,{:g},{:g},{},{},{},{}", settings.speed_of_sound_mps,
-                                   settings.mounting_rotation_offset_deg, letter(settings.acoustic_enabled),
-                                   letter(settings.dark_mode_enabled), settings.range_mode,
-                                   letter(settings.periodic_cycling_enabled)));
+std::string settings_text(const Settings& settings) {
+  return fmt::format("wrc,{:g},{:g},{},{},{},{}", settings.speed_of_sound_mps,
+                     settings.mounting_rotation_offset_deg, letter(settings.acoustic_enabled),
+                     letter(settings.dark_mode_enabled), settings.range_mode,
+                     letter(settings.periodic_cycling_enabled));
 }
 
 std::optional<SerialCommand> parse_command(std::string_view line) {

@@ -23,7 +23,7 @@ std::string beam_sentence(const Beam& beam);                ///< wru
 std::string position_sentence(const Position& report);      ///< wrp
 std::string old_velocity_sentence(const Velocity& report);  ///< wrx
 std::string old_distance_sentence(const Velocity& report);  ///< wrt
-std::string settings_sentence(const Settings& settings);    ///< wrc
+std::string settings_text(const Settings& settings);        ///< wrc, without its checksum
 
 /// A command: its letters, such as "wcs", and its options.
 struct SerialCommand {

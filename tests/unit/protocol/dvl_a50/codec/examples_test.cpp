@@ -95,7 +95,7 @@ TEST(DvlExamples, Sentences) {
     EXPECT_EQ(beam_sentence(beam), text("wru_" + std::to_string(beam.id)));
   }
   EXPECT_EQ(position_sentence(worked_position), text("wrp"));
-  EXPECT_EQ(settings_sentence({}), text("wrc"));
+  EXPECT_EQ(with_checksum(settings_text({})), text("wrc"));
 }
 
 TEST(DvlExamples, DocumentedSentences) {
