@@ -13,4 +13,5 @@ set(SONARD_DEVICES
   ping1d
   ping360
   sonar3d15
+  dvl_a50
 )

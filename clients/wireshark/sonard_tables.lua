@@ -6,9 +6,10 @@ local tables = {}
 -- Longer runs of bytes are shown as one value.
 local most_values = 8
 
+local signed_integers = { [1] = ProtoField.int8, [2] = ProtoField.int16, [4] = ProtoField.int32, [8] = ProtoField.int64 }
 local integers = { [1] = ProtoField.uint8, [2] = ProtoField.uint16, [4] = ProtoField.uint32, [8] = ProtoField.uint64 }
 
--- Makes the Wireshark field for one entry. `format`: "hex", "ipv4", "double", or nil for decimal.
+-- Makes the Wireshark field for one entry. `format`: "hex", "ipv4", "double", "signed", or nil for decimal.
 local function make_field(abbreviation, entry, format)
   local size, name, count = entry[2], entry[3], entry[4] or 1
   if not integers[size] or (size == 1 and count > most_values) then
@@ -19,6 +20,9 @@ local function make_field(abbreviation, entry, format)
   end
   if format == "double" then
     return ProtoField.double(abbreviation, name)
+  end
+  if format == "signed" then
+    return signed_integers[size](abbreviation, name)
   end
   return integers[size](abbreviation, name, format == "hex" and base.HEX or base.DEC)
 end

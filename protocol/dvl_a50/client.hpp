@@ -30,6 +30,7 @@ class Client {
   /// The reports that are complete, in order.
   std::vector<Report> take();
   std::uint64_t unreadable() const { return unreadable_; }
+  std::uint64_t dropped_bytes() const { return stream_.dropped(); }  ///< outside objects
 
  private:
   JsonStream stream_;

@@ -40,6 +40,10 @@ void expect_no_failure(const std::string& device, std::uint16_t port) {
   EXPECT_EQ(dissected, packet_count);
 }
 
+TEST(HostileBytes, DvlA50) {
+  expect_no_failure("dvl_a50", 16'171);
+}
+
 TEST(HostileBytes, Gemini) {
   expect_no_failure("gemini", 52'900);
 }

@@ -21,9 +21,13 @@ void PrintTo(const Link& link, std::ostream* out) {
   *out << link.device;
 }
 
-const Link links[]{{"gemini", 0, 52'900, false}, {"micron", 0, 4002},
-                   {"oculus", 52'100, 52'102},   {"ping1d", 0, 9090},
-                   {"ping360", 0, 12'345},       {"sonar3d15", 0, 4747, false, false}};
+const Link links[]{{"dvl_a50", 0, 16'171},
+                   {"gemini", 0, 52'900, false},
+                   {"micron", 0, 4002},
+                   {"oculus", 52'100, 52'102},
+                   {"ping1d", 0, 9090},
+                   {"ping360", 0, 12'345},
+                   {"sonar3d15", 0, 4747, false, false}};
 
 std::vector<pcapng::Bytes> packets_of(const Link& link, const std::vector<Message>& messages) {
   const pcapng::Endpoint client{0x7F000001, 50'000};

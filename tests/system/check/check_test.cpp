@@ -194,7 +194,7 @@ TEST_P(ShippedConfig, IsGoodWithoutAWarning) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedConfig,
                          testing::Values("demo.yaml", "gemini-netns.yaml", "ssiv.yaml", "manifold.yaml",
                                          "paper.yaml", "gazebo.yaml", "gemini-and-ping360.yaml",
-                                         "oculus-and-ping360.yaml"),
+                                         "oculus-and-ping360.yaml", "bluerov2.yaml"),
                          [](const auto& test) {
                            std::string name = test.param;
                            name.resize(name.find('.'));

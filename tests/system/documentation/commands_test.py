@@ -142,7 +142,7 @@ RULES = [
     Run(SONARD + r"check configs/ardusub.yaml --listen 5", codes=(2,)),  # no vehicle sends
     Run(SONARD + r"check my.yaml"),
     Run(SONARD + r"check my.yaml --listen 5", codes=(2, 3)),  # no Gazebo runs
-    Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|(gemini|oculus)-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
+    Run(SONARD + r"run (CONFIG( \[--log-level L\] \[--log-format F\])?|my.yaml|configs/(NAME|demo(-\w+)?|ardusub|bluerov2|(gemini|oculus)-and-ping360|two-vehicles-[ab]).yaml)", until=READY),
     Run(SONARD + r"run ~/sonar/demo-oculus.yaml", until=READY, before="ln -s $PWD/configs ~/sonar"),
     Run(SONARD + r"run configs/gemini-netns.yaml", until=READY, addresses=VEHICLE),
     Run(SONARD + r"run configs/container.yaml", until=READY, before="ip link add eth0 type veth peer name eth1 && ip link set eth1 up && "
@@ -169,6 +169,7 @@ RULES = [
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/oculus-and-ping360.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 (--out out|--range 20 --gain 3)", until=PROGRESS, beside=("configs/demo-ping1d.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 --pings 50 --log-pings", beside=("configs/demo-ping1d.yaml",)),
+    Run(VIEW + r"dvl_a50 --tcp 127.0.0.1:16171 .*", beside=("configs/demo-dvl_a50.yaml",)),
     Run(VIEW + r"sonar3d15 --head 127.0.0.5 --port 8080 --interface 127.0.0.1 (--pings 20 )?--out out", until="ls out/shot-last.png",
         beside=("configs/demo-sonar3d15.yaml",)),
     Run(VIEW + r"sonar3d15 --head 192.168.2.96 .*", codes=(1,)),  # no interface here leads to the multicast group

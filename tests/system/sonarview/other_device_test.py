@@ -17,6 +17,7 @@ PROGRAMS = None
 PATIENCE_S = 60
 SENTENCE = b"$SDDBT,36.1,f,11.0,M,6.0,F*0C\r\n"  # of an echo sounder, NMEA 0183
 TEXTS = {
+    "dvl_a50": rb"is open, but no report came within 2\.0 s: \d+ bytes arrived that are not of a DVL",
     "micron": rb"is open, but head 2 sent nothing within 2\.0 s: \d+ bytes arrived that are not of a Micron",
     "ping1d": rb"is open, but no head answered within 2\.0 s: \d+ bytes arrived that are not of a Ping1D",
     "ping360": rb"is open, but no head answered within 2\.0 s: \d+ bytes arrived that are not of a Ping360",
