@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the messages of a Gemini 720i, in both directions. Section numbers below refer to
--- docs/protocols/gemini.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
+-- protocol/gemini/README.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_gemini.lua -r capture.pcapng
 -- The preferences of the protocol GEMINI_SONAR set the UDP ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"

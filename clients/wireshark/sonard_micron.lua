@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the serial protocol of a Micron DST, carried over TCP or UDP, in both directions. Section
--- numbers below refer to docs/protocols/micron.md. Put all sonard_*.lua files into the folder for personal Lua
+-- numbers below refer to protocol/micron/README.md. Put all sonard_*.lua files into the folder for personal Lua
 -- plugins, or load this one:
 --   tshark -X lua_script:sonard_micron.lua -r capture.pcapng
 -- Streams that begin with a frame are found on any port. The preferences of the protocol MICRON_SONAR set ports.

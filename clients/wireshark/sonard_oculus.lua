@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for an Oculus: fires and pings over TCP, status datagrams over UDP. Section numbers below refer
--- to docs/protocols/oculus.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
+-- to protocol/oculus/README.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_oculus.lua -r capture.pcapng
 -- The preferences of the protocol OCULUS_SONAR set the ports.
 local here = __DIR__ == "" and "" or __DIR__ .. "/"

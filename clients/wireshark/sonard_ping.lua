@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- The dissector of any device of the Ping protocol: frames over UDP or TCP, in both directions, and the messages that
--- all devices have. Section numbers refer to docs/protocols/ping360.md. Each dissector loads this file for itself and
+-- all devices have. Section numbers refer to protocol/ping360/README.md. Each dissector loads this file for itself and
 -- calls it with a table `device`:
 --   name, title      NAME_SONAR is the protocol; its title for people
 --   tables, layouts  what sonard_tables.lua and sonard_NAME_fields.lua return

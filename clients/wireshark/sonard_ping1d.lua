@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the Ping protocol of a Ping1D or Ping2, over UDP or TCP, in both directions. Section numbers
--- refer to docs/protocols/ping1d.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this:
+-- refer to protocol/ping1d/README.md. Put all sonard_*.lua files into the folder for personal Lua plugins, or load this:
 --   tshark -X lua_script:sonard_ping1d.lua -r capture.pcapng
 -- Packets that begin with a message of these devices alone are found on any port; the preferences of the protocol
 -- PING1D_SONAR set ports.

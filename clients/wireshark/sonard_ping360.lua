@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: Apache-2.0 OR GPL-2.0-or-later
 -- Wireshark dissector for the Ping protocol of a Ping360, over UDP or TCP, in both directions, and for the text
--- messages of its discovery. Section numbers below refer to docs/protocols/ping360.md. Put all sonard_*.lua files into
+-- messages of its discovery. Section numbers below refer to protocol/ping360/README.md. Put all sonard_*.lua files into
 -- the folder for personal Lua plugins, or load this one:
 --   tshark -X lua_script:sonard_ping360.lua -r capture.pcapng
 -- Streams and datagrams that begin with a frame are found on any port. The preferences of the protocols PING360_SONAR

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A ping that is arriving at a client, and the requests for its lost parts. Source:
-// docs/protocols/gemini.md 7.
+// protocol/gemini/README.md 7.
 #pragma once
 
 #include <algorithm>

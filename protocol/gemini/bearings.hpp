@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings of the beams of a Gemini 720i (docs/protocols/gemini.md 6.5).
+// Bearings of the beams of a Gemini 720i (protocol/gemini/README.md 6.5).
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Gemini 720i client as a pure state machine: input is datagrams and time, output is datagrams and pings.
-// It uses no sockets, clocks or threads. Source: docs/protocols/gemini.md 1, 5, 6, 7.
+// It uses no sockets, clocks or threads. Source: protocol/gemini/README.md 1, 5, 6, 7.
 //
 // It follows the client libraries but retries more often. It repeats requests for everything that is lost (a
 // configuration, a head, lines, a tail, requests or answers) until the ping is complete, the head begins its

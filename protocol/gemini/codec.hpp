@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bytes <-> messages of a Gemini 720i. One datagram is one message; there is no checksum and no length field.
-// Source: docs/protocols/gemini.md 2, 3, 5, 6. No state; any thread.
+// Source: protocol/gemini/README.md 2, 3, 5, 6. No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Gemini 720i as a pure state machine: input is datagrams and time, output is datagrams and jobs.
-// It uses no sockets, clocks or threads, and of images only sample bytes. Source: docs/protocols/gemini.md.
+// It uses no sockets, clocks or threads, and of images only sample bytes. Source: protocol/gemini/README.md.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@
 
 namespace sonard::gemini {
 
-/// Section numbers refer to docs/protocols/gemini.md. The Device constructor rejects values out of range.
+/// Section numbers refer to protocol/gemini/README.md. The Device constructor rejects values out of range.
 struct DeviceConfig {
   std::uint16_t sonar_id = 513;  ///< >= 2 (1.4)
   Ipv4 fixed_address = 0x0A3D13C8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole ping as encoded datagrams (docs/protocols/gemini.md 6, 7.3).
+// A whole ping as encoded datagrams (protocol/gemini/README.md 6, 7.3).
 #pragma once
 
 #include <cstddef>

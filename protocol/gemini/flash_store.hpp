@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flash memory of a head (docs/protocols/gemini.md 3.7).
+// The flash memory of a head (protocol/gemini/README.md 3.7).
 #pragma once
 
 #include <array>

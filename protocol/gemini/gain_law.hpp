@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the gain fields of a ping configuration change the level of the image (docs/protocols/gemini.md 5).
+// How the gain fields of a ping configuration change the level of the image (protocol/gemini/README.md 5).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of all fixed-layout messages, used by the codec for reading and writing, and printable by
-// tools. Source: docs/protocols/gemini.md 3, 5, 6. codec.cpp handles the variable parts (SerialTransmit,
+// tools. Source: protocol/gemini/README.md 3, 5, 6. codec.cpp handles the variable parts (SerialTransmit,
 // MdioCommands, PingLine's data, SerialData, InfoBlockWrite).
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages of a Gemini 720i as values, both directions, one struct per message.
-// Source: docs/protocols/gemini.md, section numbers beside each struct. Members keep the device's own
+// Source: protocol/gemini/README.md, section numbers beside each struct. Members keep the device's own
 // integers and units, so that decode and encode lose nothing; member functions and helpers convert them.
 // Spare fields are written as zero and skipped on reading.
 // "Client" is the computer that commands the head; "head" is the sonar. Multi-byte integers are

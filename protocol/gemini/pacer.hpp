@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spaces the datagrams of pings on the wire (docs/protocols/gemini.md 8.5, 3.6, 7.7).
+// Spaces the datagrams of pings on the wire (protocol/gemini/README.md 8.5, 3.6, 7.7).
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assembles one ping at the client. Head, lines and tail come in any order, may repeat or be lost.
-// Source: docs/protocols/gemini.md 6, 7.
+// Source: protocol/gemini/README.md 6, 7.
 #pragma once
 
 #include <cstdint>

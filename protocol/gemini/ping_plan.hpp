@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts a ping configuration to a plan of the head's pings (docs/protocols/gemini.md 5, 6.2, 6.7).
+// Converts a ping configuration to a plan of the head's pings (protocol/gemini/README.md 5, 6.2, 6.7).
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Settings of an application, and the ping configuration that the early client library sends for them.
-// Source: docs/protocols/gemini.md 5, "How V1 fills it".
+// Source: protocol/gemini/README.md 5, "How V1 fills it".
 #pragma once
 
 #include <chrono>

@@ -11,7 +11,7 @@
 
 namespace sonard::gemini {
 
-/// Three rules decide when a datagram leaves (docs/protocols/gemini.md 8.5): not before the echo from its
+/// Three rules decide when a datagram leaves (protocol/gemini/README.md 8.5): not before the echo from its
 /// range arrives; paced by the Pacer; and the last 36 lines and the tail close together, because clients
 /// mistake slow last lines for a lost tail. After the tail the object serves retries.
 class PingTransmission {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Run modes, rate limits, transmission and retries of a head's pings.
-// Source: docs/protocols/gemini.md 7.3, 8.
+// Source: protocol/gemini/README.md 7.3, 8.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queue of the client's retry requests for the last ping (docs/protocols/gemini.md 7.3).
+// Queue of the client's retry requests for the last ping (protocol/gemini/README.md 7.3).
 #pragma once
 
 #include <cstddef>

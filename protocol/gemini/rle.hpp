@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run-length coding of zero beams in a range line of 8-bit samples (docs/protocols/gemini.md 6.8).
+// Run-length coding of zero beams in a range line of 8-bit samples (protocol/gemini/README.md 6.8).
 #pragma once
 
 #include <cstddef>

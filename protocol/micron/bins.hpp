@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wire format of the amplitudes of a line: 8 bits, or 4 bits with two bins per byte
-// (docs/protocols/micron.md 6.3).
+// (protocol/micron/README.md 6.3).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Micron client as a pure state machine: input is bytes and time, output is frames and lines. It uses no
-// serial ports, sockets, clocks or threads. Source: docs/protocols/micron.md 5, 7, 8.
+// serial ports, sockets, clocks or threads. Source: protocol/micron/README.md 5, 7, 8.
 //
 // It follows most drivers: waits for an alive, requests the version and user blocks, sends parameters, waits
 // until the head reports that it is centred and has them, then requests lines. It repeats lost requests. It

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames <-> messages of a Micron. Source: docs/protocols/micron.md 3, 5, 6. No state; any thread.
+// Frames <-> messages of a Micron. Source: protocol/micron/README.md 3, 5, 6. No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ enum class UserBlocks : std::uint8_t {
   older,      ///< 175 bytes, from a head that is not a DST
 };
 
-/// Section numbers refer to docs/protocols/micron.md. Most settings are choices in which drivers or heads
+/// Section numbers refer to protocol/micron/README.md. Most settings are choices in which drivers or heads
 /// differ. The defaults suit most drivers; docs/your-micron-driver.md lists the others. The Device
 /// constructor rejects values out of range.
 struct DeviceConfig {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of the Micron's serial line: finds them in a stream of bytes and writes them.
-// Source: docs/protocols/micron.md 2. There is no checksum and no escaping; only the length marks the end.
+// Source: protocol/micron/README.md 2. There is no checksum and no escaping; only the length marks the end.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
-// frame; sizes exclude the line feed at its end. Source: docs/protocols/micron.md 5, 6. codec.cpp handles the
-// parts that depend on the message itself (forms of the head command, data of lines, older user blocks).
+// frame; sizes exclude the line feed at its end. Source: protocol/micron/README.md 5, 6. codec.cpp handles
+// the parts that depend on the message itself (forms of the head command, data of lines, older user blocks).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs for pings with given parameters and for recorded lines (docs/protocols/micron.md 4, 6.3).
+// Jobs for pings with given parameters and for recorded lines (protocol/micron/README.md 4, 6.3).
 #pragma once
 
 #include "protocol/common/ping_record.hpp"

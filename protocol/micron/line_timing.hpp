@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Durations of the parts of one line (docs/protocols/micron.md 8.4).
+// Durations of the parts of one line (protocol/micron/README.md 8.4).
 #pragma once
 
 #include <chrono>

@@ -12,7 +12,7 @@
 
 namespace sonard::micron {
 
-inline constexpr double carrier_hz = 700'000.0;  ///< of the sound (docs/protocols/micron.md 10)
+inline constexpr double carrier_hz = 700'000.0;  ///< of the sound (protocol/micron/README.md 10)
 
 /// PingRecord::wire of a line: a frame without data.
 /// @param line its data are ignored

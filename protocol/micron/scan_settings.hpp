@@ -28,7 +28,7 @@ struct ScanSettings {
   double sound_speed_mps = 1500.0;                  ///< used to convert ranges; not sent to the head
 };
 
-/// Time between bins in units of 640 ns. Most drivers truncate it (docs/protocols/micron.md 4), so the head
+/// Time between bins in units of 640 ns. Most drivers truncate it (protocol/micron/README.md 4), so the head
 /// covers at most the requested range. May be outside 1..65535.
 int ad_interval(const ScanSettings& settings);
 

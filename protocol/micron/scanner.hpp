@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times and bearings of a head's pings, and the lines that it sends. Source: docs/protocols/micron.md 7.4, 8.
+// Times and bearings of a head's pings, and the lines that it sends. Source:
+// protocol/micron/README.md 7.4, 8.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings of the transducer from line to line (docs/protocols/micron.md 8.3).
+// Bearings of the transducer from line to line (protocol/micron/README.md 8.3).
 #pragma once
 
 #include "protocol/micron/device_config.hpp"

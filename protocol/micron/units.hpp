@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversion of the Micron's wire units to SI units (docs/protocols/micron.md 4). Angles are in 1/16 gradian,
-// 6400 per turn, clockwise seen from above: 0 astern, 1600 port, 3200 ahead, 4800 starboard.
+// Conversion of the Micron's wire units to SI units (protocol/micron/README.md 4). Angles are in 1/16
+// gradian, 6400 per turn, clockwise seen from above: 0 astern, 1600 port, 3200 ahead, 4800 starboard.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes <-> messages of an Oculus. Source: docs/protocols/oculus.md. No state; any thread.
+// Bytes <-> messages of an Oculus. Source: protocol/oculus/README.md. No state; any thread.
 #pragma once
 
 #include <cstdint>

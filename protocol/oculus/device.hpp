@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An Oculus as a pure state machine: input is bytes and time, output is messages and jobs.
-// Source: docs/protocols/oculus.md.
+// Source: protocol/oculus/README.md.
 #pragma once
 
 #include <chrono>

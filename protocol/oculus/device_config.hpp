@@ -12,7 +12,7 @@
 
 namespace sonard::oculus {
 
-/// Section numbers refer to docs/protocols/oculus.md. The Device constructor rejects values out of range.
+/// Section numbers refer to protocol/oculus/README.md. The Device constructor rejects values out of range.
 struct DeviceConfig {
   std::uint16_t id = 7892;    ///< not 0; used in the status and over TCP (1)
   Ipv4 address = 0x7F000001;  ///< clients connect to exactly this address; default 127.0.0.1 (6)

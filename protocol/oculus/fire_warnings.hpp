@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of a fire that a head changes (docs/protocols/oculus.md 3.2, 3.3, 8).
+// Values of a fire that a head changes (protocol/oculus/README.md 3.2, 3.3, 8).
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the messages of a client in a stream of bytes. Source: docs/protocols/oculus.md 3.1.
+// Finds the messages of a client in a stream of bytes. Source: protocol/oculus/README.md 3.1.
 #pragma once
 
 #include <cstddef>

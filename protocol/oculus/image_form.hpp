@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Size and sample layout of a ping's image. Source: docs/protocols/oculus.md 3.2, 4.
+// Size and sample layout of a ping's image. Source: protocol/oculus/README.md 3.2, 4.
 #pragma once
 
 #include <cstddef>

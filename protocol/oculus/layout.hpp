@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
-// message. Source: docs/protocols/oculus.md. Bearings and image follow the table of a result; codec.cpp
+// message. Source: protocol/oculus/README.md. Bearings and image follow the table of a result; codec.cpp
 // handles them.
 #pragma once
 

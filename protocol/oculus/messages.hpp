@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages of an Oculus as plain values. Source: docs/protocols/oculus.md (section numbers in brackets).
+// The messages of an Oculus as plain values. Source: protocol/oculus/README.md (section numbers in brackets).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Specifications of the Oculus models (docs/protocols/oculus.md 8).
+// Specifications of the Oculus models (protocol/oculus/README.md 8).
 #pragma once
 
 #include <array>

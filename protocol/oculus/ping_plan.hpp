@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts a fire to a plan: settings and period of the pings (docs/protocols/oculus.md 3.3, 4, 8).
+// Converts a fire to a plan: settings and period of the pings (protocol/oculus/README.md 3.3, 4, 8).
 #pragma once
 
 #include <chrono>

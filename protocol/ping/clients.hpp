@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clients of a head of the Ping protocol, on UDP ports and at most one serial line.
-// Source: docs/protocols/ping360.md 4.
+// Source: protocol/ping360/README.md 4.
 #pragma once
 
 #include <chrono>

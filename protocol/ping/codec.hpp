@@ -2,7 +2,7 @@
 // Frames <-> messages of any device of the Ping protocol. A device gives the messages of a direction as a
 // std::variant that begins with Unknown, and a template `Layout` with the table of each message that has one.
 // After its table a message may have a member `text` (the rest of the payload), or `data` (a u16 count, then
-// that many bytes). Source: docs/protocols/ping360.md 1, 2. No state; any thread.
+// that many bytes). Source: protocol/ping360/README.md 1, 2. No state; any thread.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of the Ping protocol: finds them in a stream of bytes and writes them.
-// Source: docs/protocols/ping360.md 1.
+// Source: protocol/ping360/README.md 1.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The side of a head that its clients see, for all devices of the Ping protocol: frames in, answers out.
-// Source: docs/protocols/ping360.md 1, 4.
+// Source: protocol/ping360/README.md 1, 4.
 #pragma once
 
 #include <cstdint>

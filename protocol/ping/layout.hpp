@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of the common messages. Offsets are from the start of the frame, 8 more than in
-// docs/protocols/ping360.md 2; sizes exclude the checksum at its end. Texts follow the table of their
+// protocol/ping360/README.md 2; sizes exclude the checksum at its end. Texts follow the table of their
 // message.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages that all devices of the Ping protocol share, as values, one struct per message.
-// Source: docs/protocols/ping360.md 2.1. Multi-byte integers are little-endian; spare fields are written as
+// Source: protocol/ping360/README.md 2.1. Multi-byte integers are little-endian; spare fields are written as
 // zero and skipped on reading.
 #pragma once
 

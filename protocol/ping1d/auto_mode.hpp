@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Range and gain that the head chooses in auto mode. Source: docs/protocols/ping1d.md 3.3.
+// Range and gain that the head chooses in auto mode. Source: protocol/ping1d/README.md 3.3.
 #pragma once
 
 #include "protocol/ping1d/device_config.hpp"

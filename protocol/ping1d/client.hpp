@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Ping1D client as a pure state machine: input is bytes and time, output is frames and pings. It uses no
-// serial ports, sockets, clocks or threads. Source: docs/protocols/ping1d.md 3, 5.
+// serial ports, sockets, clocks or threads. Source: protocol/ping1d/README.md 3, 5.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames <-> messages of a Ping1D. Source: docs/protocols/ping1d.md 2. No state; any thread.
+// Frames <-> messages of a Ping1D. Source: protocol/ping1d/README.md 2. No state; any thread.
 #pragma once
 
 #include <cstdint>

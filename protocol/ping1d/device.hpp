@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Ping1D and the Ping2 as a pure state machine: input is bytes and time, output is frames and jobs.
-// It uses no sockets, serial ports, clocks or threads. Source: docs/protocols/ping1d.md.
+// It uses no sockets, serial ports, clocks or threads. Source: protocol/ping1d/README.md.
 #pragma once
 
 #include <cstdint>

@@ -11,7 +11,7 @@
 
 namespace sonard::ping1d {
 
-/// Section numbers refer to docs/protocols/ping1d.md. The Device constructor rejects values out of range.
+/// Section numbers refer to protocol/ping1d/README.md. The Device constructor rejects values out of range.
 /// `idle_timeout` ends the stream of a client that listens without sending (3.5).
 struct DeviceConfig : ClientsConfig {
   DeviceConfig() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strongest echo in the samples of a ping. Source: docs/protocols/ping1d.md 3.4.
+// The strongest echo in the samples of a ping. Source: protocol/ping1d/README.md 3.4.
 #pragma once
 
 #include <cstdint>

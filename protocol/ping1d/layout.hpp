@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of all messages. Offsets are from the start of the frame, 8 more than in
-// docs/protocols/ping1d.md 2; sizes exclude the checksum at its end. The points of a profile, with their
+// protocol/ping1d/README.md 2; sizes exclude the checksum at its end. The points of a profile, with their
 // count, follow its table.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages of a Ping1D or Ping2 as values, both directions.
-// Source: docs/protocols/ping1d.md 2. Members keep the device's own integers and units. "Client" is the other
-// end; "head" is the echo sounder. Multi-byte integers are little-endian. Frame headers are not part of a
-// message.
+// Source: protocol/ping1d/README.md 2. Members keep the device's own integers and units. "Client" is the
+// other end; "head" is the echo sounder. Multi-byte integers are little-endian. Frame headers are not part of
+// a message.
 #pragma once
 
 #include <cstdint>

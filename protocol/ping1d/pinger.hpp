@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pings of a head, and the measurement of the last one. Source: docs/protocols/ping1d.md 3.3, 3.4.
+// The pings of a head, and the measurement of the last one. Source: protocol/ping1d/README.md 3.3, 3.4.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The settings of one ping, its samples, and its job for the renderer. Source:
-// docs/protocols/ping1d.md 2.4, 3.4.
+// protocol/ping1d/README.md 2.4, 3.4.
 #pragma once
 
 #include <chrono>

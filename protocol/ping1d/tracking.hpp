@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distance and confidence over the pings of a head. Source: docs/protocols/ping1d.md 3.4.
+// Distance and confidence over the pings of a head. Source: protocol/ping1d/README.md 3.4.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A Ping360 client as a pure state machine: input is bytes and time, output is frames and pings. It uses no
-// serial ports, sockets, clocks or threads. Source: docs/protocols/ping360.md 3, 6.
+// serial ports, sockets, clocks or threads. Source: protocol/ping360/README.md 3, 6.
 //
 // It follows known clients: requests protocol version, identity and state, then either commands one ping
 // after another and waits for each, or starts a scan and listens. It repeats unanswered requests.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames <-> messages of a Ping360. Source: docs/protocols/ping360.md 2. No state; any thread.
+// Frames <-> messages of a Ping360. Source: protocol/ping360/README.md 2. No state; any thread.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Ping360 as a pure state machine: input is bytes and time, output is frames and jobs.
-// It uses no sockets, serial ports, clocks or threads. Source: docs/protocols/ping360.md.
+// It uses no sockets, serial ports, clocks or threads. Source: protocol/ping360/README.md.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@
 
 namespace sonard::ping360 {
 
-/// Section numbers refer to docs/protocols/ping360.md. The Device constructor rejects values out of range.
+/// Section numbers refer to protocol/ping360/README.md. The Device constructor rejects values out of range.
 /// `idle_timeout` also ends the scan of its client. It is 0, as on a real head, because clients may listen
 /// for a whole turn of 38 s without sending (3.3).
 struct DeviceConfig : ClientsConfig {

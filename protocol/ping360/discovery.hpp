@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Discovery of a Ping360 on Ethernet: text datagrams to and from its port 30303, as pure functions.
-// Source: docs/protocols/ping360.md 5.
+// Source: protocol/ping360/README.md 5.
 #pragma once
 
 #include <array>

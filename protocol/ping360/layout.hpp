@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layout tables of all messages, used by the codec for reading and writing. Offsets are from the start of the
-// frame, 8 more than in docs/protocols/ping360.md 2; sizes exclude the checksum at its end. Texts, and
+// frame, 8 more than in protocol/ping360/README.md 2; sizes exclude the checksum at its end. Texts, and
 // samples with their count, follow the table of their message; codec.cpp handles them.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Value ranges that a head accepts in commands (docs/protocols/ping360.md 2.3).
+// Value ranges that a head accepts in commands (protocol/ping360/README.md 2.3).
 #pragma once
 
 #include <optional>

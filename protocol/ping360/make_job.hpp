@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs for pings with given settings and for recorded pings (docs/protocols/ping360.md 2.3).
+// Jobs for pings with given settings and for recorded pings (protocol/ping360/README.md 2.3).
 #pragma once
 
 #include "protocol/common/ping_record.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages of a Ping360 as values, both directions, one struct per message.
-// Source: docs/protocols/ping360.md, section numbers beside each struct. Members keep the device's own
+// Source: protocol/ping360/README.md, section numbers beside each struct. Members keep the device's own
 // integers and units (units.hpp), so that decode and encode lose nothing. Spare fields are written as zero
 // and skipped on reading. "Client" is the other end; "head" is the sonar. Multi-byte integers are
 // little-endian. Frame headers are not part of a message.

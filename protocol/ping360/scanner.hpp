@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times and angles of a head's pings, and its answers. Source: docs/protocols/ping360.md 3.2, 3.3, 3.7.
+// Times and angles of a head's pings, and its answers. Source: protocol/ping360/README.md 3.2, 3.3, 3.7.
 #pragma once
 
 #include <cstdint>

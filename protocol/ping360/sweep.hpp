@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles of the pings of a scan. Source: docs/protocols/ping360.md 3.3.
+// Angles of the pings of a scan. Source: protocol/ping360/README.md 3.3.
 #pragma once
 
 namespace sonard::ping360 {

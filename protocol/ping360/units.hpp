@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conversion of the Ping360's wire units to SI units (docs/protocols/ping360.md 2.3). Angles are whole
+// Conversion of the Ping360's wire units to SI units (protocol/ping360/README.md 2.3). Angles are whole
 // gradians, 400 per turn, clockwise seen from above.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scan with which known clients cover a range (docs/protocols/ping360.md 2.3).
+// The scan with which known clients cover a range (protocol/ping360/README.md 2.3).
 #pragma once
 
 #include <optional>

@@ -203,7 +203,7 @@ Scene make_docking(const std::string& name) {
   scene.T_world_sonar = sonar_pose(-25.6, 80 * degree, sonar_tilt_rad);
   scene.T_world_sonar.position_m += glm::dvec3(-2.136, -11.913, 0);
   scene.settings =
-      forward_looking(2411, 2411 * 1500.0 / 180844);  // range bins (docs/protocols/gemini.md 6.5)
+      forward_looking(2411, 2411 * 1500.0 / 180844);  // range bins (protocol/gemini/README.md 6.5)
   scene.settings.aperture.beam_edges_rad = render::equal_sine_edges(256, 60 * degree);
   scene.settings.physical.backscatter = render::PhysicalModel::Backscatter::lambert;
   return scene;

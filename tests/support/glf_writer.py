@@ -45,7 +45,7 @@ def _record(kind, image_time_s, device_id, body):
 
 
 def bearings_rad(beams):
-    """The bearings of a 720i (docs/protocols/gemini.md 6.5), from port (positive in a log) to starboard."""
+    """The bearings of a 720i (protocol/gemini/README.md 6.5), from port (positive in a log) to starboard."""
     return [-math.asin((2 * beam + 1 - beams) / beams * math.sin(math.radians(60))) for beam in range(beams)]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client for a Tritech Gemini 720i. Section numbers in comments refer to docs/protocols/gemini.md."""
+"""A client for a Tritech Gemini 720i. Section numbers in comments refer to protocol/gemini/README.md."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A host for a Tritech Micron behind a device server (TCP). Section numbers in comments refer to
-docs/protocols/micron.md."""
+protocol/micron/README.md."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client for a Blueprint Subsea Oculus. Section numbers in comments refer to docs/protocols/oculus.md."""
+"""A client for a Blueprint Subsea Oculus. Section numbers in comments refer to protocol/oculus/README.md."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client for a Blue Robotics Ping1D or Ping2 by UDP. Section numbers in comments refer to docs/protocols/ping1d.md."""
+"""A client for a Blue Robotics Ping1D or Ping2 by UDP. Section numbers in comments refer to protocol/ping1d/README.md."""
 
 from __future__ import annotations
 

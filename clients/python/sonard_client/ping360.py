@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client for a Blue Robotics Ping360 by UDP. Section numbers in comments refer to docs/protocols/ping360.md."""
+"""A client for a Blue Robotics Ping360 by UDP. Section numbers in comments refer to protocol/ping360/README.md."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the clients of a Ping1D and of a Ping360 share: frames by UDP. Section numbers in comments refer to
-docs/protocols/ping360.md."""
+protocol/ping360/README.md."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two sockets of a client, opened like the vendor's libraries do (docs/protocols/gemini.md 1.1).
+// The two sockets of a client, opened like the vendor's libraries do (protocol/gemini/README.md 1.1).
 #pragma once
 
 #include <boost/asio/io_context.hpp>

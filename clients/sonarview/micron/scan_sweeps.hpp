@@ -10,7 +10,7 @@
 
 namespace sonard::client {
 
-/// Sorts lines into sweeps by their bearings (docs/protocols/micron.md 8.3). A full turn begins with the
+/// Sorts lines into sweeps by their bearings (protocol/micron/README.md 8.3). A full turn begins with the
 /// first line. In a sector, a sweep begins at a limit; lines before the first limit belong to no sweep. The
 /// line at a limit belongs to both sweeps beside it.
 class ScanSweeps {

@@ -52,7 +52,7 @@ class ConnectedGemini final : public ConnectedDevice {
     }
   }
 
-  // A reboot may have applied an address that the client programmed (docs/protocols/gemini.md 3.9).
+  // A reboot may have applied an address that the client programmed (protocol/gemini/README.md 3.9).
   void after_step() override {
     const gemini::DeviceAddresses current = device_.addresses();
     if (current == addresses_) {

@@ -20,7 +20,7 @@ constexpr TextForm trigger_form{"an address and port such as 127.0.0.1:14700", e
 
 void read_identity(YamlSection& section, GeminiConfig& config) {
   // 0 means "not set" and 1 is reserved for production: clients send nothing to either ID
-  // (docs/protocols/gemini.md 1.4).
+  // (protocol/gemini/README.md 1.4).
   section.require("sonar_id", "a whole number from 2 to 65535");
   section.integer("sonar_id", config.device.sonar_id, 2, 65535,
                   "unique ID of the head; clients never send to 0 and 1");
@@ -132,7 +132,7 @@ void read_gemini_acoustics(YamlSection& section, HeadConfig& head, GeminiConfig&
 
 GeminiConfig read_gemini_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
-      "A Tritech Gemini 720i ([protocols/gemini.md](protocols/gemini.md)). The x axis of its mount is the "
+      "A Tritech Gemini 720i ([messages](../protocol/gemini/README.md)). The x axis of its mount is the "
       "acoustic axis, so the mount includes the tilt of the bracket and the 10 degrees by which the device "
       "tilts its beam down.");
   GeminiConfig config;

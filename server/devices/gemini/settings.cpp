@@ -43,7 +43,7 @@ render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig
   settings.range = {.count = job.native_bins,
                     .step_m = job.native_bin_m,
                     .compression_log2 = job.compression_log2,
-                    .compression_peak = false};  // a 720i always averages (docs/protocols/gemini.md 5)
+                    .compression_peak = false};  // a 720i always averages (protocol/gemini/README.md 5)
   settings.sixteen_bit = job.sixteen_bit;
   settings.transmit = job.transmit;
   settings.physical.pulse.range_cell_m = job.sound_speed_mps * job.pulse_s / 2.0;

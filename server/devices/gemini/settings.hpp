@@ -9,7 +9,7 @@
 namespace sonard::server {
 
 /// Renderer settings of one ping.
-/// @return the acoustics of the head with the beams of a 720i (docs/protocols/gemini.md 6.5), steered by the
+/// @return the acoustics of the head with the beams of a 720i (protocol/gemini/README.md 6.5), steered by the
 /// water's sound speed, with the job's range bins, sample size and pulse length, and with the job's gain
 /// added. A head that only listens receives no echo.
 render::SonarSettings gemini_sonar_settings(const PingJob& job, const HeadConfig& head);

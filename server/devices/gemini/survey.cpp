@@ -41,7 +41,7 @@ class GeminiSurvey final : public Survey {
         plan_(gemini::plan_ping(gemini::make_ping_config(asked_), config_.device).value()) {}
 
   // The longest of: the head's own limit, the way of the last echo, the datagrams on the link
-  // (docs/protocols/gemini.md 8.4, 8.5).
+  // (protocol/gemini/README.md 8.4, 8.5).
   std::chrono::nanoseconds natural_period() const override {
     constexpr int head_and_tail = 2;
     const gemini::DeviceConfig& device = config_.device;

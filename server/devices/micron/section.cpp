@@ -99,12 +99,12 @@ void read_micron_acoustics(YamlSection& section, HeadConfig& head, MicronConfig&
 
 MicronConfig read_micron_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
-      "A Tritech Micron DST on its serial line ([protocols/micron.md](protocols/micron.md)). It turns about "
+      "A Tritech Micron DST on its serial line ([messages](../protocol/micron/README.md)). It turns about "
       "the z axis of its mount, and its \"ahead\" is the x axis. `rpy_deg` [0, 0, 0] is a head on top of the "
       "vehicle, [0, 90, 0] a head that scans the upright plane across the vehicle.");
   MicronConfig config;
   apply_water(section, context, micron::carrier_hz, head);
-  // This sound speed turns times into ranges; clients assume 1500 m/s (docs/protocols/micron.md 4).
+  // This sound speed turns times into ranges; clients assume 1500 m/s (protocol/micron/README.md 4).
   config.device.simulated_time = context.simulated_time;
   if (context.water_sound_speed_mps > 0.0) {
     config.device.water_sound_speed_mps = context.water_sound_speed_mps;

@@ -144,7 +144,7 @@ const DeviceType& micron_type() {
   return type;
 }
 
-// Beam: docs/protocols/micron.md 10. Levels as in recordings (docs/physics.md 2.16): at the nominal gain, a
+// Beam: protocol/micron/README.md 10. Levels as in recordings (docs/physics.md 2.16): at the nominal gain, a
 // wall across the beam 5 m away is at about 55 of 80 dB. At a gain of 28 %, the noise under the ceiling of
 // the TVG is at 5 dB; at 58 %, the ring-down is at 24 dB. One ping in six has a burst of interference.
 render::SonarSettings micron_acoustics() {

@@ -175,7 +175,7 @@ void apply_water_to_modes(const HeadContext& context, const HeadConfig& head, Oc
 
 OculusConfig read_oculus_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
-      "A Blueprint Subsea Oculus ([protocols/oculus.md](protocols/oculus.md)). The x axis of its mount is "
+      "A Blueprint Subsea Oculus ([messages](../protocol/oculus/README.md)). The x axis of its mount is "
       "the acoustic axis, so the mount includes the down tilt of the head.");
   OculusConfig config;
   read_identity(section, config.device);

@@ -11,7 +11,7 @@
 namespace sonard::server {
 namespace {
 
-/// Beams point to the bearings of the head's table (docs/protocols/oculus.md 4.5), from one end of the
+/// Beams point to the bearings of the head's table (protocol/oculus/README.md 4.5), from one end of the
 /// aperture to the other. Each reaches half way to its neighbours, in sine.
 std::vector<double> beam_edges_rad(int beams, double aperture_deg) {
   const double end = std::sin(aperture_deg * std::numbers::pi / 360.0);

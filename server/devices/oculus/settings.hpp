@@ -10,7 +10,7 @@ namespace sonard::server {
 
 /// Renderer settings of one ping.
 /// @return the acoustics of the head at the frequency of the job, with the job's beams
-/// (docs/protocols/oculus.md 4.5, 8), rows, sample width, gamma and gain
+/// (protocol/oculus/README.md 4.5, 8), rows, sample width, gamma and gain
 render::SonarSettings oculus_sonar_settings(const PingJob& job, const HeadConfig& head);
 
 }  // namespace sonard::server

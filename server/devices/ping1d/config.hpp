@@ -10,7 +10,7 @@
 
 namespace sonard::server {
 
-/// Port of the bridge of a vehicle for the first such head (docs/protocols/ping1d.md 4).
+/// Port of the bridge of a vehicle for the first such head (protocol/ping1d/README.md 4).
 inline constexpr std::uint16_t ping1d_bridge_port = 9090;
 
 /// The beam looks along the x axis of its mount. Its jobs set `range` of the acoustics.

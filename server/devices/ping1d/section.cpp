@@ -82,7 +82,7 @@ void read_ping1d_acoustics(YamlSection& section, HeadConfig& head, Ping1dConfig&
 Ping1dConfig read_ping1d_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
       "A Blue Robotics Ping1D or Ping2 on UDP or a serial line "
-      "([protocols/ping1d.md](protocols/ping1d.md)). Its one beam looks along the x axis of its mount: "
+      "([messages](../protocol/ping1d/README.md)). Its one beam looks along the x axis of its mount: "
       "`rpy_deg: [0, 90, 0]` is straight down.");
   Ping1dConfig config;
   Ping1dModel model = Ping1dModel::ping1d;

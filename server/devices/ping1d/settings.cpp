@@ -11,8 +11,8 @@ render::SonarSettings ping1d_sonar_settings(const PingJob& job, const HeadConfig
   return settings;
 }
 
-// Beams of 30 and 25 degrees and least ranges from the maker's pages (docs/protocols/ping1d.md 3.4). The cone
-// is drawn as a beam with a sharp width across and the pattern of the transducer along. Echoes have no
+// Beams of 30 and 25 degrees and least ranges from the maker's pages (protocol/ping1d/README.md 3.4). The
+// cone is drawn as a beam with a sharp width across and the pattern of the transducer along. Echoes have no
 // length, so that the strongest point of a profile is where the bed is. The head has no time-varying gain.
 render::SonarSettings ping1d_acoustics(Ping1dModel model) {
   const double width_deg = model == Ping1dModel::ping1d ? 30.0 : 25.0;

@@ -14,13 +14,13 @@
 
 namespace sonard::server {
 
-/// Destination port of clients that have found the head (docs/protocols/ping360.md 4.1).
+/// Destination port of clients that have found the head (protocol/ping360/README.md 4.1).
 inline constexpr std::uint16_t ping360_data_port = 12345;
 
-/// Transmit frequency at boot (docs/protocols/ping360.md 2.3); levels refer to it.
+/// Transmit frequency at boot (protocol/ping360/README.md 2.3); levels refer to it.
 inline constexpr double ping360_carrier_hz = 740'000.0;
 
-/// The socket that answers discovery requests (docs/protocols/ping360.md 5).
+/// The socket that answers discovery requests (protocol/ping360/README.md 5).
 struct DiscoveryConfig {
   Endpoint bind{0, 30303};
   Ipv4 address = 0;  ///< in the answer: an address at which a socket of `udp` is reached
@@ -32,7 +32,7 @@ struct DiscoveryConfig {
 /// `range` of the acoustics.
 struct Ping360Config final : PingHeadConfig<ping360::DeviceConfig> {
   std::optional<DiscoveryConfig> discovery;
-  /// Clients choose the frequency. The maker calls 650 to 850 kHz usable (docs/protocols/ping360.md 9).
+  /// Clients choose the frequency. The maker calls 650 to 850 kHz usable (protocol/ping360/README.md 9).
   render::TransducerBand transducer_band{650e3, 850e3};
   /// Sets absorption by frequency; nullopt: the configuration sets the absorption.
   std::optional<render::Water> water = render::Water{};

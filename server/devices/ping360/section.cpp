@@ -130,7 +130,7 @@ void read_ping360_acoustics(YamlSection& section, HeadConfig& head, Ping360Confi
 
 Ping360Config read_ping360_head(YamlSection& section, const HeadContext& context, HeadConfig& head) {
   section.introduce(
-      "A Blue Robotics Ping360 on UDP or a serial line ([protocols/ping360.md](protocols/ping360.md)). It "
+      "A Blue Robotics Ping360 on UDP or a serial line ([messages](../protocol/ping360/README.md)). It "
       "turns about the z axis of its mount. At the angle `device.bearing_offset` it looks along x.");
   Ping360Config config;
   apply_water(section, context, ping360_carrier_hz, head);

@@ -11,7 +11,7 @@
 namespace sonard::server {
 namespace {
 
-// Levels were set with the settings that clients use at 10 m (docs/protocols/ping360.md 2.3).
+// Levels were set with the settings that clients use at 10 m (protocol/ping360/README.md 2.3).
 constexpr double usual_pulse_s = 53e-6;
 constexpr int usual_sample_period = 444;
 
@@ -50,7 +50,7 @@ render::SonarSettings ping360_sonar_settings(const PingJob& job, const HeadConfi
 // Beam of 2 by 25 degrees, from the maker's data sheet. The law of the samples is not published. Assumed:
 // half decibels, as in the other scanning head, with a wall 5 m away in the upper half of the scale. Nearer
 // than 0.75 m the transducer rings, and images of owners are bright from the first sample on
-// (docs/protocols/ping360.md 2.3).
+// (protocol/ping360/README.md 2.3).
 render::SonarSettings ping360_acoustics() {
   render::SonarSettings acoustics = single_beam_acoustics(2.0, 25.0);
   acoustics.output_scale = render::OutputScale::half_decibels;

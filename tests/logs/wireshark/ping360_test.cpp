@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The dissector of the Ping360 with streams over UDP and TCP, damaged frames, other ports, and discovery.
-// Expected values are read off docs/protocols/ping360.md (sections 1, 2, 5) by hand.
+// Expected values are read off protocol/ping360/README.md (sections 1, 2, 5) by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

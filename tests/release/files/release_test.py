@@ -36,7 +36,7 @@ def run(*command, **others):
 
 
 def ping_message(number, payload=b""):
-    """A message of the Ping protocol, as docs/protocols/ping360.md has it."""
+    """A message of the Ping protocol, as protocol/ping360/README.md has it."""
     body = b"BR" + len(payload).to_bytes(2, "little") + number.to_bytes(2, "little") + bytes(2) + payload
     return body + (sum(body) & 0xffff).to_bytes(2, "little")
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pings of a capture, read by the tests' own readers of the devices' protocols, without our clients: an independent check.
 
-Section numbers are those of docs/protocols/DEVICE.md.
+Section numbers are those of protocol/DEVICE/README.md.
 """
 
 import dataclasses

@@ -45,7 +45,7 @@ HEAD = """
       allow: [10.61.19.0/24]
     timing:
       min_ping_period_ms: 10
-      # A head does not wait long for a client that asks for lines again (docs/protocols/gemini.md 7.3); these do, because
+      # A head does not wait long for a client that asks for lines again (protocol/gemini/README.md 7.3); these do, because
       # here the client may share a busy processor, and a late request is not what these tests are about.
       retry_hold_ms: 100
       retry_hold_max_ms: 5000

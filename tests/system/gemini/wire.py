@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The few messages that these tests send and read themselves, written from docs/protocols/gemini.md and
+"""The few messages that these tests send and read themselves, written from protocol/gemini/README.md and
 protocol/pose/pose.proto, without our C++ code: an independent check of every byte."""
 
 import math

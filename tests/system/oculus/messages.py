@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages of the Oculus, written from docs/protocols/oculus.md, not from our C++ code: an independent check.
+"""Messages of the Oculus, written from protocol/oculus/README.md, not from our C++ code: an independent check.
 
 Section numbers are those of that page.
 """

@@ -375,7 +375,7 @@ class Files(Case):
             self.assertEqual(sums(out), before, "of the frames that are there, the same bytes")
 
     def test_the_narrow_fan_of_an_oculus(self):
-        """docs/protocols/oculus.md: the fan of an M750d is 130 degrees at 750 kHz and 70 degrees at 1.2 MHz."""
+        """protocol/oculus/README.md: the fan of an M750d is 130 degrees at 750 kHz and 70 degrees at 1.2 MHz."""
         config = os.path.join(SOURCE, "configs", "demo-oculus.yaml")
         way = self.write("way.csv", CSV_HEADER + "0,-2,-12,-25.6,0,0,0.64,0.77\n")
         for frequency, width_deg, hertz in ((None, 130, 750e3), ("low", 130, 750e3), ("high", 70, 1.2e6)):
@@ -526,7 +526,7 @@ poses: {initial: {position_m: [0, 0, 0]}}
 class Levels(Case):
     def greatest(self, height_m):
         """Maxima of the post, whose front is 7.95 m ahead. Clients request 4 cycles at 10 m, 25 at 40, 89 at 80 and 128 at
-        120 (docs/protocols/gemini.md 5)."""
+        120 (protocol/gemini/README.md 5)."""
         self.write("post.sdf", POST.format(height_m=height_m))
         config = self.write("config.yaml", POST_CONFIG)
         greatest = []

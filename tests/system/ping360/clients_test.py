@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of known clients in their order, with their waits (docs/protocols/ping360.md 6), on the daemon's sockets.
+"""The commands of known clients in their order, with their waits (protocol/ping360/README.md 6), on the daemon's sockets.
 
     clients_test.py --programs DIR [Clients | Clients.test_name | WholeTurn ...]
 
@@ -245,7 +245,7 @@ class Clients(HeadCase):
         self.daemon.wait_for_line(r"head=forgetful: auto scan ended: ", 5)
 
     def test_forty_pings_of_a_turn_take_as_long_as_an_owner_measured(self):
-        """3.29 s by the clock, within 5 % (docs/protocols/ping360.md 3.7). A busy machine can only make a turn longer, so the
+        """3.29 s by the clock, within 5 % (protocol/ping360/README.md 3.7). A busy machine can only make a turn longer, so the
         shortest of three turns counts."""
         client = self.client(TIMED)
         client.write(AutoTransmit(steps=10).bytes())
@@ -281,7 +281,7 @@ class WholeTurn(HeadCase):
     HEADS = head("real", FAST, timing="")
 
     def test_who_only_listens_gets_a_turn_of_50_m_as_fast_as_an_owner_did(self):
-        """37.6 s by the clock, within 5 % (docs/protocols/ping360.md 3.7); the head does not drop the silent client."""
+        """37.6 s by the clock, within 5 % (protocol/ping360/README.md 3.7); the head does not drop the silent client."""
         client = self.client(FAST)
         scan = AutoTransmit(duration=267, period=2222)
         client.write(scan.bytes())

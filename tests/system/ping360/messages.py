@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of the Ping360, written from docs/protocols/ping360.md, not from our C++ code: an independent check.
+"""Frames of the Ping360, written from protocol/ping360/README.md, not from our C++ code: an independent check.
 
 Section numbers are those of that page.
 """

@@ -147,7 +147,7 @@ class Link(TwoMachines):
         self.assertEqual(counts["received"], len(sent))
         self.assertEqual(counts["commands"], counts["from_client_passed"], "every request that arrived was understood")
         answered = counts["to_client_passed"] - counts["to_client_duplicated"] + counts["to_client_lost"]
-        # A copy of a waiting command is not executed again (docs/protocols/ping360.md).
+        # A copy of a waiting command is not executed again (protocol/ping360/README.md).
         self.assertEqual(answered, counts["commands"] - counts["commands_joined"], "and was answered once")
         self.assertEqual(counts["commands_dropped"] + counts["refused"] + counts["dropped_bytes"], 0)
         self.assertEqual(len(answers), counts["to_client_passed"])

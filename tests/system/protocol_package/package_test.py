@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Installs the protocol libraries into a temporary folder and builds programs against them, as users do.
 
-The example must print section 10 of docs/protocols/gemini.md, whose bytes it reads.
+The example must print section 10 of protocol/gemini/README.md, whose bytes it reads.
 """
 
 import argparse

@@ -210,7 +210,7 @@ heads:
 
 
 class GeminiBytes(unittest.TestCase):
-    """Uses the worked examples of docs/protocols/gemini.md 10 (tests/data/gemini/messages.json)."""
+    """Uses the worked examples of protocol/gemini/README.md 10 (tests/data/gemini/messages.json)."""
 
     def test_a_configuration_is_that_of_an_early_client(self):
         theirs = example("gemini", "ping_config")

@@ -92,7 +92,7 @@ def crc_text(data):
 
 
 def rle_decode(data, beams):
-    """docs/protocols/gemini.md 6.8"""
+    """protocol/gemini/README.md 6.8"""
     out, at = bytearray(), 0
     while at < len(data) and len(out) < beams:
         if data[at] == 0:
@@ -105,7 +105,7 @@ def rle_decode(data, beams):
 
 
 class WirePing:
-    """A ping from its datagrams, of any width and coding (docs/protocols/gemini.md 6)."""
+    """A ping from its datagrams, of any width and coding (protocol/gemini/README.md 6)."""
 
     def __init__(self, head, time_ns):
         self.head = wire.Ping(head)

@@ -209,7 +209,7 @@ class SimulatedTime(link_test.LinkTest):
     def test_a_micron_keeps_the_same_time(self):
         slow = self.run_micron(["run:2@0.5"])
         times = [time_ns for time_ns, _ in slow]
-        # 300 bins of 23 mm, one line after another over a serial line of 115200 baud (docs/protocols/micron.md 8.4).
+        # 300 bins of 23 mm, one line after another over a serial line of 115200 baud (protocol/micron/README.md 8.4).
         self.assertGreater(len(slow), 40)
         self.assertEqual(len({b - a for a, b in zip(times, times[1:])}), 1, "evenly")
         self.assertEqual(self.run_micron(["run:2@4"]), slow)

@@ -202,7 +202,7 @@ TEST_F(SonarviewMicron, FourBitLinesHoldTheWindow) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const auto lines = lines_of(path("lines.jsonl"));
   ASSERT_EQ(lines.size(), 3U);
-  // docs/protocols/micron.md 6.3; a span of 80 dB is 255.
+  // protocol/micron/README.md 6.3; a span of 80 dB is 255.
   std::string expected;
   for (int bin = 0; bin < bins; ++bin) {
     const int nibble = std::min(15, echo(3200, bin) * 16 / 255);

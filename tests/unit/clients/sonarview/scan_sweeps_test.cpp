@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns and gaps of scans whose bearings are written out by hand (docs/protocols/micron.md 8.3).
+// Turns and gaps of scans whose bearings are written out by hand (protocol/micron/README.md 8.3).
 #include "clients/sonarview/micron/scan_sweeps.hpp"
 
 #include <gmock/gmock.h>

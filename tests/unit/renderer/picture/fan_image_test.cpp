@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geometry of the fan against closed forms: bearing(b) = asin((2b + 1 - 256) / 256 * sin 60 deg),
-// docs/protocols/gemini.md 6.5; line i at (i + 0.5) steps; range up, port on the left.
+// protocol/gemini/README.md 6.5; line i at (i + 0.5) steps; range up, port on the left.
 #include "renderer/picture/fan_image.hpp"
 
 #include <gtest/gtest.h>

@@ -69,7 +69,7 @@ TEST_F(Loader, GivesDefaultsForWhatIsLeftOut) {
   EXPECT_EQ(gemini.device.sonar_id, 513);
   EXPECT_EQ(gemini.device.alternate_address, 0x7F000002U);
   EXPECT_EQ(gemini.device.netmask, 0xFF000000U);
-  EXPECT_EQ(gemini.device.fixed_address, 0x0A3D13C8U);  // 10.61.19.200, docs/protocols/gemini.md 1.2
+  EXPECT_EQ(gemini.device.fixed_address, 0x0A3D13C8U);  // 10.61.19.200, protocol/gemini/README.md 1.2
   EXPECT_EQ(gemini.device.min_ping_period, std::chrono::microseconds{33'300});  // 8.4
   EXPECT_EQ(gemini.device.water_sound_speed_mps, 0.0);
   EXPECT_EQ(gemini.bind_address, 0x7F000002U);

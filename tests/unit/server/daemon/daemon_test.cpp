@@ -39,7 +39,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The continuous form of the configuration in docs/protocols/gemini.md 10, sonar ID 601: run mode 1, 32
+// The continuous form of the configuration in protocol/gemini/README.md 10, sonar ID 601: run mode 1, 32
 // lines, one ping per 5 ms (the head's own limit may be slower).
 Bytes continuous_config() {
   Bytes config(68);

@@ -24,7 +24,7 @@ TEST(LinePacer, AByteTakesTenBits) {
 }
 
 TEST(LinePacer, AgreesWithTheTimesOfTheDocument) {
-  // docs/protocols/micron.md 8.4: T_tx of 245, 445 and 545 bytes at 115200 baud is 21.3, 38.6 and 47.3 ms.
+  // protocol/micron/README.md 8.4: T_tx of 245, 445 and 545 bytes at 115200 baud is 21.3, 38.6 and 47.3 ms.
   for (const auto& [size, expected_us] : {std::pair{245U, 21'300}, {445U, 38'600}, {545U, 47'300}}) {
     Pacer pacer(115'200, 1000);
     pacer.push(TimePoint{0}, "", size);

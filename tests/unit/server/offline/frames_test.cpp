@@ -76,7 +76,7 @@ TEST(FanFrames, PingAtTheRateAskedForWithNumberAndPose) {
   EXPECT_EQ(ping.settings.range.count, 2411);
 }
 
-// docs/protocols/gemini.md 8.4, 8.5.
+// protocol/gemini/README.md 8.4, 8.5.
 TEST(FanFrames, TheNaturalRateIsTheFastestThatHeadWaterAndLinkAllow) {
   HeadConfig head = gemini([](gemini::DeviceConfig& device) { device.min_ping_period = 100ms; });
   const VehicleTrajectory trajectory = ahead(10);

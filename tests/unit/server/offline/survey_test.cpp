@@ -118,7 +118,7 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
     const PingRecord record = survey->record(3, samples);
     EXPECT_EQ(record.number, 3U);
     EXPECT_EQ(record.settings.beams, static_cast<int>(beams));
-    if (type->name() == "ping1d") {  // sends 200 points of the samples (docs/protocols/ping1d.md)
+    if (type->name() == "ping1d") {  // sends 200 points of the samples (protocol/ping1d/README.md)
       EXPECT_EQ(record.settings.bins, 200);
       EXPECT_EQ(record.samples, std::vector<std::uint8_t>(200, 7));
       EXPECT_NEAR(200 * record.settings.bin_m, job.range_m(), 1e-3 * job.range_m());
@@ -136,7 +136,7 @@ TEST(Survey, EveryKindMakesRecordsOfItsPings) {
   }
 }
 
-// docs/protocols/oculus.md 2: an M750d has two frequencies, and the fan of the higher one is narrower.
+// protocol/oculus/README.md 2: an M750d has two frequencies, and the fan of the higher one is narrower.
 TEST(Survey, AnOculusHasTwoFrequenciesAndOtherHeadsRefuseTheOption) {
   for (const DeviceType* type : device_types()) {
     SCOPED_TRACE(type->name());

@@ -49,7 +49,7 @@ TEST(OculusOptions, WithoutAnyItFiresFor512BeamsAtTheLowFrequency) {
   EXPECT_EQ(fire.sound_speed_mps, 1500.0);
 }
 
-// docs/protocols/oculus.md 3.2 and 3.3.
+// protocol/oculus/README.md 3.2 and 3.3.
 TEST(OculusOptions, WordsBecomeFlagsAndCodes) {
   const OculusOptions wide = options(
       {"--frequency", "high",          "--beams", "256",    "--bits",  "32",      "--row-gains", "--rate",

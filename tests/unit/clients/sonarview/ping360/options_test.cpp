@@ -31,7 +31,7 @@ std::string complaint(const std::vector<const char*>& words) {
   }
 }
 
-// docs/protocols/ping360.md 2.3: clients cover 20 m with 1200 samples of 888 ticks and a pulse of 107 us.
+// protocol/ping360/README.md 2.3: clients cover 20 m with 1200 samples of 888 ticks and a pulse of 107 us.
 TEST(Ping360Options, ARangeBecomesTheSamplesThatClientsChoose) {
   const Ping360Options scan = options({"--range", "20"});
   EXPECT_EQ(scan.line.text(), "udp 127.0.0.1:12345");

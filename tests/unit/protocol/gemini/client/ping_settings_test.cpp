@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The expected values are the worked example of docs/protocols/gemini.md 10 and values seen from a later
+// The expected values are the worked example of protocol/gemini/README.md 10 and values seen from a later
 // library (tests/data/gemini/messages.json).
 #include "protocol/gemini/ping_settings.hpp"
 

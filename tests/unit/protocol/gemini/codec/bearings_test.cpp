@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings against the values printed in docs/protocols/gemini.md 6.5.
+// Bearings against the values printed in protocol/gemini/README.md 6.5.
 #include "protocol/gemini/bearings.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The expected values were calculated by hand from docs/protocols/gemini.md and protocol/glf/README.md 1.5.
+// The expected values were calculated by hand from protocol/gemini/README.md and protocol/glf/README.md 1.5.
 #include "protocol/gemini/glf_status.hpp"
 
 #include <array>

@@ -51,7 +51,7 @@ inline std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The head of the worked examples (docs/protocols/gemini.md 10): ID 601, 192.168.2.201/24, MAC
+/// The head of the worked examples (protocol/gemini/README.md 10): ID 601, 192.168.2.201/24, MAC
 /// 00:12:34:00:02:59.
 inline DeviceConfig example_config() {
   DeviceConfig config;

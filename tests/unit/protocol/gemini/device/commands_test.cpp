@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every command and its answer (docs/protocols/gemini.md 1.4, 1.5, 3).
+// Every command and its answer (protocol/gemini/README.md 1.4, 1.5, 3).
 #include "bench.hpp"
 
 namespace sonard::gemini {

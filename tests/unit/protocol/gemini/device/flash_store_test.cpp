@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head's flash memory (docs/protocols/gemini.md 3.7).
+// The head's flash memory (protocol/gemini/README.md 3.7).
 #include "protocol/gemini/flash_store.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gain fields to dB (docs/protocols/gemini.md 5).
+// Gain fields to dB (protocol/gemini/README.md 5).
 #include "protocol/gemini/gain_law.hpp"
 
 #include <gtest/gtest.h>

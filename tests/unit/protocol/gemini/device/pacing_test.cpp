@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times at which the datagrams of a ping are sent (docs/protocols/gemini.md 8.5, 3.6).
+// Times at which the datagrams of a ping are sent (protocol/gemini/README.md 8.5, 3.6).
 #include <algorithm>
 #include <random>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Content of a ping's datagrams, and of its job (docs/protocols/gemini.md 5, 6, 10).
+// Content of a ping's datagrams, and of its job (protocol/gemini/README.md 5, 6, 10).
 #include <algorithm>
 #include <string_view>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times of pings: run modes, rate limits, and events that end or delay a ping (docs/protocols/gemini.md 1.5,
+// Times of pings: run modes, rate limits, and events that end or delay a ping (protocol/gemini/README.md 1.5,
 // 8).
 #include <algorithm>
 

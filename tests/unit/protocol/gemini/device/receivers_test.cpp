@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head against models of both generations of receiver libraries (docs/protocols/gemini.md 7.1, 7.2), over
-// a link that loses datagrams both ways. Every ping whose head arrives must be complete and intact at its
-// end.
+// The head against models of both generations of receiver libraries (protocol/gemini/README.md 7.1, 7.2),
+// over a link that loses datagrams both ways. Every ping whose head arrives must be complete and intact at
+// its end.
 #include <algorithm>
 #include <map>
 #include <memory>

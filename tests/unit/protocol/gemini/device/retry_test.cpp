@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Retry requests: which ones the head serves, and when (docs/protocols/gemini.md 7.3).
+// Retry requests: which ones the head serves, and when (protocol/gemini/README.md 7.3).
 #include "protocol/gemini/retry_queue.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Status packets: discovery, content, period (docs/protocols/gemini.md 1.3, 3.3, 8.3).
+// Status packets: discovery, content, period (protocol/gemini/README.md 1.3, 3.3, 8.3).
 #include "bench.hpp"
 
 namespace sonard::gemini {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client drives a head: start, scans, and recovery from faults (docs/protocols/micron.md 7, 8, 9).
+// A client drives a head: start, scans, and recovery from faults (protocol/micron/README.md 7, 8, 9).
 #include "session.hpp"
 
 namespace sonard::micron {

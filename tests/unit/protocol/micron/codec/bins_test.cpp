@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two bins per byte (docs/protocols/micron.md 6.3, 10).
+// Two bins per byte (protocol/micron/README.md 6.3, 10).
 #include "protocol/micron/bins.hpp"
 
 #include <gtest/gtest.h>

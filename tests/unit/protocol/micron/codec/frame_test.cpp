@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in a stream: any chunks, noise, wrong lengths, cut frames (docs/protocols/micron.md 2).
+// Frames in a stream: any chunks, noise, wrong lengths, cut frames (protocol/micron/README.md 2).
 #include "protocol/micron/frame.hpp"
 
 #include <gtest/gtest.h>

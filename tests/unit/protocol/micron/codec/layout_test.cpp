@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each field at its documented offset (docs/protocols/micron.md 5, 6). In the examples most fields are zero
+// Each field at its documented offset (protocol/micron/README.md 5, 6). In the examples most fields are zero
 // or equal to a neighbour, so they cannot detect a swapped pair. Here every data byte holds the low 8 bits of
 // its own offset, so all fields differ.
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wire units (docs/protocols/micron.md 4).
+// Wire units (protocol/micron/README.md 4).
 #include "protocol/micron/units.hpp"
 
 #include <gtest/gtest.h>

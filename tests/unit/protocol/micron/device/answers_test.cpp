@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer to each command, byte for byte (docs/protocols/micron.md 3, 5, 6, 7.2).
+// The answer to each command, byte for byte (protocol/micron/README.md 3, 5, 6, 7.2).
 #include "bench.hpp"
 
 namespace sonard::micron {

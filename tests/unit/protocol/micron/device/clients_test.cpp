@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The start-up and scan of each family of drivers, with its own bytes, conditions and timeouts
-// (docs/protocols/micron.md 9), over clean and over poor lines.
+// (protocol/micron/README.md 9), over clean and over poor lines.
 #include "driver.hpp"
 
 namespace sonard::micron {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields and samples of a line, and the job for the renderer (docs/protocols/micron.md 4, 6.3).
+// Fields and samples of a line, and the job for the renderer (protocol/micron/README.md 4, 6.3).
 #include <tuple>
 
 #include "bench.hpp"

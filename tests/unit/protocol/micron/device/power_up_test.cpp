@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From power-up to a scan, as the alives show it (docs/protocols/micron.md 6.2, 7).
+// From power-up to a scan, as the alives show it (protocol/micron/README.md 6.2, 7).
 #include "bench.hpp"
 
 namespace sonard::micron {

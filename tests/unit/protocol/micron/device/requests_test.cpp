@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Number and times of the lines after a request (docs/protocols/micron.md 8.1, 8.2).
+// Number and times of the lines after a request (protocol/micron/README.md 8.1, 8.2).
 #include "bench.hpp"
 
 namespace sonard::micron {

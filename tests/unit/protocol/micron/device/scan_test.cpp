@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bearings, their order, and the places where a scan turns round (docs/protocols/micron.md 5.4, 8.3).
+// Bearings, their order, and the places where a scan turns round (protocol/micron/README.md 5.4, 8.3).
 #include <set>
 #include <tuple>
 

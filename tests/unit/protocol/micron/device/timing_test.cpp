@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pace of lines (docs/protocols/micron.md 8.4).
+// The pace of lines (protocol/micron/README.md 8.4).
 #include <cmath>
 #include <deque>
 

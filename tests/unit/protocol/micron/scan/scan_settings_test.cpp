@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scan settings as fields on the wire (docs/protocols/micron.md 4, 5.3, 5.4).
+// Scan settings as fields on the wire (protocol/micron/README.md 4, 5.3, 5.4).
 #include "protocol/micron/scan_settings.hpp"
 
 #include <gtest/gtest.h>

@@ -268,7 +268,7 @@ TEST(MicronScan, WithEverythingOnTheStrongestEchoIsTheWall) {
   }
 }
 
-// docs/protocols/micron.md 8.4: 41.6 ms per line with 400 bins, 8.3 s per turn.
+// protocol/micron/README.md 8.4: 41.6 ms per line with 400 bins, 8.3 s per turn.
 TEST(MicronScan, ATurnTakesItsTimeOnTheClockOfTheHead) {
   Scan scan(plain_head());
   const auto started = std::chrono::steady_clock::now();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands in a stream, as clients send them (docs/protocols/oculus.md 3.1).
+// Commands in a stream, as clients send them (protocol/oculus/README.md 3.1).
 #include <gtest/gtest.h>
 
 #include "protocol/oculus/frame.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ping that a fire command requests (docs/protocols/oculus.md 3.3, 4.4, 4.7, 8).
+// The ping that a fire command requests (protocol/oculus/README.md 3.3, 4.4, 4.7, 8).
 #include "protocol/oculus/ping_plan.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks that clients make on a ping, for every form of ping (docs/protocols/oculus.md 4.3).
+// The checks that clients make on a ping, for every form of ping (protocol/oculus/README.md 4.3).
 #include <gtest/gtest.h>
 
 #include <tuple>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The requirements of clients on a head, with one test for each: form of its messages, behaviour, and rates
-// (docs/protocols/oculus.md 3 to 8).
+// (protocol/oculus/README.md 3 to 8).
 #include <gtest/gtest.h>
 
 #include <algorithm>

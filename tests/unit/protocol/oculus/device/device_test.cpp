@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The head from the view of its clients (docs/protocols/oculus.md 5, 6, 7).
+// The head from the view of its clients (protocol/oculus/README.md 5, 6, 7).
 #include "protocol/oculus/device.hpp"
 
 #include <gtest/gtest.h>

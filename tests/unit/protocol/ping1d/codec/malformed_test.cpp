@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames that are too short, too long, or of no known message (docs/protocols/ping1d.md 3.1, 3.2).
+// Frames that are too short, too long, or of no known message (protocol/ping1d/README.md 3.1, 3.2).
 #include <gtest/gtest.h>
 
 #include "protocol/ping1d/codec.hpp"

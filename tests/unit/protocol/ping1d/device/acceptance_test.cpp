@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of docs/protocols/ping1d.md 7, a test for each line or part of it. Line 1 is in the tests of the
+// The list of protocol/ping1d/README.md 7, a test for each line or part of it. Line 1 is in the tests of the
 // codec and of protocol/ping, line 3 in clients_test.cpp.
 #include <cmath>
 

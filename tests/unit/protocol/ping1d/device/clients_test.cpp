@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loops of known clients, with their own waits (docs/protocols/ping1d.md 5). ArduPilot's is in
+// The loops of known clients, with their own waits (protocol/ping1d/README.md 5). ArduPilot's is in
 // acceptance_test.cpp.
 #include <functional>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strongest echo in samples with a known truth (docs/protocols/ping1d.md 3.4).
+// The strongest echo in samples with a known truth (protocol/ping1d/README.md 3.4).
 #include "protocol/ping1d/echo.hpp"
 
 #include <gtest/gtest.h>

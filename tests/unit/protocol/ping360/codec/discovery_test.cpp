@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text that announces a head on Ethernet (docs/protocols/ping360.md 5).
+// The text that announces a head on Ethernet (protocol/ping360/README.md 5).
 #include "protocol/ping360/discovery.hpp"
 
 #include <gtest/gtest.h>

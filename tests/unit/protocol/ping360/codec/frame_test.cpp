@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boundaries of frames in a stream (docs/protocols/ping360.md 1.1).
+// Boundaries of frames in a stream (protocol/ping360/README.md 1.1).
 #include "protocol/ping/frame.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each field at its documented offset (docs/protocols/ping360.md 2). In the examples some fields are zero or
+// Each field at its documented offset (protocol/ping360/README.md 2). In the examples some fields are zero or
 // equal to a neighbour, so they cannot detect a swapped pair. Here every byte of a payload holds its own
 // offset, so all fields differ. Offsets count from the start of the payload, as in the document.
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checklist of a head's duties for its clients, item by item (docs/protocols/ping360.md 7).
+// The checklist of a head's duties for its clients, item by item (protocol/ping360/README.md 7).
 #include "bench.hpp"
 
 namespace sonard::ping360 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Public clients, with their order of messages and their bytes (docs/protocols/ping360.md 6). The models of
+// Public clients, with their order of messages and their bytes (protocol/ping360/README.md 6). The models of
 // their loops follow the description of the messages that they send and await.
 #include "bench.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands that repeat an unanswered command, and repeated orders to scan
-// (docs/protocols/ping360.md 3.2, 3.3).
+// (protocol/ping360/README.md 3.2, 3.3).
 #include "bench.hpp"
 
 namespace sonard::ping360 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles of a scan's pings (docs/protocols/ping360.md 3.3), as sequences written out by hand.
+// Angles of a scan's pings (protocol/ping360/README.md 3.3), as sequences written out by hand.
 #include "protocol/ping360/sweep.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times of turns, pings and answers (docs/protocols/ping360.md 3.7).
+// Times of turns, pings and answers (protocol/ping360/README.md 3.7).
 #include "bench.hpp"
 
 namespace sonard::ping360 {

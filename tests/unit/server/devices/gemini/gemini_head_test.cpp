@@ -32,7 +32,7 @@ namespace {
 namespace asio = boost::asio;
 using Bytes = std::vector<std::uint8_t>;
 
-// Commands of docs/protocols/gemini.md 10, for sonar ID 601.
+// Commands of protocol/gemini/README.md 10, for sonar ID 601.
 const Bytes status_request{0x20, 0x01, 0x59, 0x02, 0, 0, 0, 0};
 // Single ping, 8 bit, pings out of water too, 483 lines, speed of sound from the configuration.
 const Bytes ping_config{0x21, 0x01, 0x59, 0x02, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
@@ -435,7 +435,7 @@ TEST_F(GeminiHeadTest, DatagramAtTheTriggerSocketIsOneEdge) {
   EXPECT_EQ(renderer->pings, 1);
 }
 
-// docs/protocols/gemini.md 3.7 and 3.9: bank 2 holds address and mask, and a reboot applies them.
+// protocol/gemini/README.md 3.7 and 3.9: bank 2 holds address and mask, and a reboot applies them.
 TEST_F(GeminiHeadTest, MovesToTheAddressThatAClientHasProgrammed) {
   gemini_config.device.reboot_time = std::chrono::milliseconds{50};
   start();

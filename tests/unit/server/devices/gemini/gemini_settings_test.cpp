@@ -18,7 +18,7 @@ HeadConfig plain_head() {
 PingJob job_at_20_m() {
   PingJob job;
   job.number = 300;
-  job.native_bins = 2411;  // round(20 / (1500 / 2 / 90422)) (docs/protocols/gemini.md 5)
+  job.native_bins = 2411;  // round(20 / (1500 / 2 / 90422)) (protocol/gemini/README.md 5)
   job.native_bin_m = 1500.0 / (2 * 90422.0);
   job.compression_log2 = 1;
   job.gain_db = -4.5;
@@ -36,8 +36,8 @@ TEST(GeminiSettings, BeamsFallFromPortToStarboardOverTheSector) {
   EXPECT_TRUE(std::is_sorted(edges.rbegin(), edges.rend()));
 }
 
-// Bearings printed in docs/protocols/gemini.md 6.5, positive to starboard. Each is in the middle of its beam,
-// by its sine.
+// Bearings printed in protocol/gemini/README.md 6.5, positive to starboard. Each is in the middle of its
+// beam, by its sine.
 TEST(GeminiSettings, BeamsHoldTheBearingsOfTheDocument) {
   const render::SonarSettings settings = gemini_sonar_settings(job_at_20_m(), plain_head());
   const std::vector<double>& edges = settings.aperture.beam_edges_rad;

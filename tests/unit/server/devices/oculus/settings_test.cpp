@@ -30,7 +30,7 @@ render::SonarSettings settings_of(const oculus::SimpleFire& fire,
   return oculus_sonar_settings(oculus::job_of(oculus::plan_ping(fire, plan), plan), head);
 }
 
-// docs/protocols/oculus.md 4.5: bearings are positive to starboard, but the renderer counts to port. By its
+// protocol/oculus/README.md 4.5: bearings are positive to starboard, but the renderer counts to port. By its
 // sine, each bearing is the middle of its beam.
 TEST(OculusSettings, BeamsHoldTheBearingsOfTheTableAtBothFrequencies) {
   for (const auto& [mode, half_deg] : {std::pair{1, 65.0}, {2, 35.0}}) {
@@ -79,7 +79,7 @@ TEST(OculusSettings, FrequenciesHaveBeamsWaterAndNoiseOfTheirOwn) {
               1e-9);
 }
 
-// docs/protocols/oculus.md 8.
+// protocol/oculus/README.md 8.
 TEST(OculusSettings, ModelsHaveBeamsOfTheirOwn) {
   struct Case {
     oculus::Model model;

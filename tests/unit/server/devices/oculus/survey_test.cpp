@@ -37,7 +37,7 @@ std::string complaint(const SurveyOptions& options) {
   }
 }
 
-// docs/protocols/oculus.md 3.3 and 4.6.
+// protocol/oculus/README.md 3.3 and 4.6.
 TEST(OculusSurvey, PingsAreThoseOfAClient) {
   const std::unique_ptr<Survey> pings = survey(with(&SurveyOptions::range_m, 40.0));
   EXPECT_NEAR(pings->client_bin_m(), 12 * 1500.0 / (2 * 37.5e6 / 143), 1e-12);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Distances in rendered pings: the renderer's samples, with speckle and noise as configured, to the head's
-// measurement (docs/protocols/ping1d.md 3.4).
+// measurement (protocol/ping1d/README.md 3.4).
 #include <chrono>
 #include <cmath>
 #include <numbers>

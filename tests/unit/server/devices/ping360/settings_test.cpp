@@ -25,8 +25,8 @@ ping360::Transducer usual_command() {
   return command;
 }
 
-// docs/protocols/ping360.md 2.3: the sample interval is the two-way time 888 * 25 ns. A pulse of 100 us is 75
-// mm long.
+// protocol/ping360/README.md 2.3: the sample interval is the two-way time 888 * 25 ns. A pulse of 100 us is
+// 75 mm long.
 TEST(Ping360Settings, RangesAndPulseAreThoseOfTheCommand) {
   const render::SonarSettings settings = settings_of(usual_command());
   EXPECT_EQ(settings.range.count, 1200);

@@ -37,7 +37,7 @@ std::string complaint(const SurveyOptions& options) {
   }
 }
 
-// docs/protocols/ping360.md 2.3: 20 m at 1500 m/s are 1200 samples of 888 ticks. 3.7: a ping with a step of
+// protocol/ping360/README.md 2.3: 20 m at 1500 m/s are 1200 samples of 888 ticks. 3.7: a ping with a step of
 // one gradian takes 1200 * 888 * 25 ns + 18 ms + 6.1 ms.
 TEST(Ping360Survey, SamplesAndTimesAreThoseOfClientsAndOfTheHead) {
   const std::unique_ptr<Survey> all_round =

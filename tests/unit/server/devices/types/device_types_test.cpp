@@ -64,7 +64,7 @@ TEST(DeviceTypes, UsualPingIsAsLoudAndLongAsThatOfAClient) {
   }
 }
 
-// From docs/protocols: a client of a 720i requests 11 cycles of 723 kHz at 20 m, of a Ping360 at 10 m
+// From the protocol pages: a client of a 720i requests 11 cycles of 723 kHz at 20 m, of a Ping360 at 10 m
 // 8000 us * 10 / 1500 = 53 us.
 TEST(DeviceTypes, UsualPulsesAreThoseOfTheDocuments) {
   const auto pulse_s = [](const char* name) {
