@@ -13,6 +13,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -41,8 +42,8 @@ inline void PrintTo(const Message& message, std::ostream* out) {
 }
 
 /// All messages of a device, sorted by name.
-const std::vector<Message>& messages_of(const std::string& device);
-const Message& message_of(const std::string& device, const std::string& name);
+const std::vector<Message>& messages_of(std::string_view device);
+const Message& message_of(std::string_view device, std::string_view name);
 
 /// A hexadecimal text, or a list of them.
 Bytes bytes_of(const Json& json);

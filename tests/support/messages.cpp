@@ -54,20 +54,20 @@ Bytes bytes_of(const Json& json) {
   return bytes;
 }
 
-const std::vector<Message>& messages_of(const std::string& device) {
+const std::vector<Message>& messages_of(std::string_view device) {
   static std::map<std::string, std::vector<Message>> read;
-  const auto [found, is_new] = read.try_emplace(device);
+  const auto [found, is_new] = read.try_emplace(std::string{device});
   if (is_new) {
-    found->second = read_messages(device);
+    found->second = read_messages(found->first);
   }
   return found->second;
 }
 
-const Message& message_of(const std::string& device, const std::string& name) {
+const Message& message_of(std::string_view device, std::string_view name) {
   const auto& messages = messages_of(device);
   const auto found = std::ranges::find(messages, name, &Message::name);
   if (found == messages.end()) {
-    throw std::runtime_error{device + " has no message " + name};
+    throw std::runtime_error{std::string{device} + " has no message " + std::string{name}};
   }
   return *found;
 }
