@@ -57,7 +57,7 @@ class ConnectedDevice {
 /// is a PacketLogDevice; a type whose pings are recognised in captures is a CaptureReader.
 class DeviceType : public HeadType {
  public:
-  /// True if a ping is one beam, at the bearing of the job; false if it is a fan.
+  /// True if a ping is one beam, at the bearing of the job, or a few directions; false if it is a fan.
   virtual bool scanning() const = 0;
   /// False for a head whose one beam always looks along the axis of its mount.
   virtual bool turns() const { return scanning(); }

@@ -24,6 +24,9 @@ render::SonarSettings dvl_sonar_settings(const PingJob& job, const HeadConfig& h
   const double width_rad = head.acoustics.aperture.receive_beamwidth_rad;
   if (job.directions.any()) {
     set_directions(job, width_rad, width_rad, settings);
+  } else {  // a recorded ping, which is not rendered
+    settings.aperture.beam_edges_rad = {width_rad / 2, -width_rad / 2};
+    settings.range = {.count = job.native_bins, .step_m = job.native_bin_m};
   }
   return settings;
 }
