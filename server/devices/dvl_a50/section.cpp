@@ -76,7 +76,7 @@ void read_device(YamlSection& section, dvl_a50::DeviceConfig& device) {
   section.text("product_name", device.product_name, "name that clients find");
   section.default_is("product_name", "set by `model`");
   section.text("chip_id", device.chip_id, "ID that the device reports");
-  section.number("temperature_c", device.temperature_c, Range::from(-10.0, 100.0),
+  section.number("device_temperature_c", device.temperature_c, Range::from(-10.0, 100.0),
                  "temperature of the device; from 55 on it reports that it is hot");
   section.boolean("ntp_synced", device.ntp_synced, "true: a time server sets the clock of the device");
   section.number("beam_noise_mps", device.beam_noise_mps, Range::from(0.0, 1.0),
