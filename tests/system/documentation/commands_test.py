@@ -167,6 +167,7 @@ RULES = [
     Run(VIEW + r"oculus --frequency high .*", until=PROGRESS, beside=("configs/demo-oculus.yaml",)),
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --out out", until=SCAN, beside=("configs/demo-ping360.yaml",)),
     Run(VIEW + r"ping360 --udp 127.0.0.1:12345 --auto --turns 1.*", beside=("configs/oculus-and-ping360.yaml",)),
+    Run(VIEW + r"(ping360 --udp 127.0.0.1:9092 --auto --turns 1 .*|ping1d --udp 127.0.0.1:9090 --pings 20 --log-pings)", beside=("configs/bluerov2.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 (--out out|--range 20 --gain 3)", until=PROGRESS, beside=("configs/demo-ping1d.yaml",)),
     Run(VIEW + r"ping1d --udp 127.0.0.1:9090 --pings 50 --log-pings", beside=("configs/demo-ping1d.yaml",)),
     Run(VIEW + r"dvl_a50 --tcp 127.0.0.1:16171 .*", beside=("configs/demo-dvl_a50.yaml",)),
