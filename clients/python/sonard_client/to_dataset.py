@@ -73,6 +73,13 @@ def _formats(text: str) -> tuple[str, ...]:
     return names
 
 
+def _pixels(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text} is below 1")
+    return value
+
+
 def _floor(text: str) -> float:
     value = float(text)
     if not -200 <= value < 0:
@@ -93,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
                         help="pictures show levels in dB, black at DB below full scale (-70); default: amplitudes")
     parser.add_argument("--labels", metavar="FILE", type=Path,
                         help="YAML, lines of PATTERN: CLASS for names of bodies; others are background. Default: each body is a class")
-    parser.add_argument("--min-pixels", metavar="N", type=int, default=1,
+    parser.add_argument("--min-pixels", metavar="N", type=_pixels, default=1,
                         help="COCO and YOLO leave out bodies with fewer pixels in a picture (%(default)s)")
     parser.add_argument("--split", metavar="NAME=FOLDER[,FOLDER...]", nargs="+", action="extend", default=[],
                         help="names of folders (with * and ?) of a split; default: train=*")

@@ -34,7 +34,7 @@ class Labels:
         """The bodies with a class in a mask of the frame."""
         bodies = frame.bodies()
         pixels = np.bincount(mask.ravel())
-        for number in np.flatnonzero(pixels >= max(least_pixels, 1)):
+        for number in np.flatnonzero(pixels >= least_pixels):
             if number == 0:
                 continue
             if number not in bodies:

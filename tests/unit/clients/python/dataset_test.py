@@ -402,6 +402,7 @@ class Refusals(Folders):
     def test_command_line(self):
         self.assertIn("'voc': expected one or more of coco, yolo, hdf5", self.refused(form="voc"))
         self.assertIn("is not between -200 and 0", self.refused("--floor-db", "3"))
+        self.assertIn("0 is below 1", self.refused("--min-pixels", "0"))
 
     @unittest.skipIf(HAS_H5PY, "h5py is installed")
     def test_hdf5_without_h5py(self):
