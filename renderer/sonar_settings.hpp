@@ -33,6 +33,9 @@ struct SonarSettings {
   bool sixteen_bit = false;  ///< 16-bit instead of 8-bit output samples; not with half decibels
   OutputScale output_scale = OutputScale::linear;
   double output_exponent = 1.0;  ///< with OutputScale::power; > 0
+  /// Amplitude at the highest code, > 0; not with half decibels. A receiver clips at 1, so a greater one
+  /// shows what it clips.
+  double output_full_scale = 1.0;
 };
 
 /// Whether the beams have patterns of a straight array: mode `physical`, Azimuth::array, two beams or more.

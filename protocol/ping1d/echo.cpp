@@ -13,11 +13,12 @@ constexpr float end_of_echo = 0.25F;    // share of the peak below which an echo
 constexpr float onset = 0.2F;           // share of the peak of the first sample of an echo
 constexpr float onset_in_noise = 3.0F;  // the same, over the noise
 
-/// Root mean square of samples [first, end).
+/// Root mean square of samples [first, end), each clipped at full scale.
 float rms(std::span<const float> samples, std::size_t first, std::size_t end) {
   float sum = 0.0F;
   for (std::size_t k = first; k < end; ++k) {
-    sum += samples[k] * samples[k];
+    const float clipped = std::min(1.0F, samples[k]);
+    sum += clipped * clipped;
   }
   return std::sqrt(sum / static_cast<float>(end - first));
 }
@@ -103,7 +104,11 @@ std::vector<float> amplitudes(const PingImage& image) {
   std::vector<float> found;
   found.reserve(image.u8.size() + image.u16.size());
   std::ranges::transform(image.u8, std::back_inserter(found), [](auto code) { return code / 255.0F; });
-  std::ranges::transform(image.u16, std::back_inserter(found), [](auto code) { return code / 65535.0F; });
+  static_assert(image_exponent == 0.25);
+  std::ranges::transform(image.u16, std::back_inserter(found), [](auto code) {
+    const float root = (code + 0.5F) / 65535.0F;  // codes are rounded down
+    return static_cast<float>(image_full_scale) * (root * root) * (root * root);
+  });
   return found;
 }
 

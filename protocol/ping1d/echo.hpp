@@ -22,7 +22,12 @@ struct Echo {
   int saturated = 0;                ///< points at 255 beyond the ringing
 };
 
-/// Amplitudes, 1 at full scale, of an image with 8 or 16 bits.
+/// Codes of 16 bits are the fourth root of the amplitude, with this amplitude at the highest code: the shape
+/// of an echo that saturates the profile still gives its exact distance.
+inline constexpr double image_exponent = 0.25;
+inline constexpr double image_full_scale = 4096.0;
+
+/// Amplitudes, 1 at full scale of the profile, of an image with 8 bits (linear) or 16 bits.
 std::vector<float> amplitudes(const PingImage& image);
 
 /// Makes the profile of samples_of(scan, points), and finds the strongest echo. Echoes nearer than

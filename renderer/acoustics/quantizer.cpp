@@ -77,7 +77,8 @@ PingSamples make_samples(const SonarSettings& settings) {
 
 float codes_per_amplitude(const SonarSettings& settings) {
   const bool decibels = settings.output_scale == OutputScale::half_decibels;
-  const float full_scale = decibels ? 1.0F : settings.sixteen_bit ? 65535.0F : 255.0F;
+  const float highest_code = settings.sixteen_bit ? 65535.0F : 255.0F;
+  const float full_scale = decibels ? 1.0F : highest_code / static_cast<float>(settings.output_full_scale);
   const int shares = settings.range.compression_peak ? 1 : 1 << settings.range.compression_log2;
   return full_scale / static_cast<float>(shares);
 }

@@ -10,7 +10,7 @@ namespace sonard::render {
 /// Buffers of the size and sample type given by `settings`, all zero.
 PingSamples make_samples(const SonarSettings& settings);
 
-/// Amplitude 1 (full scale) in codes of the output, or 1 if codes are decibels, divided by the number of
+/// Amplitude 1 in codes of the output, or 1 if codes are decibels, divided by the number of
 /// range bins of a mean. Multiply amplitudes by it before Quantizer::add().
 float codes_per_amplitude(const SonarSettings& settings);
 

@@ -59,6 +59,10 @@ void check(const SonarSettings& settings) {
     throw RequestError("output: an amplitude to the power of " + std::to_string(settings.output_exponent) +
                        ", expected more than 0");
   }
+  if (!(settings.output_full_scale > 0 && std::isfinite(settings.output_full_scale))) {
+    throw RequestError("output: a full scale of " + std::to_string(settings.output_full_scale) +
+                       ", expected more than 0");
+  }
   if (range.compression_log2 < 0 || range.compression_log2 > 4) {
     throw RequestError("range: compression 2^" + std::to_string(range.compression_log2) +
                        ", expected 2^0 to 2^4");

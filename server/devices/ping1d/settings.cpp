@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/devices/ping1d/settings.hpp"
 
+#include "protocol/ping1d/echo.hpp"
 #include "server/devices/single_beam.hpp"
 
 namespace sonard::server {
@@ -8,6 +9,11 @@ namespace sonard::server {
 render::SonarSettings ping1d_sonar_settings(const PingJob& job, const HeadConfig& head) {
   render::SonarSettings settings = single_beam_settings(job, head);
   settings.sixteen_bit = job.sixteen_bit;
+  if (job.sixteen_bit) {
+    settings.output_scale = render::OutputScale::power;
+    settings.output_exponent = ping1d::image_exponent;
+    settings.output_full_scale = ping1d::image_full_scale;
+  }
   return settings;
 }
 

@@ -72,7 +72,7 @@ TEST(OutputScale, AMeanOfNativeLinesIsOneOfAmplitudes) {
 }
 
 /// 1000 amplitudes from 0 to 1.2 of full scale, as samples of a power of them.
-PingSamples powers(double exponent, bool sixteen_bit) {
+PingSamples powers(double exponent, bool sixteen_bit, double full_scale = 1.0) {
   std::vector<float> intensity;
   for (int i = 0; i < 1000; ++i) {
     const double amplitude = i * 1.2e-3;
@@ -81,6 +81,7 @@ PingSamples powers(double exponent, bool sixteen_bit) {
   PingRequest request = scanning_request(1000);
   request.settings.output_scale = OutputScale::power;
   request.settings.output_exponent = exponent;
+  request.settings.output_full_scale = full_scale;
   request.settings.sixteen_bit = sixteen_bit;
   WorkerPool workers(1);
   Receiver receiver;
@@ -103,6 +104,21 @@ TEST(OutputScale, PowersAreRoundedDownAndEndBelowTheHighestCode) {
     EXPECT_EQ(narrow.u8[999], 254);
     EXPECT_EQ(wide.u16[999], 65534);
   }
+}
+
+TEST(OutputScale, AGreaterFullScaleShowsWhatWouldBeClipped) {
+  const PingSamples samples = powers(0.25, true, 4096.0);
+  for (std::size_t i = 1; i < 1000; ++i) {
+    const double code = 65535.0 * std::pow(static_cast<double>(i) * 1.2e-3 / 4096.0, 0.25);
+    EXPECT_NEAR(samples.u16[i], code - 0.5, 0.55) << i;
+  }
+}
+
+TEST(OutputScale, RefusesAFullScaleOfZero) {
+  SonarRenderer renderer(World{}, {EngineKind::cpu, 1});
+  PingRequest request = scanning_request(10);
+  request.settings.output_full_scale = 0.0;
+  EXPECT_THROW(renderer.render_ping(request), RequestError);
 }
 
 TEST(OutputScale, RefusesAPowerOfZero) {

@@ -28,14 +28,19 @@ struct Bed {
   }
 };
 
+/// An amplitude as the renderer codes it in 16 bits: its fourth root, 4096 at the highest code, rounded down.
+inline std::uint16_t code_of(double amplitude) {
+  return static_cast<std::uint16_t>(std::min(65534.0, 65535.0 * std::pow(amplitude / 4096.0, 0.25)));
+}
+
 /// Adds a bed to a 16-bit image of a job.
 inline void add(const Bed& bed, const PingJob& job, PingImage& image) {
   image.number = job.number;
   image.u16.resize(static_cast<std::size_t>(job.bins()));
   for (std::size_t k = 0; k < image.u16.size(); ++k) {
     const auto bin = static_cast<double>(k);
-    const double sample = 65535.0 * bed.sample(bin * job.bin_m(), (bin + 1.0) * job.bin_m());
-    image.u16[k] = static_cast<std::uint16_t>(std::min(65535.0, std::round(image.u16[k] + sample)));
+    const double before = 4096.0 * std::pow(image.u16[k] / 65535.0, 4.0);
+    image.u16[k] = code_of(before + bed.sample(bin * job.bin_m(), (bin + 1.0) * job.bin_m()));
   }
 }
 

@@ -60,7 +60,7 @@ PingImage noise(const PingJob& job, double amplitude, unsigned seed) {
   std::exponential_distribution<double> energy;
   PingImage image;
   for (int k = 0; k < job.bins(); ++k) {
-    image.u16.push_back(static_cast<std::uint16_t>(65535.0 * amplitude * std::sqrt(energy(random))));
+    image.u16.push_back(code_of(amplitude * std::sqrt(energy(random))));
   }
   return image;
 }
@@ -78,15 +78,12 @@ TEST(Ping1dEcho, ABedInNoiseAndSpeckleIsWithinASampleOrTwo) {
   for (unsigned seed = 0; seed < 300; ++seed) {
     std::mt19937 random(seed);
     std::exponential_distribution<double> energy;
-    PingImage bed = image_of(job, {2.0, 0.3});
-    for (std::uint16_t& sample : bed.u16) {
-      sample = static_cast<std::uint16_t>(std::min(65535.0, sample * std::sqrt(energy(random))));
+    std::vector<float> samples = amplitudes(image_of(job, {2.0, 0.3}));
+    const std::vector<float> floor = amplitudes(noise(job, 0.01, seed + 1000));
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      samples[k] = std::hypot(samples[k] * static_cast<float>(std::sqrt(energy(random))), floor[k]);
     }
-    const PingImage floor = noise(job, 0.01, seed + 1000);
-    for (std::size_t k = 0; k < bed.u16.size(); ++k) {
-      bed.u16[k] = static_cast<std::uint16_t>(std::hypot(bed.u16[k], floor.u16[k]));
-    }
-    EXPECT_NEAR(echo_of(bed, scan).distance_mm.value_or(0), 2000.0, 10.0) << seed;
+    EXPECT_NEAR(find_echo(samples, scan, 200, 300.0).distance_mm.value_or(0), 2000.0, 10.0) << seed;
   }
 }
 
@@ -101,10 +98,21 @@ TEST(Ping1dEcho, RingingIsInTheProfileButNotTheDistance) {
   EXPECT_EQ(echo.saturated, 0);
 }
 
-TEST(Ping1dEcho, ASaturatedEchoBeginsWhereItBegins) {
-  const Echo echo = echo_over({2.0, 8.0}, Scan{});
-  EXPECT_NEAR(echo.distance_mm.value_or(0), 2000.0, 3.0);
-  EXPECT_GT(echo.saturated, 0);
+TEST(Ping1dEcho, ABedThatSaturatesTheProfileIsWithin1MmToo) {
+  for (const std::uint32_t length_mm : {5000U, 20'000U, 50'000U, 100'000U}) {
+    const Scan scan{.length_mm = length_mm};
+    for (const double amplitude : {2.0, 8.0, 50.0, 1000.0}) {
+      for (double share = 0.41; share < 0.9; share += 0.0491) {
+        const double range_m = 1e-3 * length_mm * share;
+        const Echo echo = echo_over({range_m, amplitude}, scan);
+        ASSERT_TRUE(echo.distance_mm) << range_m;
+        EXPECT_NEAR(*echo.distance_mm, 1e3 * range_m, 1.0)
+            << "length " << length_mm << ", amplitude " << amplitude;
+        EXPECT_GT(echo.saturated, 0);
+        EXPECT_EQ(echo.peak, 255);
+      }
+    }
+  }
 }
 
 }  // namespace
