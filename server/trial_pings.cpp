@@ -28,9 +28,11 @@ constexpr int bearings = 12;  // of a scanning head
 
 /// The vehicle's own model at the vehicle's pose; empty without a model.
 std::vector<PosedBody> own_model(const DaemonConfig& config, const render::Pose& T_world_vehicle) {
-  return config.world.vehicle_model.empty()
-             ? std::vector<PosedBody>{}
-             : std::vector<PosedBody>{{config.world.vehicle_model, T_world_vehicle}};
+  std::vector<PosedBody> bodies;
+  if (!config.world.vehicle_model.empty()) {
+    bodies.push_back({config.world.vehicle_model, T_world_vehicle});
+  }
+  return bodies;
 }
 
 }  // namespace
